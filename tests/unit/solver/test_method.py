@@ -32,7 +32,7 @@ from stiction.solver.law import point_to
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
 from stiction.solver.segments import stretches
 from stiction.solver.smooth import loop as smooth_loop
-from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_at, slip_slope
+from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_and_slope, slip_at
 from stiction.solver.smooth.dispatch import (
     Smoothed,
     SmoothedByArctan,
@@ -51,8 +51,8 @@ ROOT = Path(__file__).parents[3]
 TEXT = (ROOT / "docs/method.md").read_text(encoding="utf-8")
 SOLVER = Path(stiction.solver.__file__).parent
 
-coordinate, damped_rise, slip_at, slip_slope = map(
-    plain, (coordinate, damped_rise, slip_at, slip_slope)
+coordinate, damped_rise, slip_and_slope, slip_at = map(
+    plain, (coordinate, damped_rise, slip_and_slope, slip_at)
 )
 stick_duration, takeoff, to_spare = map(plain, (stick_duration, takeoff, to_spare))
 
@@ -604,7 +604,7 @@ def test_the_slope_of_the_slip_coordinate(q):
     by_x = np.subtract(slip_at(eps, q[0] + step, q[1]), slip_at(eps, q[0] - step, q[1]))
     by_y = np.subtract(slip_at(eps, q[0], q[1] + step), slip_at(eps, q[0], q[1] - step))
     wanted = by_x[0], by_x[1], by_y[1]
-    found = np.array(slip_slope(eps, *q)) * 2 * step
+    found = np.array(slip_and_slope(eps, *q)[2:]) * 2 * step
     assert found == pytest.approx(wanted, abs=1e-8 * np.abs(wanted).max())
 
 

@@ -7,26 +7,59 @@ be 1e-30 m/s, and to its logarithm above. With eps infinite, q is the slip veloc
 from __future__ import annotations
 
 from math import asinh, cosh, exp, hypot, inf, log, sinh, sqrt
+from typing import NamedTuple
 
 from stiction.solver.compilation.jit import inlined
 
-SMALL = 1e-4  # below, sinh(x)/x = 1 + x^2/6 to the last digit
+SMALL = 0.2  # below, the series are exact to the last digit; above, differences of exponentials
+# ratios of successive factors of q^2 in sinh(q)/q, and in 3 (cosh(q) - sinh(q)/q)/q^2
+ROUND = (1 / 6, 1 / 20, 1 / 42, 1 / 72, 1 / 110)
+OUTER = (1 / 10, 1 / 28, 1 / 54, 1 / 88, 1 / 130)
 LARGEST = 700.0  # sinh of more overflows
 ROUNDS = 30
 
 
 @inlined
-def slip_at(eps: float, q_x: float, q_y: float) -> tuple[float, float]:
-    """Return the slip velocity (m/s)."""
+def series(x: float, ratios: tuple[float, float, float, float, float]) -> float:
+    """Return 1 + r_1 x (1 + r_2 x (1 + ...))."""
+    a, b, c, d, e = ratios
+    return 1.0 + a * x * (1.0 + b * x * (1.0 + c * x * (1.0 + d * x * (1.0 + e * x))))
+
+
+class SlipAndSlope(NamedTuple):
+    """Slip velocity (m/s) and its derivative by q (M65), of which yx is xy (m/s)."""
+
+    x: float
+    y: float
+    xx: float
+    xy: float
+    yy: float
+
+
+@inlined
+def slip_and_slope(eps: float, q_x: float, q_y: float) -> SlipAndSlope:
+    """Return the slip velocity and its derivative, which share an exponential."""
     if eps == inf:
-        return q_x, q_y
+        return SlipAndSlope(q_x, q_y, 1.0, 0.0, 1.0)
     square = q_x * q_x + q_y * q_y
     if square < SMALL * SMALL:
-        f = eps * (1.0 + square / 6.0)
+        f, outer = eps * series(square, ROUND), eps / 3.0 * series(square, OUTER)
     else:
         q = sqrt(square)
-        f = eps * sinh(min(q, LARGEST)) / q
-    return f * q_x, f * q_y
+        up = 0.5 * exp(min(q, LARGEST))
+        down = 0.25 / up
+        f = eps * (up - down) / q
+        outer = (eps * (up + down) - f) / square
+    return SlipAndSlope(
+        f * q_x, f * q_y, f + outer * q_x * q_x, outer * q_x * q_y, f + outer * q_y * q_y
+    )
+
+
+@inlined
+def slip_at(eps: float, q_x: float, q_y: float) -> tuple[float, float]:
+    """Return the slip velocity (m/s)."""
+    s = slip_and_slope(eps, q_x, q_y)
+    return s.x, s.y
 
 
 @inlined
@@ -37,23 +70,6 @@ def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
     s = hypot(s_x, s_y)  # the square may underflow
     f = asinh(s / eps) / s if s > 0.0 else 0.0
     return f * s_x, f * s_y
-
-
-@inlined
-def slip_slope(eps: float, q_x: float, q_y: float) -> tuple[float, float, float]:
-    """Return ds/dq (M65): xx, xy and yy (m/s)."""
-    if eps == inf:
-        return 1.0, 0.0, 1.0
-    square = q_x * q_x + q_y * q_y
-    if square < SMALL * SMALL:
-        f, outer = eps * (1.0 + square / 6.0), eps / 3.0
-    else:
-        q = sqrt(square)
-        up = 0.5 * exp(min(q, LARGEST))
-        down = 0.25 / up
-        f = eps * (up - down) / q
-        outer = (eps * (up + down) - f) / square
-    return f + outer * q_x * q_x, outer * q_x * q_y, f + outer * q_y * q_y
 
 
 @inlined

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 from numpy.polynomial import Polynomial
 
+from stiction.friction.law import Vector
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.radau import (
@@ -23,11 +24,10 @@ from stiction.solver.radau import (
     integral,
     leading_factor,
 )
-from stiction.solver.smooth.coordinate import coordinate
+from stiction.solver.smooth.coordinate import coordinate, slip_at
 from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
 from stiction.solver.smooth.newton import correct, larger
 from stiction.solver.smooth.right_hand_side import (
-    Point,
     SmoothOutset,
     evaluate,
     inertia_share,
@@ -107,8 +107,8 @@ def balance(
     p: Within,
     w: Workspace,
     enough: float,
-    further: tuple[float, float],
-) -> tuple[bool, Point, tuple[float, float]]:
+    further: Vector,
+) -> tuple[bool, Vector, Vector]:
     """Solve for slip and states at `c` in the step; write the states to the row `INSIDE`.
 
     They are x with x - p + weight (p' - h f(x)) = 0 (M70), p being the polynomial and f the
@@ -147,13 +147,13 @@ def balance(
         if n > 2:
             size = larger(correct_states_inside(d_x, d_y, w), size)
         if not size < 1e100:
-            return False, at, (0.0, 0.0)
+            return False, (at.s_x, at.s_y), (0.0, 0.0)
         d_x, d_y = (yy * lost_x - xy * lost_y) * per, (xx * lost_y - yx * lost_x) * per
         slower = at.s_xx * d_x + at.s_xy * d_y, at.s_xy * d_x + at.s_yy * d_y
-        at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
         if size < enough or size * size < enough:
-            return True, at, slower
-    return False, at, (0.0, 0.0)
+            return True, slip_at(eps, q_x, q_y), slower
+        at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
+    return False, (at.s_x, at.s_y), (0.0, 0.0)
 
 
 @inlined
@@ -178,14 +178,14 @@ def local_error(
     follows the springs, the cubic misses no force, and its error is that of the distance (M70b).
     """
     p = within(w, INTERIOR)
-    found, at, (by_x, by_y) = balance(
+    found, (s_x, s_y), (by_x, by_y) = balance(
         problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 0.1, distance_error(w)
     )
     if not found:
         return inf
-    e_x, e_y = p.s_x - at.s_x, p.s_y - at.s_y
+    e_x, e_y = p.s_x - s_x, p.s_y - s_y
     w.error[0], w.error[1] = e_x, e_y
-    speed = slowest(h, w, accuracy.speed) + sqrt(at.s_x * at.s_x + at.s_y * at.s_y)
+    speed = slowest(h, w, accuracy.speed) + sqrt(s_x * s_x + s_y * s_y)
     x, y = e_x + by_x, e_y + by_y
     error = sqrt(max(e_x * e_x + e_y * e_y, x * x + y * y)) / speed
     for k in range(2, w.size.shape[0]):

@@ -20,7 +20,7 @@ from stiction.solver.problem import (
     rate_change,
     travel,
 )
-from stiction.solver.smooth.coordinate import slip_at, slip_slope
+from stiction.solver.smooth.coordinate import slip_and_slope
 from stiction.solver.smooth.dispatch import Friction, flow
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
@@ -111,12 +111,11 @@ def evaluate(
 
     It computes derivatives on request, and writes the rates of the states to row `i`.
     """
-    s = slip_at(eps, q_x, q_y)
-    f_x, f_y, xx, xy, yx, yy = acting(problem, s, load, w, i, wanted)
-    s_xx, s_xy, s_yy = slip_slope(eps, q_x, q_y) if wanted else (1.0, 0.0, 1.0)
+    s_x, s_y, s_xx, s_xy, s_yy = slip_and_slope(eps, q_x, q_y)
+    f_x, f_y, xx, xy, yx, yy = acting(problem, (s_x, s_y), load, w, i, wanted)
     return Point(
-        s[0],
-        s[1],
+        s_x,
+        s_y,
         f_x,
         f_y,
         s_xx,

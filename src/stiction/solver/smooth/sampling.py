@@ -50,10 +50,10 @@ def sample(
             write_states(inner, LAST, samples, k)
         else:  # the weight grows from zero at the start, where the polynomial is exact
             p = less_error(w, within(w, x), x)
-            _, there, _ = balance(problem, start, h, x, x, p, w, accuracy.newton, (0.0, 0.0))
+            _, slip, _ = balance(problem, start, h, x, x, p, w, accuracy.newton, (0.0, 0.0))
             u_x, u_y = u_x - h * p.slid_x, u_y - h * p.slid_y
-            slip, friction = (there.s_x, there.s_y), (there.f_x, there.f_y)
-            write(problem, u_x, u_y, slip, friction, samples, k)
+            f = acting(problem, slip, at(problem.load, start.t + dt), w, INSIDE, UNWANTED)
+            write(problem, u_x, u_y, slip, (f[0], f[1]), samples, k)
             write_states(w, INSIDE, samples, k)
         k += 1
     return k

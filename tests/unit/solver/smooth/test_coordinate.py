@@ -1,6 +1,6 @@
 """The slip coordinate, its inverse, its slope, and the update that inertia damps."""
 
-from math import asinh, cosh, exp, hypot, inf, sinh, tanh
+from math import asinh, cosh, exp, factorial, hypot, inf, sinh, tanh
 
 import numpy as np
 import pytest
@@ -8,7 +8,13 @@ from scipy.optimize import brentq
 from tests.entry import plain
 
 from stiction.solver.smooth import coordinate as of
-from stiction.solver.smooth.coordinate import LARGEST, coordinate, damped_rise, slip_at, slip_slope
+from stiction.solver.smooth.coordinate import (
+    LARGEST,
+    coordinate,
+    damped_rise,
+    slip_and_slope,
+    slip_at,
+)
 
 EPS = 1e-9
 POINTS = [(0.0, 0.0), (3e-5, -4e-5), (0.3, 0.4), (-3.0, 4.0), (30.0, 0.0), (0.0, -200.0)]
@@ -22,7 +28,7 @@ def test_there_and_back(q):
     assert s == pytest.approx((wanted * q[0], wanted * q[1]), rel=1e-13)
     assert plain(coordinate)(EPS, *s) == pytest.approx(q, rel=1e-12)
     assert plain(slip_at)(inf, *q) == plain(coordinate)(inf, *q) == q
-    assert plain(slip_slope)(inf, *q) == (1.0, 0.0, 1.0)
+    assert plain(slip_and_slope)(inf, *q) == (*q, 1.0, 0.0, 1.0)
 
 
 def test_slip_that_is_no_float_is_the_largest_that_is():
@@ -34,21 +40,25 @@ def test_slip_that_is_no_float_is_the_largest_that_is():
 @pytest.mark.parametrize("q", [(0.0, 0.0), (3e-5, -4e-5), (0.3, 0.4), (-3.0, 4.0), (12.0, 5.0)])
 def test_the_slope(q):
     """(M65), with its parts along q and across it: eps cosh and eps sinh(q)/q."""
-    xx, xy, yy = np.array(plain(slip_slope)(EPS, *q)) / EPS
+    xx, xy, yy = np.array(plain(slip_and_slope)(EPS, *q)[2:]) / EPS
     found, size = np.array([[xx, xy], [xy, yy]]), hypot(*q)
     if size == 0.0:
         assert found == pytest.approx(np.eye(2))
         return
     along, across = np.array(q) / size, np.array([-q[1], q[0]]) / size
-    assert found @ along == pytest.approx(cosh(size) * along, rel=1e-9)
-    assert found @ across == pytest.approx(sinh(size) / size * across, rel=1e-9)
+    assert found @ along == pytest.approx(cosh(size) * along, rel=1e-13)
+    assert found @ across == pytest.approx(sinh(size) / size * across, rel=1e-13)
 
 
-def test_the_slope_does_not_jump_where_a_series_begins():
-    for part in (0.999, 1.001):
-        found = np.array(plain(slip_slope)(1.0, part * of.SMALL, 0.0))
-        x = part * of.SMALL
-        assert found == pytest.approx([1 + x * x / 2, 0.0, 1 + x * x / 6], abs=1e-11)
+def test_nothing_jumps_where_the_series_end():
+    """Of twenty terms, as many as a float has digits for; (cosh q - sinh(q)/q)/q^2 loses some."""
+    q = of.SMALL
+    slip = sum(q ** (2 * k + 1) / factorial(2 * k + 1) for k in range(20))
+    along = sum(q ** (2 * k) / factorial(2 * k) for k in range(20))
+    for part in (1.0 - 1e-15, 1.0 + 1e-15):
+        x, y, xx, xy, yy = plain(slip_and_slope)(1.0, part * q, 0.0)
+        assert (x, y, xy) == (pytest.approx(slip, rel=4e-15), 0.0, 0.0)
+        assert (xx, yy) == pytest.approx((along, slip / q), rel=4e-15)
 
 
 @pytest.mark.parametrize("q", [0.0, 0.5, 3.0, 40.0, 690.0])
