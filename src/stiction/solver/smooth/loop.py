@@ -28,6 +28,7 @@ from stiction.solver.state import (
     count_step,
 )
 
+EAGER = 0.1  # of the growth that the error allows: the first size tried knows nothing of friction
 COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is linear in effect
 
 
@@ -137,8 +138,9 @@ def advance(
         end = smooth if start.t + taken >= smooth else start.t + taken
         motion = motion_at_end(problem, start, taken, end, w)
         keep(w, z, past)
-        factor = step_factor(error, GROWTH if rejected == 0 else 1.0)
         at_ease, short = ease(error), taken < CUT * h
+        growth = max(GROWTH, EAGER * at_ease) if rejected == 0 else 1.0
+        factor = step_factor(error, growth)
         if warm and not short:  # the errors of a step that was cut short show no trend
             factor = min(factor, trend(taken, h_last, at_ease, before))
         following, before = taken * factor, min(at_ease, CALMEST)

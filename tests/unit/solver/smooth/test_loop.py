@@ -188,6 +188,18 @@ def test_what_it_starts_from_is_not_changed():
 
 
 @pytest.mark.parametrize("name", ["smoothed", "lugre"])
+def test_a_step_without_error_grows_by_more(name):
+    """(M43) with a tenth of the growth that the error allows, *(iii)* of section 16."""
+    end, h = TIME + 1.0, 1e-9
+    problem, start, w, q = begun(name, accuracy=HELD)
+    *_, error, rejected, _ = plain(loop.step)(problem, start, *q, end, h, h, False, w, HELD)
+    _, state, _, _ = advance(name, end, state=state_of(name, h=h), budget=1)
+    growth = 0.1 * (error + 1e-10) ** -0.25
+    assert (rejected, growth > 5.0) == (0, True)
+    assert state.memory.h == pytest.approx(growth * h)
+
+
+@pytest.mark.parametrize("name", ["smoothed", "lugre"])
 def test_the_size_of_the_next_step(name):
     """(M43): at most twice as long, not after a refusal, nor longer than drive and load allow."""
     end = TIME + 1.0
