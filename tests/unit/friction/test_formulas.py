@@ -327,8 +327,11 @@ def test_derivatives_at_zero_slip():
     """Bristles do not slip yet, and ln V of the slip law has no slope there."""
     law = st.laws.LuGre(0.15, 0.2, 1e-2, 1e5, 300.0, 0.4)
     assert bending_gradient(law, 0.0, 0.0, 10.0) == (0.0, 0.0)
-    slip_law = st.laws.RateStateSlip(0.01, 0.005, 1e-5, 0.6, 1e-6)
-    assert slip_law.evolution_gradient(1.0, (0.0, 0.0), 1e-5) == (0.0, 0.0, 0.0)
+    for D_c in (1e-5, 1e-12):
+        slip_law = st.laws.RateStateSlip(0.01, 0.005, D_c, 0.6, 1e-6)
+        assert slip_law.evolution_gradient(1.0, (0.0, 0.0), D_c) == (0.0, 0.0, 0.0)
+        ageing = st.laws.RateStateAgeing(0.01, 0.005, D_c, 0.6, 1e-6)
+        assert ageing.evolution_gradient(1.0, (0.0, 0.0), D_c)[:2] == (0.0, 0.0)
 
 
 def test_two_exponentials_like_one_lie_about_its_speed():

@@ -115,8 +115,8 @@ class Ageing:
         law: Any, log_theta: float, slip: tuple[float, float], D: float
     ) -> tuple[float, float, float]:
         """Return its derivatives by slip x, y and the state."""
-        f = -1.0 / (D * max(slip_speed(slip), REST))
-        return f * slip[0], f * slip[1], -law.V_star * exp(-log_theta) / D
+        v = max(slip_speed(slip), REST)
+        return -slip[0] / v / D, -slip[1] / v / D, -law.V_star * exp(-log_theta) / D
 
 
 class Slipping:
@@ -134,8 +134,8 @@ class Slipping:
         """Return its derivatives by slip x, y and the state; zero at rest."""
         V = slip_speed(slip)
         v = max(V, REST)
-        f = -(log(v / law.V_star) + log_theta + 1.0) / (D * v)
-        return f * slip[0], f * slip[1], -V / D
+        f = -(log(v / law.V_star) + log_theta + 1.0) / D
+        return f * (slip[0] / v), f * (slip[1] / v), -V / D
 
 
 class Squaring:
