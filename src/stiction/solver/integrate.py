@@ -23,6 +23,7 @@ from stiction.solver.segments import (
     rig_of,
     speeds,
     stretches,
+    system_of,
 )
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import (
@@ -72,8 +73,27 @@ def tolerance(rtol: float) -> float:
     return FACTOR * float(rtol**0.8)
 
 
+class Scales(NamedTuple):
+    """A run's friction coefficient, and the speed of mass and springs at its start (m/s)."""
+
+    mu: float
+    elastic: float
+
+
+def scales_of(slider: Slider, initial: Initial) -> Scales:
+    """Return the numbers of a run from which its tolerances follow."""
+    system, ((u_x, u_y), slip) = system_of(slider), begin(slider, initial)
+    swing = u_x / sqrt(system.mass / system.k_x), u_y / sqrt(system.mass / system.k_y)
+    return Scales(slider.F_0 / slider.normal_load, hypot(*slip, *swing))
+
+
 def accuracy(
-    slider: Slider, initial: Initial, stretch: Stretch, start: float, rtol: float
+    slider: Slider,
+    scales: Scales,
+    stretch: Stretch,
+    start: float,
+    rtol: float,
+    inside: float = 0.0,
 ) -> Accuracy:
     """Return the tolerances of the steps in a stretch.
 
@@ -86,15 +106,13 @@ def accuracy(
     along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
     law: Any = slider.law
     load = load_bounds(stretch.problem.load, start, stretch.end)[0]
-    mu = slider.F_0 / slider.normal_load
+    mu, elastic = scales
     surface = stretch.problem.surface
     system = stretch.problem.system
     free_x = mu * load * sqrt(surface.xx / (system.mass * system.k_x))
     free_y = mu * load * sqrt(surface.yy / (system.mass * system.k_y))
     free = min(free_x, free_y)
     square_x, square_y = system.mass / system.k_x, system.mass / system.k_y
-    (u_x, u_y), slip = begin(slider, initial)
-    elastic = hypot(*slip, u_x / sqrt(square_x), u_y / sqrt(square_y))
     speed, k = (across, system.k_y) if across > 0.0 else (along or 1e-6 * free, system.k_x)
     if free > 0.0:
         speed = min(speed, free)
@@ -109,8 +127,9 @@ def accuracy(
     touch = local * speed
     least = LEAST_MOTION * (along + across + free_x + free_y) / local
     return Accuracy(
-        local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, 0.0, least
-    )
+        local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, inside,
+        least,
+    )  # fmt: skip
 
 
 @lru_cache(maxsize=256, typed=True)  # laws of different classes may be equal as tuples
@@ -185,7 +204,7 @@ def integrate(
     state = method.begin(description)
     times = times if times.flags.carray else times.copy()  # compiled code takes no other array
     out = Output(times, np.empty((len(times), method.columns)), np.empty((4096, 2)))
-    code, stretch = COMPLETED, None
+    code, stretch, scales = COMPLETED, None, scales_of(slider, initial)
 
     def report(t: float) -> None:
         if progress is not None:
@@ -193,7 +212,7 @@ def integrate(
 
     for stretch in stretches(slider, t, end):
         state = method.enter_segment(state, *slip_jump(slider, t))
-        held = accuracy(slider, initial, stretch, t, settings.rtol)._replace(inside=inside)
+        held = accuracy(slider, scales, stretch, t, settings.rtol, inside)
         code = RUNNING
         while code == RUNNING:
             budget = min(BUDGET if take is None else BLOCK, max_steps - out.used)

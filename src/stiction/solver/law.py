@@ -8,8 +8,8 @@ import numpy as np
 
 from stiction.friction.law import static_coefficient
 from stiction.solver.compilation.interrupt import compiling
-from stiction.solver.compilation.jit import compiled
-from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
+from stiction.solver.compilation.jit import entry_by_address
+from stiction.solver.compilation.pointer import caller, code_and_fields, pointee, types
 from stiction.solver.problem import coefficient, slope
 
 call: Any = caller(types.UniTuple(types.float64, 2), types.float64)
@@ -45,11 +45,11 @@ class PointedLaw(NamedTuple):
 def point_to(law: Any) -> PointedLaw:
     """Return a set-valued law behind pointers."""
     with compiling():
-        code = address(coefficient_and_slope_at, law, types.float64)
-        return PointedLaw(code, memory(law), static_coefficient(law))
+        code, fields = code_and_fields(law, coefficient_and_slope_at)
+        return PointedLaw(code, fields, static_coefficient(law))
 
 
-@compiled
+@entry_by_address(types.float64)
 def coefficient_and_slope_at(law: Any, v: float) -> tuple[float, float]:
     """Return coefficient and slope (s/m), at slip speed `v` (m/s), of the law at a pointer."""
     found: Any = pointee(law)

@@ -10,7 +10,13 @@ import stiction as st
 from stiction.drive import jump
 from stiction.errors import DescriptionError
 from stiction.solver import integrate, state
-from stiction.solver.integrate import accuracy, slip_jump, steepest_weakening, tolerance
+from stiction.solver.integrate import (
+    accuracy,
+    scales_of,
+    slip_jump,
+    steepest_weakening,
+    tolerance,
+)
 from stiction.solver.segments import stretches
 from stiction.solver.state import (
     COMPLETED,
@@ -29,7 +35,8 @@ AT_REST = st.Initial(v_x=STEADY.direction[0] * 2e-3, v_y=STEADY.direction[1] * 2
 
 
 def accuracy_of(slider, initial=AT_REST, start=0.0, rtol=1e-6):
-    return accuracy(slider, initial, next(stretches(slider, start, start + 1.0)), start, rtol)
+    stretch = next(stretches(slider, start, start + 1.0))
+    return accuracy(slider, scales_of(slider, initial), stretch, start, rtol)
 
 
 def weakening(slider):

@@ -27,7 +27,7 @@ from stiction.solver.compilation.jit import call_compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.pursuit import slip_before_landing
 from stiction.solver.exact.record import record_of
-from stiction.solver.integrate import accuracy, tolerance
+from stiction.solver.integrate import accuracy, scales_of, tolerance
 from stiction.solver.law import point_to
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
 from stiction.solver.segments import stretches
@@ -42,6 +42,7 @@ from stiction.solver.smooth.elimination import correct_states, residuals_without
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.smooth.newton import factors, linear
 from stiction.solver.smooth.right_hand_side import Stages
+from stiction.solver.smooth.state import with_numbers
 from stiction.solver.smooth.workspace import workspace
 from stiction.solver.state import Motion, State, start, state_from_plain
 from stiction.solver.stick import stick_duration, to_spare
@@ -106,7 +107,7 @@ class Taken(NamedTuple):
 def problem_of(slider, rtol=1e-6):
     """Return what the solver works on, and what a step is held to."""
     stretch = next(stretches(slider, 0.0, 1.0))
-    held = accuracy(slider, st.Initial(), stretch, 0.0, rtol)
+    held = accuracy(slider, scales_of(slider, st.Initial()), stretch, 0.0, rtol)
     return stretch.problem, held._replace(newton=NEWTON)
 
 
@@ -365,7 +366,7 @@ def test_the_local_tolerance():
     """(M39) and (M34)."""
     stretch = next(stretches(DAMPED, 0.0, 1.0))
     for rtol in (1e-2, 1e-6, 1e-10):
-        held = accuracy(DAMPED, st.Initial(), stretch, 0.0, rtol)
+        held = accuracy(DAMPED, scales_of(DAMPED, st.Initial()), stretch, 0.0, rtol)
         tol = 0.8 * rtol ** (4 / 5)
         assert held.tolerance == tolerance(rtol) == pytest.approx(tol, rel=1e-14)
         assert held.newton == pytest.approx(min(0.2, 100 * sqrt(tol)) * tol, rel=1e-14)
@@ -732,7 +733,9 @@ def test_the_printed_residuals_of_a_smooth_step_vanish():
     s = PAPER.replace(friction=AGEING, c_x=3.0, c_y=20.0)
     description = st.simulate(s, 0.02, sample_rate=0).description
     stretch = next(stretches(s, 0.0, 1.0))
-    held = accuracy(s, description.initial, stretch, 0.0, 1e-6)._replace(newton=NEWTON)
+    held = accuracy(s, scales_of(s, description.initial), stretch, 0.0, 1e-6)._replace(
+        newton=NEWTON
+    )
     method = Smooth(s, None)
     held, state = method.step_accuracy(held), method.begin(description)
     problem = stretch.problem._replace(law=method.flow)
@@ -742,7 +745,8 @@ def test_the_printed_residuals_of_a_smooth_step_vanish():
     rooms = workspace(method.states), workspace(method.states)
     for _ in range(30):
         before = state.motion
-        _, state, _, _ = smooth_loop.advance(problem, state, 1e9, held, 1, *nothing, *rooms)
+        _, now, _, _ = smooth_loop.advance(problem, state, 1e9, held, 1, *nothing, *rooms)
+        state = with_numbers(state, now)
         h, past = state.memory.h_last, state.memory.past
         slip, zeta = past[1:, :2], past[1:, 2:]
         u = np.array([before.u_x, before.u_y])

@@ -37,12 +37,19 @@ def compiled(function: F) -> F:
     return _entry(function, Shelf(function))
 
 
-def entry_by_address(function: F) -> F:
+def entry_by_address(*kinds: Any) -> Callable[[F], F]:
     """Compile an entry point that compiled code calls by its address, cached on disk.
 
-    It makes no arrays, and keeps none: to count who else does takes longer than most laws.
+    `kinds` are the types of its arguments after the first, a law (see `pointer`). It makes no
+    arrays, and keeps none: to count who else does takes longer than most laws.
     """
-    return _entry(function, Shelf(function), **BY_ADDRESS)
+
+    def compile_entry(function: F) -> F:
+        made: Any = _entry(function, Shelf(function), **BY_ADDRESS)
+        made.kinds = kinds
+        return cast(F, made)
+
+    return compile_entry
 
 
 def inlined(function: F) -> F:

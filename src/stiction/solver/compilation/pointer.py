@@ -31,29 +31,29 @@ intrinsic: Any = numba.extending.intrinsic
 typeof: Any = numba.typeof
 
 
-def address(function: Any, law: Any, *arguments: Any) -> Any:
-    """Return the address of the machine code of a compiled function for a law.
+def code_and_fields(law: Any, *entries: Any) -> tuple[Any, ...]:
+    """Return the addresses of functions for a law, and the law's fields in memory.
 
-    The function's first argument is a pointer to the law's fields (see `pointee`); `arguments` are
-    the types of the others. It is compiled for the first law of each type.
+    The functions are made by `entry_by_address`; their first argument is a pointer to the fields
+    (see `pointee`). They are compiled for the first law of each type.
     """
-    return function if INTERPRETED else _address(function, typeof(law), *arguments)
-
-
-def memory(law: Any) -> Any:
-    """Return the fields of a law in memory for compiled code, and keep its arrays alive."""
     if INTERPRETED:
-        return law
-    kind = typeof(law)
-    room: Any = (ctypes.c_char * _size(kind))()
-    room.law = law
-    _for_own(write, kind)(law, ctypes.addressof(room))
-    return np.frombuffer(room, dtype=np.uint8)
+        return *entries, law
+    codes, size, write_own = _prepare(typeof(law), entries)
+    room: Any = (ctypes.c_char * size)()
+    room.law = law  # keeps its arrays alive
+    write_own(law, ctypes.addressof(room))
+    return *codes, np.frombuffer(room, dtype=np.uint8)
 
 
 @cache
-def _address(function: Any, kind: Any, *arguments: Any) -> int:
-    return int(address_of(_for_own(function, kind), types.CPointer(kind), *arguments))
+def _prepare(kind: Any, entries: tuple[Any, ...]) -> tuple[list[int], int, Any]:
+    """Return addresses for laws of a type, the size of their fields, and what writes these."""
+    codes = [
+        int(address_of(_for_own(entry, kind), types.CPointer(kind), *entry.kinds))
+        for entry in entries
+    ]
+    return codes, _size(kind), _for_own(write, kind)
 
 
 @cache
@@ -66,7 +66,6 @@ def address_of(function: Any, *kinds: Any) -> Any:
     return int(result.library.get_pointer_to_function(result.fndesc.llvm_func_name))
 
 
-@cache
 def _size(kind: Any) -> int:
     """Return the size of a value in bytes, at least one."""
     return max(1, int(context.get_abi_sizeof(context.get_data_type(kind))))

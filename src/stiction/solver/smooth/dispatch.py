@@ -14,7 +14,7 @@ import numpy as np
 from stiction.friction.law import Vector, states
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import entry_by_address, inlined
-from stiction.solver.compilation.pointer import address, caller, memory, pointee, types
+from stiction.solver.compilation.pointer import caller, code_and_fields, pointee, types
 from stiction.solver.compilation.stand_in import called_from_both, stand_in
 from stiction.solver.problem import (
     Elliptic,
@@ -144,10 +144,10 @@ class PointedFlow(NamedTuple):
 def point_to_flow(law: Any) -> PointedFlow:
     """Return a law as the smooth solver takes it."""
     plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
-    own = (flow_at, *FLOW) if states(law) else (friction_at, *FRICTION)
+    own = flow_at if states(law) else friction_at
     with compiling():
-        flows, grains = address(own[0], law, *own[1:]), address(grain_at, law, *GRAIN)
-        return PointedFlow(flows, grains, memory(law), plain)
+        flow_code, grain_code, fields = code_and_fields(law, own, grain_at)
+        return PointedFlow(flow_code, grain_code, fields, plain)
 
 
 @inlined
@@ -193,7 +193,7 @@ call_flow: Any = caller(FOUND, *FLOW)
 call_grain: Any = caller(types.float64, *GRAIN)
 
 
-@entry_by_address
+@entry_by_address(*FRICTION)
 def friction_at(law: Any, s_x: float, s_y: float, load: float, per_mass: float) -> Friction:
     """Do as `flow` for the law without states at a pointer."""
     f, g, xx, xy, yx, yy = friction_and_gradient(pointee(law), (s_x, s_y), load)
@@ -201,7 +201,7 @@ def friction_at(law: Any, s_x: float, s_y: float, load: float, per_mass: float) 
     return f * m, g * m, xx * m, xy * m, yx * m, yy * m
 
 
-@entry_by_address
+@entry_by_address(*FLOW)
 def flow_at(
     law: Any,
     s_x: float,
@@ -225,7 +225,7 @@ def flow_at(
     return to[i, 0], to[i, 1], m[0, 0], m[0, 1], m[1, 0], m[1, 1]
 
 
-@entry_by_address
+@entry_by_address(*GRAIN)
 def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     """Do as `grain_of` for the law at a pointer."""
     found: Any = pointee(law)

@@ -15,7 +15,7 @@ from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import grain_of
 from stiction.solver.smooth.right_hand_side import SmoothOutset, evaluate, measure, moving, pull
 from stiction.solver.smooth.sampling import sample
-from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState
+from stiction.solver.smooth.state import Numbers, SmoothMotion, SmoothState
 from stiction.solver.smooth.step import remember, step
 from stiction.solver.smooth.workspace import LAST, START, Workspace
 from stiction.solver.state import (
@@ -104,12 +104,12 @@ def advance(
     k: int,
     w: Workspace,
     inner: Workspace,
-) -> tuple[int, SmoothState, int, int]:
+) -> tuple[int, Numbers, int, int]:
     """Advance until `t_end` or until the budget is used up, as `exact.loop.advance` does.
 
-    The arrays of `state` change. Rows of `samples` are 7 + n long; see
-    `stiction.solver.smooth.sampling`. `inner` is for steps within a step. No array is made here:
-    to compile that takes half a second.
+    The arrays of `state` change; returned is the rest of it, see `state.with_numbers`. Rows of
+    `samples` are 7 + n long; see `stiction.solver.smooth.sampling`. `inner` is for steps within a
+    step. No array is made here: to compile that takes half a second.
     """
     motion, z, memory, counts = state
     past = memory.past
@@ -149,5 +149,4 @@ def advance(
         h_last, warm = taken, end < t_end and not cut
     if motion.t >= t_end:
         code = COMPLETED
-    memory = SmoothMemory(h, h_last, before, warm, past)
-    return code, SmoothState(motion, z, memory, counts), k, turns
+    return code, (motion[:], (h, h_last, before, warm), counts[:]), k, turns

@@ -8,13 +8,19 @@ from typing import Any
 import numpy as np
 
 from stiction.friction import states
-from stiction.solver.compilation.interrupt import compiling
+from stiction.solver.compilation.jit import call_compiled
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.problem import Isotropic, Problem, at, force
+from stiction.solver.problem import Isotropic, Problem, at, force, kinds_of
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.dispatch import SMOOTHED, point_to_flow
-from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState, copy_of
+from stiction.solver.smooth.state import (
+    SmoothMemory,
+    SmoothMotion,
+    SmoothState,
+    copy_of,
+    with_numbers,
+)
 from stiction.solver.smooth.workspace import workspace
 from stiction.solver.state import NOTHING, Accuracy, Output, first_step
 from stiction.system.description import Description
@@ -36,6 +42,7 @@ class Smooth:
         self.law: Any = law if delta is None else SMOOTHED[smoothing](law, surface, delta)
         self.flow = point_to_flow(self.law)
         self.columns = COLUMNS + self.states
+        self.rooms = workspace(self.states), workspace(self.states)
 
     def begin(self, description: Description) -> SmoothState:
         """Return the initial state of a run."""
@@ -49,11 +56,11 @@ class Smooth:
 
     def enter_segment(self, state: SmoothState, x: float, y: float) -> SmoothState:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
-        m = state.motion
-        motion = m._replace(s_x=m.s_x + x, s_y=m.s_y + y)
+        (t, u_x, u_y, s_x, s_y), internal, (h, h_last, ease, _, past), counts = state
+        motion = SmoothMotion(t, u_x, u_y, s_x + x, s_y + y)
         # in a hold a step may become as long as the rest of the run
-        memory = state.memory._replace(warm=False, h=min(state.memory.h, self.first_step))
-        return state._replace(motion=motion, memory=memory)
+        memory = SmoothMemory(min(h, self.first_step), h_last, ease, False, past)
+        return SmoothState(motion, internal, memory, counts)
 
     def advance(
         self,
@@ -69,13 +76,10 @@ class Smooth:
         resolved = self.step_accuracy(held)
         times, samples = out.times, out.samples
         own = copy_of(state)
-        rooms = workspace(self.states), workspace(self.states)
-        with compiling():  # the state returns as named tuples and arrays
-            code, state, out.filled, turns = loop.advance(
-                smooth, own, end, resolved, budget, times, samples, out.filled, *rooms
-            )
+        arguments = smooth, own, end, resolved, budget, times, samples, out.filled, *self.rooms
+        code, now, out.filled, turns = call_compiled(loop.advance, kinds_of(smooth), *arguments)
         out.used += turns
-        return code, state
+        return code, with_numbers(own, now)
 
     def last_row(self, problem: Problem, state: SmoothState) -> list[float]:
         """Return the sample of a state between two steps."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -43,7 +43,18 @@ class SmoothState(NamedTuple):
     counts: Counts
 
 
+Numbers = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
+
+
+def with_numbers(state: SmoothState, numbers: Numbers) -> SmoothState:
+    """Return the state with the arrays that it has, and these of motion, memory and counts."""
+    motion, (h, h_last, ease, warm), counts = numbers
+    memory = SmoothMemory(h, h_last, ease, warm, state.memory.past)
+    return SmoothState(SmoothMotion(*motion), state.internal, memory, Counts(*counts))
+
+
 def copy_of(state: SmoothState) -> SmoothState:
     """Return the state with arrays of its own."""
-    memory = state.memory._replace(past=state.memory.past.copy())
-    return state._replace(internal=state.internal.copy(), memory=memory)
+    motion, internal, (h, h_last, ease, warm, past), counts = state
+    memory = SmoothMemory(h, h_last, ease, warm, past.copy())
+    return SmoothState(motion, internal.copy(), memory, counts)

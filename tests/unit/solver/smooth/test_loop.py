@@ -29,7 +29,13 @@ from stiction.solver.smooth import loop, right_hand_side
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.loop import COARSEST
 from stiction.solver.smooth.method import Smooth
-from stiction.solver.smooth.state import SmoothMemory, SmoothMotion, SmoothState, copy_of
+from stiction.solver.smooth.state import (
+    SmoothMemory,
+    SmoothMotion,
+    SmoothState,
+    copy_of,
+    with_numbers,
+)
 from stiction.solver.smooth.workspace import START, workspace
 from stiction.solver.state import (
     COMPLETED,
@@ -60,8 +66,8 @@ def advance(
         problem = problem._replace(law=behind(law))
     advance = plain(loop.advance)
     rooms = workspace_of(name), workspace_of(name)
-    code, state, k, turns = advance(problem, own, end, accuracy, budget, times, samples, 0, *rooms)
-    return code, state, samples[:k], turns
+    code, now, k, turns = advance(problem, own, end, accuracy, budget, times, samples, 0, *rooms)
+    return code, with_numbers(own, now), samples[:k], turns
 
 
 @pytest.mark.parametrize("name", LAWS)
