@@ -202,6 +202,7 @@ def integrate(
     t, end = initial.time, initial.time + settings.duration
     method = method_of(description)
     state = method.begin(description)
+    times = np.asarray(times, dtype=np.float64)
     times = times if times.flags.carray else times.copy()  # compiled code takes no other array
     out = Output(times, np.empty((len(times), method.columns)), np.empty((4096, 2)))
     code, stretch, scales = COMPLETED, None, scales_of(slider, initial)

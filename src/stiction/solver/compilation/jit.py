@@ -113,3 +113,22 @@ def call_compiled(function: Any, kinds: tuple[type, ...], *arguments: Any) -> An
         found = function(*arguments)
         _met.add((function, kinds))
     return found
+
+
+_entries: dict[tuple[Any, ...], Any] = {}
+
+
+def call_directly(function: Any, kinds: tuple[type, ...], *arguments: Any) -> Any:
+    """Do as `call_compiled`, but find the machine code once.
+
+    In each call numba looks at the types of all arguments, down to each array's order in memory,
+    8 us of 10. Here the `kinds` must determine these.
+    """
+    entry = _entries.get((function, kinds))
+    if entry is not None:
+        return entry(*arguments)
+    found = call_compiled(function, kinds, *arguments)
+    known = {} if INTERPRETED else function.overloads
+    made = known.get(tuple(map(numba.typeof, arguments)))
+    _entries[function, kinds] = function if made is None else made.entry_point
+    return found
