@@ -7,7 +7,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.friction.law import static_coefficient
-from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import entry_by_address
 from stiction.solver.compilation.pointer import caller, code_and_fields, pointee, types
 from stiction.solver.problem import coefficient, slope
@@ -44,9 +43,8 @@ class PointedLaw(NamedTuple):
 
 def point_to(law: Any) -> PointedLaw:
     """Return a set-valued law behind pointers."""
-    with compiling():
-        code, fields = code_and_fields(law, coefficient_and_slope_at)
-        return PointedLaw(code, fields, static_coefficient(law))
+    code, fields = code_and_fields(law, coefficient_and_slope_at)
+    return PointedLaw(code, fields, static_coefficient(law))
 
 
 @entry_by_address(types.float64)

@@ -22,6 +22,7 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from stiction.friction.user.source import text_of
+from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED, compiled, compiled_for
 
 context: Any = cpu_target.target_context
@@ -39,21 +40,43 @@ def code_and_fields(law: Any, *entries: Any) -> tuple[Any, ...]:
     """
     if INTERPRETED:
         return *entries, law
-    codes, size, write_own = _prepare(typeof(law), entries)
+    kind = type_of(law)
+    known = _prepared.get((kind, entries))
+    if known is None:
+        with compiling():
+            known = _prepared[kind, entries] = prepare(kind, entries, law)
+    codes, size, write_own = known
     room: Any = (ctypes.c_char * size)()
     room.law = law  # keeps its arrays alive
     write_own(law, ctypes.addressof(room))
     return *codes, np.frombuffer(room, dtype=np.uint8)
 
 
-@cache
-def _prepare(kind: Any, entries: tuple[Any, ...]) -> tuple[list[int], int, Any]:
+Prepared = tuple[list[int], int, Any]
+_prepared: dict[tuple[Any, ...], Prepared] = {}
+_of_floats: dict[type, Any] = {}
+
+
+def type_of(law: Any) -> Any:
+    """Return numba's type of a law; of one that has floats only it is known by the class."""
+    if not all(type(value) is float for value in law):
+        return typeof(law)
+    own = type(law)
+    if own not in _of_floats:
+        _of_floats[own] = typeof(law)
+    return _of_floats[own]
+
+
+def prepare(kind: Any, entries: tuple[Any, ...], law: Any) -> Prepared:
     """Return addresses for laws of a type, the size of their fields, and what writes these."""
     codes = [
         int(address_of(_for_own(entry, kind), types.CPointer(kind), *entry.kinds))
         for entry in entries
     ]
-    return codes, _size(kind), _for_own(write, kind)
+    size, write_own = _size(kind), _for_own(write, kind)
+    room: Any = (ctypes.c_char * size)()
+    write_own(law, ctypes.addressof(room))  # which compiles it
+    return codes, size, write_own
 
 
 @cache

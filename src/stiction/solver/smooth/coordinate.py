@@ -67,7 +67,7 @@ def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
     """Return q at a slip velocity (m/s)."""
     if eps == inf:
         return s_x, s_y
-    s = hypot(s_x, s_y)  # the square may underflow
+    s = abs(s_x) if s_y == 0.0 else hypot(s_x, s_y)  # the square may underflow
     f = asinh(s / eps) / s if s > 0.0 else 0.0
     return f * s_x, f * s_y
 

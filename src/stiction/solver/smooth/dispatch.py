@@ -12,7 +12,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.friction.law import Vector, states
-from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import entry_by_address, inlined
 from stiction.solver.compilation.pointer import caller, code_and_fields, pointee, types
 from stiction.solver.compilation.stand_in import called_from_both, stand_in
@@ -145,9 +144,8 @@ def point_to_flow(law: Any) -> PointedFlow:
     """Return a law as the smooth solver takes it."""
     plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
     own = flow_at if states(law) else friction_at
-    with compiling():
-        flow_code, grain_code, fields = code_and_fields(law, own, grain_at)
-        return PointedFlow(flow_code, grain_code, fields, plain)
+    flow_code, grain_code, fields = code_and_fields(law, own, grain_at)
+    return PointedFlow(flow_code, grain_code, fields, plain)
 
 
 @inlined
