@@ -21,7 +21,7 @@ from stiction.friction import FUNCTIONS as LAW_FUNCTIONS
 from stiction.friction import METHODS as LAW_METHODS
 from stiction.friction import FrictionLaw, StateLaw
 from stiction.friction.law import Vector, static_coefficient
-from stiction.solver.compilation.jit import inlined
+from stiction.solver.compilation.jit import call_compiled, call_directly, inlined
 from stiction.solver.compilation.stand_in import called_from_both, stand_in
 from stiction.solver.rig import Aligned, General
 
@@ -122,6 +122,16 @@ def kinds_of(problem: Problem) -> tuple[Any, ...]:
     """Return the types for which the compiled code is specialised."""
     kinds = (type(part) for part in (*problem.drive, *problem.load))
     return type(problem.surface), type(problem.drive), type(problem.load), type(problem.rig), *kinds
+
+
+def call_for(problem: Problem, function: Any, *arguments: Any) -> Any:
+    """Call a compiled function with arguments whose types follow from the problem's.
+
+    The tables of a recording may be arrays of any order; then numba looks at them in each call.
+    """
+    kinds = kinds_of(problem)
+    call = call_compiled if Recording in kinds else call_directly
+    return call(function, kinds, *arguments)
 
 
 def coefficient(law: FrictionLaw, v: float) -> float:

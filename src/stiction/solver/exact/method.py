@@ -5,13 +5,13 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
-from stiction.solver.compilation.jit import call_compiled, compiled
+from stiction.solver.compilation.jit import compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.record import record_of
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.exact.slip_frame import friction
 from stiction.solver.law import point_to
-from stiction.solver.problem import Problem, is_aligned, isotropic, kinds_of
+from stiction.solver.problem import Problem, call_for, is_aligned, isotropic
 from stiction.solver.rig import as_general
 from stiction.solver.segments import begin, friction_of, system_of
 from stiction.solver.state import (
@@ -69,7 +69,7 @@ class Exact:
         """Return the sample of a state between two steps."""
         motion = state.motion
         slip = [motion.r * motion.e_x, motion.r * motion.e_y]
-        force = call_compiled(force_between, kinds_of(problem), self.point_law(problem), motion)
+        force = call_for(problem, force_between, self.point_law(problem), motion)
         return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
 
     def point_law(self, problem: Problem) -> Problem:
@@ -111,7 +111,7 @@ def advance_compiled(
     """Call a compiled loop, and make room for more sticks."""
     times, samples, sticks = out.times, out.samples, out.sticks
     arguments = problem, state, end, held, budget, times, samples, out.filled, sticks, *more
-    code, now, out.filled, turns = call_compiled(function, kinds_of(problem), *arguments)
+    code, now, out.filled, turns = call_for(problem, function, *arguments)
     state = state_from_plain(now)
     out.used += turns
     out.make_room(state.counts.sticks)

@@ -7,11 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from stiction.drive.recorded.spline import Recording
 from stiction.friction import states
-from stiction.solver.compilation.jit import call_compiled, call_directly
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.problem import Isotropic, Problem, at, force, kinds_of
+from stiction.solver.problem import Isotropic, Problem, at, call_for, force
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.dispatch import SMOOTHED, point_to_flow
@@ -78,9 +76,7 @@ class Smooth:
         times, samples = out.times, out.samples
         own = copy_of(state)
         arguments = smooth, own, end, resolved, budget, times, samples, out.filled, *self.rooms
-        kinds = kinds_of(smooth)
-        call = call_compiled if Recording in kinds else call_directly  # with tables of any order
-        code, now, out.filled, turns = call(loop.advance, kinds, *arguments)
+        code, now, out.filled, turns = call_for(smooth, loop.advance, *arguments)
         out.used += turns
         return code, with_numbers(own, now)
 
