@@ -13,7 +13,7 @@ from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.mechanism.comparison import SHARE, mechanism
-from stiction.inference.mechanism.odds import UNDECIDED, Odds, near_one
+from stiction.inference.mechanism.odds import UNDECIDED, UNLIKE, Odds, near_one
 from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.observation import Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit
@@ -215,7 +215,7 @@ def is_unusual_rotation(odds: Odds) -> bool:
     An explanation and a claim compare that curve with different simulations (`BOTH_HOLD`).
     """
     its = odds.likeness[odds.likeliest]
-    return odds.names[odds.likeliest] == ROTATION and its.larger < RARE
+    return odds.names[odds.likeliest] == ROTATION and its.larger < UNLIKE
 
 
 def curve(found: Predictive | None) -> str:

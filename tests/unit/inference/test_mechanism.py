@@ -300,6 +300,16 @@ def test_a_claim_needs_every_part_to_agree():
     assert odds_with(likeness=(USUAL, far, bent)).decision == ROTATION  # of the others
 
 
+def test_both_comparisons_together_refuse_a_twentieth_of_a_mechanism_s_own_records():
+    random = np.random.default_rng(6)
+    shares = random.random((4000, 2))  # uniform, as those of a mechanism's own records are
+    likely = [USUAL._replace(farther=far, larger=bent) for far, bent in shares]
+    refused = np.mean([odds_with(likeness=(its, USUAL, USUAL)).decision != ROTATION
+                       for its in likely])  # fmt: skip
+    error = (0.05 * 0.95 / 4000) ** 0.5
+    assert refused == pytest.approx(0.05, abs=3.0 * error)  # 1 - 0.975^2 = 0.0494
+
+
 def test_an_elliptic_limit_loads_as_another_misalignment_does(rig):
     """Creep on an ellipse with ratio r is that at tan(phi') = r tan(phi), up to phi^2."""
     slider = rig.slider.replace(k_y="90 MN/m", phi="2 deg")
@@ -323,6 +333,12 @@ def test_an_elliptic_limit_loads_as_another_misalignment_does(rig):
 def test_an_ellipse_is_said_to_look_like_misalignment_without_the_force_across():
     assert "ellipse" in " ".join(odds_with().sentences())
     assert "ellipse" not in " ".join(odds_with(channels=("force", "force_across")).sentences())
+
+
+def test_a_claim_of_contacts_with_memory_names_the_law_that_may_pass_for_it():
+    aged = odds_with(probabilities=np.array([0.02, 0.03, 0.95]))
+    assert f"may pass for {RATE_AND_STATE}" in " ".join(aged.sentences())
+    assert "may pass" not in " ".join(odds_with().sentences())
 
 
 def test_mechanisms_that_were_not_compared_are_named():
