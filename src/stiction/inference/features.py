@@ -15,6 +15,9 @@ Indices = NDArray[np.int64]
 
 # shares of a loading, narrow where creep accelerates towards the slip
 EDGES = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.91, 0.95, 0.98, 1.0])
+# free periods of the mass after a peak and after a trough: the slip, and how the force rises again
+SLIP = np.array([1 / 12, 1 / 6, 1 / 3, 1 / 2])
+REBOUND = np.array([1 / 6, 1 / 3, 1 / 2, 1.0])
 DROP = 0.3  # of the span of the force: a smaller fall is not a slip
 TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
 USED = ("force", "force_across", "position")  # channels, in the order of their features
@@ -112,6 +115,7 @@ def parts(
     yield FeatureGroup("cycles", force, of_cycles(step, channels["force"], scale, cycles))
     yield FeatureGroup("loading", force, of_loading(step, channels["force"], scale, loadings))
     yield FeatureGroup(BEND, force, of_bend(channels["force"], loadings))
+    yield FeatureGroup("slip", force, of_slip(step, channels["force"], scale, cycles))
     if across:
         yield FeatureGroup("force across", across, of_force_across(step, channels, scale, loadings))
     if position:
@@ -186,14 +190,23 @@ def of_cycles(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -
 
 
 def of_loading(step: float, force: Floats, scale: FeatureScale, loadings: Loadings) -> list[float]:
-    """Return the loading rate, and by how much creep lowers it."""
+    """Return the loading rate, by how much creep lowers it, and which kind of creep.
+
+    Where the force leans by theta, creep goes as cot theta (Eq. (7) of Nakano & Popov). Bristles
+    under a steadily growing force yield as 1/(1 - f), f being the force over that at which they
+    slip (dz/dt = v (1 - f): C. Canudas de Wit et al., IEEE Trans. Autom. Control 40, 419 (1995)).
+    """
     f = force[loadings.index]
     time = step * loadings.number
     peak = f[loadings.first + loadings.count - 1][loadings.cycle]
     lean = np.clip(f / (ABOVE * peak), 0.0, 1.0 / ABOVE)
     way = loadings.integral(lean / np.sqrt(1.0 - lean * lean), step)
+    yielding = loadings.integral(1.0 / (1.0 - lean), step)
     rate, slowed = loadings.regression(f, time, way)
-    return [logarithm(rate / scale.loading), -slowed / scale.loading]
+    beside, *kinds = loadings.regression(f, time, way, yielding) / scale.loading
+    return [
+        logarithm(rate / scale.loading), -slowed / scale.loading, beside, *np.cbrt(kinds)
+    ]  # fmt: skip
 
 
 def of_bend(force: Floats, loadings: Loadings) -> list[float]:
@@ -202,6 +215,24 @@ def of_bend(force: Floats, loadings: Loadings) -> list[float]:
     first, last = f[loadings.first], f[loadings.first + loadings.count - 1]
     height = (f - first[loadings.cycle]) / (last - first)[loadings.cycle]
     return [*loadings.averages(height - loadings.share)]
+
+
+def of_slip(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> list[float]:
+    """Return the share of the fall that is done after a peak, and of the rise after a trough.
+
+    Friction that falls with speed sets how fast the force falls, bristles how it rises again.
+    """
+    period, number = scale.period / step, np.arange(len(force))
+
+    def change(begin: Indices, end: Indices, periods: Floats) -> Floats:
+        start = force[begin][:, None]
+        later = np.interp(begin[:, None] + period * periods, number, force)
+        return np.asarray(((later - start) / (force[end][:, None] - start)).mean(axis=0))
+
+    return [
+        *change(cycles.peak, cycles.after, SLIP),
+        *change(cycles.before, cycles.peak, REBOUND),
+    ]  # fmt: skip
 
 
 def of_force_across(

@@ -30,7 +30,7 @@ SPARE = 2  # cycles simulated beyond those that are used: the first begins from 
 LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
 NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero"}  # names of priors
-FORMAT = 4  # of stored simulations and of what is learned from them
+FORMAT = 5  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):
