@@ -128,7 +128,11 @@ def call_directly(function: Any, kinds: tuple[type, ...], *arguments: Any) -> An
     if entry is not None:
         return entry(*arguments)
     found = call_compiled(function, kinds, *arguments)
-    known = {} if INTERPRETED else function.overloads
-    made = known.get(tuple(map(numba.typeof, arguments)))
-    _entries[function, kinds] = function if made is None else made.entry_point
+    _entries[function, kinds] = function if INTERPRETED else entry_point_of(function, arguments)
     return found
+
+
+def entry_point_of(function: Any, arguments: tuple[Any, ...]) -> Any:
+    """Return the machine code for such arguments, or the function where numba converts them."""
+    made = function.overloads.get(tuple(map(numba.typeof, arguments)))
+    return function if made is None else made.entry_point
