@@ -10,6 +10,7 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib import pyplot
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
@@ -843,3 +844,19 @@ def test_labels_of_ticks_are_plain_text() -> None:
     assert "\N{MINUS SIGN}1.0" in [each.get_text() for each in ax.get_xticklabels()]
     assert not any("$" in each.get_text() for each in ax.get_yticklabels())
     assert r"\times\mathdefault{10^{9}}" in ax.yaxis.get_offset_text().get_text()
+
+
+def test_a_window_keeps_its_size_while_its_figure_is_written(tmp_path: Path) -> None:
+    figure = pyplot.figure(figsize=(2.0, 1.5), layout="constrained")
+    figure.subplots()
+    manager, engine = figure.canvas.manager, figure.get_layout_engine()
+    assert manager is not None
+    manager.resize = refuse  # type: ignore[method-assign]
+    write(figure, tmp_path / "a.png")
+    assert figure.canvas.manager is manager
+    assert figure.get_layout_engine() is engine
+    assert figure.dpi == pyplot.rcParams["figure.dpi"]
+
+
+def refuse(*_: object) -> None:
+    raise AssertionError("resized")

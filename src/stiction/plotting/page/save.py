@@ -68,14 +68,17 @@ def laid_out(fig: Figure, dpi: float) -> Iterator[None]:
     Writing a file, matplotlib would draw the whole figure to find it, and draw it once more.
     """
     engine, own = fig.get_layout_engine(), fig.dpi
-    fig.dpi = dpi
-    lay_out(fig)
-    fig.dpi = own
-    fig.set_layout_engine(None)
+    manager, fig.canvas.manager = fig.canvas.manager, None  # it would resize the figure's window
     try:
+        fig.dpi = dpi
+        lay_out(fig)
+        fig.dpi = own
+        fig.set_layout_engine(None)
         yield
     finally:
+        fig.dpi = own
         fig.set_layout_engine(engine)
+        fig.canvas.manager = manager
 
 
 def drawable(path: str | Path) -> Path:
