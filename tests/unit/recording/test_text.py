@@ -527,6 +527,12 @@ def test_files_that_are_none(write, content, said):
         st.read_record(write(content))
 
 
+def test_a_header_that_looks_like_a_description_is_read(write):
+    text = f"[drive]\nvelocity = 2\n\ntime [s],force [N]\n{lines()}"
+    plain = st.read_record(write(f"time [s],force [N]\n{lines()}"))
+    assert st.read_record(write(text)).force.tolist() == plain.force.tolist()
+
+
 def test_a_missing_file_and_a_folder(tmp_path):
     with pytest.raises(st.ResultError, match="no such file"):
         st.read_record(tmp_path / "a.csv")

@@ -67,15 +67,18 @@ def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
         head = file.read(HEAD)
     if not head:
         raise ResultError(f"{path}: is empty; record it again")
-    if use := use_of(path, RESULT, RECORD):
-        raise ResultError(f"{path}: is no record; {use}")
     for magic, what in OTHERS.items():
         if head.startswith(magic):
             raise ResultError(f"{path}: is {what}")
     kind = next(each for each in FORMATS if each.matches(head))
     read = import_module(f"{__name__}.{kind.reader}").read
-    with opening(path, f"is not a file of {kind.name} that can be read"):
-        tables: list[FileTable] = read(path, layout)
-    if not any(len(table) for table in tables):
-        raise ResultError(f"{path}: no samples in it ({kind.name}); record it again")
+    try:
+        with opening(path, f"is not a file of {kind.name} that can be read"):
+            tables: list[FileTable] = read(path, layout)
+        if not any(len(table) for table in tables):
+            raise ResultError(f"{path}: no samples in it ({kind.name}); record it again")
+    except ResultError:  # the header of a record may look like a description
+        if use := use_of(path, RESULT, RECORD):
+            raise ResultError(f"{path}: is no record; {use}") from None
+        raise
     return [table for table in tables if len(table)]
