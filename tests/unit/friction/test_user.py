@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import NamedTuple
 
+import numpy as np
 import pytest
 import xarray as xr
 from tests.waiting import PATIENCE
@@ -279,6 +280,28 @@ class Looping(NamedTuple):
         while slip[0] == 0.0 and z > 0.0:
             z = 0.5 * z + 1.0
         return (z,)
+
+
+class Making(NamedTuple):
+    """Exponential weakening, summed in arrays that its methods make."""
+
+    mu_0: float
+    mu_inf: float
+    v_f: float
+
+    def coefficient(law, v):
+        return np.sum(np.array([law.mu_inf, (law.mu_0 - law.mu_inf) * np.exp(-v / law.v_f)]))
+
+    def slope(law, v):
+        return np.sum(np.array([(law.mu_inf - law.mu_0) / law.v_f * np.exp(-v / law.v_f), 0.0]))
+
+
+@pytest.mark.parametrize("how", [{}, {"regularisation": "10 um/s"}], ids=["set-valued", "smooth"])
+def test_a_law_may_make_arrays(slider, how):
+    settings = {"sample_rate": "1 kHz", "multiscale": False, **how}
+    own = slider.replace(friction=Making(*slider.law[:3]))
+    found, wanted = (st.simulate(each, 0.05, **settings) for each in (own, slider))
+    np.testing.assert_allclose(found.data["u_x"], wanted.data["u_x"], rtol=1e-9)
 
 
 def test_check_law_tells_what_does_not_end():

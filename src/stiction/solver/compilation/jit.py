@@ -40,8 +40,8 @@ def compiled(function: F) -> F:
 def entry_by_address(*kinds: Any) -> Callable[[F], F]:
     """Compile an entry point that compiled code calls by its address, cached on disk.
 
-    `kinds` are the types of its arguments after the first, a law (see `pointer`). It makes no
-    arrays, and keeps none: to count who else does takes longer than most laws.
+    `kinds` are the types of its arguments after the first, a law (see `pointer`). Our laws make no
+    arrays, and keep none: to count who else does takes longer than most laws.
     """
 
     def compile_entry(function: F) -> F:
@@ -81,12 +81,11 @@ def _part(function: F, **options: Any) -> F:
 def compiled_for(function: Any, digest: str | None) -> Any:
     """Return a `compiled` function for types of a user's law, cached under its digest.
 
+    Such a law may make arrays, which are counted.
     The digest is None if the law's text is unknown; then each process compiles it anew.
     """
     own = python_of(function)
-    known = getattr(function, "targetoptions", {})
-    options = {name: value for name, value in BY_ADDRESS.items() if name in known}
-    return _entry(own, None if digest is None else Shelf(own, digest), **options)
+    return _entry(own, None if digest is None else Shelf(own, digest))
 
 
 def _entry(function: F, shelf: Shelf | None, **options: Any) -> F:
