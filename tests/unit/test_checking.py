@@ -134,6 +134,24 @@ def test_what_is_taken_away_is_made_again(store, tmp_path, gone):
     assert st.open_study(path).load().identical(xr.open_zarr(store).load())
 
 
+@pytest.mark.parametrize("array", ["status", "peak_force", "phi"])
+@pytest.mark.parametrize(
+    ("key", "value"),
+    [("fill_value", 10**6), ("fill_value", 1e999), ("shape", [-1]), ("data_type", "int9")],
+)
+def test_metadata_that_no_array_can_have_are_told_and_made_again(
+    store, tmp_path, array, key, value
+):
+    path = shutil.copytree(store, tmp_path / "a.zarr")
+    about = json.loads((path / array / "zarr.json").read_text())
+    (path / array / "zarr.json").write_text(json.dumps({**about, key: value}))
+    for door in (st.open_study, st.map, lambda path: st.sweep(STUDY, path)):
+        with pytest.raises(st.ResultError, match=r"is damaged: .*stiction check"):
+            door(path)
+    assert st.check(path, repair=True).repaired
+    assert st.open_study(path).load().identical(xr.open_zarr(store).load())
+
+
 def test_without_its_consolidated_metadata_a_store_is_damaged(store, tmp_path):
     path = shutil.copytree(store, tmp_path / "a.zarr")
     root = json.loads((path / "zarr.json").read_text())

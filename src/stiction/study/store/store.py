@@ -241,8 +241,12 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
         status: Any = group[STATUS]
         layout = Layout(tuple(status.metadata.dimension_names), status.shape, status.chunks)
         arrays: dict[str, Any] = {name: group[name] for name in (*names_kept(study), STATUS)}
-    except (KeyError, ValueError, TypeError, AttributeError) as error:
+    except errors.StictionError:
+        raise
+    except KeyError as error:
         raise seal.damage(path, lost or [f"it lacks {error}"]) from None
+    except Exception as error:  # zarr raises anything where metadata are damaged
+        raise seal.damage(path, lost or [errors.one_line(error)]) from None
     if lost:
         raise seal.damage(path, lost)
     if layout.tasks > MOST_TASKS:
