@@ -22,6 +22,7 @@ from stiction.result.file import (
     SEAL,
     as_written,
     damaged_parts,
+    is_netcdf,
     seal_tables,
     sign,
     write_table,
@@ -30,7 +31,6 @@ from stiction.result.table import Column, ColumnTable, as_table, cf_attributes
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
-from stiction.storage.kinds import HDF5
 
 KIND = "stiction_record"  # attribute by which a stored record is recognised; its value: the layout
 KNOWN = {  # of the apparatus, stored as attributes with their units
@@ -84,9 +84,8 @@ def is_stored(path: Path) -> bool:
 def root_attributes(path: Path) -> list[str] | None:
     """Return the names of an HDF5 file's attributes; none of another file, None if damaged."""
     try:
-        with open(path, "rb") as file:
-            if file.read(len(HDF5)) != HDF5:
-                return []
+        if not is_netcdf(path):
+            return []
         found = as_written(path)
         names = list_attributes(str(path)) if found else apart(list_attributes, path)
     except (OSError, ResultError):
