@@ -72,10 +72,9 @@ def simulate(
         than 14 but one, by 100, which leaves unstable steady sliding. Of 1800 with programs of
         drive or load, of either kind, all are off by less than 8 times but one, by 36; of 4800 with
         all that a description can hold, of any kind, 99 % by less than 3 times and all by less than
-        15 but two, by 34 and 48, undamped oscillations that smoothed friction feeds. No promise
-        covers a law with internal states that comes to steady sliding of which small disturbances
-        grow slowly: a run may rest there, the more likely the smaller `rtol` is, where the motion
-        would grow in the end; `stiction.linear_stability` tells whether it is unstable. A tenth of
+        15 but two, by 34 and 48, undamped oscillations that smoothed friction feeds. Where a run
+        comes to unstable steady sliding within rounding it leaves that, but when is up to rounding.
+        A tenth of
         `rtol` divides the error by ten where steps resolve the fastest oscillation, by six where
         that has died out, and both on average only: the steps then lie elsewhere, so that a
         neighbouring tolerance may gain nothing.

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.drive import jump
 from stiction.drive.bounds import load_bounds
 from stiction.friction import has_state
@@ -27,6 +28,7 @@ from stiction.solver.segments import (
 )
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import (
+    ASKS,
     COMPLETED,
     CONTACT_LOST,
     RUNNING,
@@ -35,6 +37,8 @@ from stiction.solver.state import (
     Counts,
     Output,
 )
+from stiction.solver.stepping.amplification import longest_step
+from stiction.solver.stepping.control import AGAIN
 from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -152,7 +156,8 @@ Report = Callable[[float], None]
 class Method(Protocol):
     """The interface of solvers; `columns` is the length of a sample's row.
 
-    Each solver has its own type of state, which must have ``motion.t`` and ``counts``.
+    Each solver has its own type of state, which must have ``motion.t``, ``counts``, and in its
+    ``memory`` the size of the next step ``h``, and the ``limit`` of steps about steady sliding.
     """
 
     columns: int
@@ -170,6 +175,9 @@ class Method(Protocol):
 
     def last_row(self, problem: Problem, state: Any) -> list[float]:
         """Return the sample of a state between two steps."""
+
+    def rates(self, problem: Problem, state: Any) -> Floats:
+        """Return the matrix of a small disturbance of a state; see `stepping.amplification`."""
 
 
 def method_of(description: Description) -> Method:
@@ -221,6 +229,8 @@ def integrate(
                 code = TOO_MANY_STEPS
                 break
             code, state = method.advance(stretch.problem, state, stretch.end, held, budget, out)
+            if code == ASKS:
+                code, state = RUNNING, knowing_growth(method, stretch, state)
             if take is not None:
                 take(outward(slider, out.samples[: out.filled]))
                 out.times, out.filled = out.times[out.filled :], 0
@@ -239,6 +249,13 @@ def integrate(
         samples = np.vstack([samples[earlier], method.last_row(stretch.problem, state)])
     samples = outward(slider, samples)
     return Solution(code, times, samples, out.sticks[: counts.sticks].copy(), counts)
+
+
+def knowing_growth(method: Method, stretch: Stretch, state: Any) -> Any:
+    """Return a state that knows the longest step that shows growth about steady sliding."""
+    left, memory = stretch.end - state.motion.t, state.memory
+    longest = longest_step(method.rates(stretch.problem, state), memory.h, left)
+    return state._replace(memory=memory._replace(limit=(longest, AGAIN * memory.h)))
 
 
 def outward(slider: Slider, samples: np.ndarray) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +15,8 @@ from stiction.solver.compilation.stand_in import called_from_both
 from stiction.solver.problem import System
 
 STICK = 80.0  # bytes of memory per stick interval, for all tables and intermediate arrays
-RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = -1, 0, 1, 2, 3, 4
+# how the loop ended; it runs on, or asks how long a step about steady sliding may be
+ASKS, RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = range(-2, 5)
 
 
 @dataclass
@@ -94,13 +95,20 @@ Plan = tuple[float, float, float, float, float, float, float, float]
 PLANNED = 8
 
 
+# The longest step that shows how disturbances of steady sliding grow (M43a), s; and the size of
+# steps up to which it need not be asked for again
+Limit = tuple[float, float]
+NO_LIMIT: Limit = (inf, 0.0)
+
+
 class Memory(NamedTuple):
     """Information of the last steps for the next one.
 
     h : size to try next, s; plan : sizes of the first steps after a stick, from the previous
     cycle, which is similar; place : number of these steps taken;
     h_last : size of the last step; ease : its error over tolerance, to the power -1/4;
-    warm : whether `p` and `w`, values of its cubics at 0 and the stages, predict the next.
+    warm : whether `p` and `w`, values of its cubics at 0 and the stages, predict the next;
+    limit : of steps about steady sliding.
     """
 
     h: float
@@ -111,6 +119,7 @@ class Memory(NamedTuple):
     warm: bool
     p: tuple[float, float, float, float]
     w: tuple[float, float, float, float]
+    limit: Limit
 
 
 class Counts(NamedTuple):
@@ -170,13 +179,14 @@ def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, f
     h = first_step(system)
     nothing = (0.0, 0.0, 0.0, 0.0)
     plan = (h, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    memory = Memory(h, plan, 0, h, 1.0, False, nothing, nothing)
+    memory = Memory(h, plan, 0, h, 1.0, False, nothing, nothing, NO_LIMIT)
     return State(Motion(t, u[0], u[1], r, e[0], e[1]), memory, NOTHING)
 
 
 def drop_memory(memory: Memory, h: float) -> Memory:
     """Return the memory after a kink of the motion, with cubics that predict nothing."""
-    return Memory(h, memory.plan, PLANNED, memory.h_last, memory.ease, False, memory.p, memory.w)
+    plan, h_last, ease = memory.plan, memory.h_last, memory.ease
+    return Memory(h, plan, PLANNED, h_last, ease, False, memory.p, memory.w, NO_LIMIT)
 
 
 @inlined
@@ -186,15 +196,22 @@ def after_cut(memory: Memory) -> Memory:
     The cubics of one much shorter than the next do not reach across that.
     """
     warm = memory.warm and memory.h_last > CUT * memory.h
-    h, plan, ease = memory.h, memory.plan, memory.ease
-    return Memory(h, plan, memory.place, memory.h_last, ease, warm, memory.p, memory.w)
+    h, plan, place, h_last, ease, _, p, w, limit = memory
+    return Memory(h, plan, place, h_last, ease, warm, p, w, limit)
+
+
+@inlined
+def without_limit(memory: Memory) -> Memory:
+    """Return the memory of a motion that may take steps of any length about steady sliding."""
+    h, plan, place, h_last, ease, warm, p, w, _ = memory
+    return Memory(h, plan, place, h_last, ease, warm, p, w, (inf, inf))
 
 
 @inlined
 def at_takeoff(memory: Memory) -> Memory:
     """Return the memory at the end of a stick."""
-    h = memory.plan[0]
-    return Memory(h, memory.plan, 0, memory.h_last, memory.ease, False, memory.p, memory.w)
+    h, h_last, ease = memory.plan[0], memory.h_last, memory.ease
+    return Memory(h, memory.plan, 0, h_last, ease, False, memory.p, memory.w, NO_LIMIT)
 
 
 @inlined

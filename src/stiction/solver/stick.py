@@ -21,7 +21,7 @@ from stiction.solver.problem import (
     steady,
     travel,
 )
-from stiction.solver.radau import C
+from stiction.solver.stepping.radau import C
 from stiction.solver.surface import held_product
 
 USED_UP = 1e-14  # of f^2: the margin |a|^2 - f^2 is zero within rounding

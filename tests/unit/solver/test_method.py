@@ -22,7 +22,6 @@ from tests.rebuilt.step import PI, A, C, D, Step, gamma
 
 import stiction as st
 import stiction.solver
-from stiction.solver.block_algebra import solve_blocks
 from stiction.solver.compilation.jit import call_compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.pursuit import slip_before_landing
@@ -30,14 +29,14 @@ from stiction.solver.exact.record import record_of
 from stiction.solver.integrate import accuracy, scales_of, tolerance
 from stiction.solver.law import point_to
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
-from stiction.solver.segments import stretches
-from stiction.solver.smooth import loop as smooth_loop
-from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_and_slope, slip_at
-from stiction.solver.smooth.dispatch import (
+from stiction.solver.regularised import (
     Smoothed,
     SmoothedByArctan,
     friction_and_gradient,
 )
+from stiction.solver.segments import stretches
+from stiction.solver.smooth import loop as smooth_loop
+from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_and_slope, slip_at
 from stiction.solver.smooth.elimination import correct_states, residuals_without
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.smooth.newton import factors, linear
@@ -45,6 +44,7 @@ from stiction.solver.smooth.right_hand_side import Stages
 from stiction.solver.smooth.state import with_numbers
 from stiction.solver.smooth.workspace import workspace
 from stiction.solver.state import Motion, State, start, state_from_plain
+from stiction.solver.stepping.block_algebra import solve_blocks
 from stiction.solver.stick import stick_duration, to_spare
 from stiction.solver.surface import takeoff
 

@@ -17,7 +17,9 @@ import stiction as st
 from stiction.solver import reference
 from stiction.solver.exact.pursuit import landing_slip, landing_time
 from stiction.solver.integrate import tolerance
-from stiction.solver.radau import (
+from stiction.solver.reference import twin
+from stiction.solver.segments import stretches
+from stiction.solver.stepping.radau import (
     DEFECT_WEIGHT,
     DERIVATIVE,
     INTEGRAL,
@@ -31,8 +33,6 @@ from stiction.solver.radau import (
     cubic,
     cubic_slope,
 )
-from stiction.solver.reference import twin
-from stiction.solver.segments import stretches
 from stiction.solver.stick import stick_duration
 
 EPS = np.finfo(float).eps

@@ -12,7 +12,7 @@ from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 import stiction as st
 from stiction.solver import stick
 from stiction.solver.problem import Bends
-from stiction.solver.radau import C
+from stiction.solver.stepping.radau import C
 
 HELD = [(0.3 * u_x, 0.3 * u_y) for u_x, u_y, _, _ in MOTIONS]
 

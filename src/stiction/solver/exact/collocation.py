@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from stiction.solver.block_algebra import Factors, Triple, dot, eliminate
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.oscillation import Swing
 from stiction.solver.exact.slip_frame import Frame, friction, pull
 from stiction.solver.problem import Problem
-from stiction.solver.radau import FIRST, SECOND, THIRD, A, C, D
+from stiction.solver.stepping.block_algebra import Factors, Triple, dot, eliminate
+from stiction.solver.stepping.radau import FIRST, SECOND, THIRD, A, C, D
 from stiction.solver.surface import Flow, flow, speed_ratio
 
 

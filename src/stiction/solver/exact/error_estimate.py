@@ -9,13 +9,14 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.block_algebra import Triple, less
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.oscillation import MOST, Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, friction, pull
 from stiction.solver.problem import Problem, in_principal_axes, rate, rate_change
-from stiction.solver.radau import (
+from stiction.solver.state import Accuracy
+from stiction.solver.stepping.block_algebra import Triple, less
+from stiction.solver.stepping.radau import (
     DEFECT_WEIGHT,
     INTERIOR,
     LATER,
@@ -25,18 +26,20 @@ from stiction.solver.radau import (
     cubic_slope,
     integral,
 )
-from stiction.solver.state import Accuracy
 from stiction.solver.surface import flow, speed_ratio
 
 DIP_LOOKS = 6  # iterations at most in the search for the least slip
 
 
 @inlined
-def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) -> float:
+def moving(
+    problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy
+) -> tuple[float, float]:
     """Return the relative speed of the springs' ends at a step's start (M42), m/s.
 
     For an oscillation this is its amplitude, from the elongation rate u', and u'' times the time of
-    a radian of each spring. It is at least the effect of rounding.
+    a radian of each spring. It is at least the effect of rounding. The second is its
+    square with the faster radian in place of both.
     """
     r, e_x, e_y = frame.r, frame.e_x, frame.e_y
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t))
@@ -44,8 +47,10 @@ def moving(problem: Problem, frame: Frame, start: Outset, accuracy: Accuracy) ->
     s_1, s_2 = start.a_1 - start.f, start.a_2 - start.turn
     x, y = v_x - r * e_x, v_y - r * e_y
     by_x, by_y = g_x - s_1 * e_x + s_2 * e_y, g_y - s_1 * e_y - s_2 * e_x
-    square = by_x * by_x * accuracy.square_x + by_y * by_y * accuracy.square_y
-    return max(sqrt(x * x + y * y + square), accuracy.least)
+    apart, b_x, b_y = x * x + y * y, by_x * by_x, by_y * by_y
+    square = b_x * accuracy.square_x + b_y * accuracy.square_y
+    fast = (b_x + b_y) * min(accuracy.square_x, accuracy.square_y)
+    return max(sqrt(apart + square), accuracy.least), apart + fast
 
 
 @inlined

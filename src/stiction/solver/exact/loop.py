@@ -6,9 +6,7 @@ from math import isfinite, sqrt
 
 import numpy as np
 
-from stiction.solver.block_algebra import Triple, dot
 from stiction.solver.compilation.jit import compiled, inlined
-from stiction.solver.control import CALMEST, GROWTH, ease, step_factor, trend
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
 from stiction.solver.exact.record import StepRecord, keep_step
@@ -32,9 +30,10 @@ from stiction.solver.problem import (
     smooth_until,
     travel,
 )
-from stiction.solver.radau import A
 from stiction.solver.state import (
+    ASKS,
     COMPLETED,
+    NO_LIMIT,
     NON_FINITE,
     PLANNED,
     RUNNING,
@@ -52,6 +51,9 @@ from stiction.solver.state import (
     size_to_try,
     write_plan,
 )
+from stiction.solver.stepping.block_algebra import Triple, dot
+from stiction.solver.stepping.control import ASKED, CALMEST, GROWTH, ease, step_factor, trend
+from stiction.solver.stepping.radau import A
 from stiction.solver.stick import holding, holds_on, margin, stick_duration, to_spare
 from stiction.solver.surface import takeoff
 
@@ -134,7 +136,7 @@ def slip(
     """Take one step of slip and plan the next."""
     motion, memory, counts = state
     t, r = motion.t, motion.r
-    done, landing, swing, h, p, w, error, rejected, iterations = step(
+    done, landing, swing, h, p, w, error, limit, rejected, iterations = step(
         problem, frame, start, t_stop, memory, accuracy
     )
     counts = count_step(counts, rejected, iterations)
@@ -164,6 +166,7 @@ def slip(
         not landing,
         (r, p[0], p[1], p[2]),
         (0.0, w[0], w[1], w[2]),
+        NO_LIMIT if landing else limit,
     )
     r = 0.0 if landing else p[2] * sqrt(1.0 + w[2] * w[2])
     return True, State(Motion(end, u_x, u_y, r, e_x, e_y), memory, counts), k
@@ -245,6 +248,8 @@ def advance(
             motion = state.motion
             if not ends:
                 continue
+        if state.memory.limit[0] == ASKED:
+            return ASKS, state, k, turn
         frame = frame_of(problem, motion)
         start = outset(problem, frame)
         smooth = smooth_until(problem.bend, motion.t, t_end)

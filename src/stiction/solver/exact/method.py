@@ -5,15 +5,19 @@ from __future__ import annotations
 from math import sqrt
 from typing import Any
 
+import numpy as np
+
+from stiction.arrays import Floats
 from stiction.solver.compilation.jit import compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.record import record_of
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.exact.slip_frame import friction
 from stiction.solver.law import point_to
-from stiction.solver.problem import Problem, call_for, is_aligned, isotropic
+from stiction.solver.problem import Problem, at, call_for, is_aligned, isotropic
+from stiction.solver.regularised import Smoothed, gradient_in_axes
 from stiction.solver.rig import as_general
-from stiction.solver.segments import begin, friction_of, system_of
+from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.state import (
     Accuracy,
     Motion,
@@ -23,6 +27,7 @@ from stiction.solver.state import (
     start,
     state_from_plain,
 )
+from stiction.solver.stepping.amplification import write_rates
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along, metric_into, speed_ratio
 from stiction.system.description import Description
@@ -36,7 +41,8 @@ class Exact:
 
     def __init__(self, slider: Slider) -> None:
         """Store the slider, and compile its law."""
-        self.law = point_to(friction_of(slider)[0])
+        law, surface = friction_of(slider)[0], surface_of(slider)
+        self.law, self.sliding = point_to(law), Smoothed(law, surface, 0.0)
         self.record = record_of(0)
 
     def begin(self, description: Description) -> State:
@@ -71,6 +77,14 @@ class Exact:
         slip = [motion.r * motion.e_x, motion.r * motion.e_y]
         force = call_for(problem, force_between, self.point_law(problem), motion)
         return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
+
+    def rates(self, problem: Problem, state: State) -> Floats:
+        """Return the matrix of a small disturbance; see `amplification`."""
+        m, rates = state.motion, np.zeros((4, 4))
+        slip = m.r * m.e_x, m.r * m.e_y
+        slopes = gradient_in_axes(self.sliding, problem, slip, at(problem.load, m.t))
+        write_rates(problem, slopes, rates)
+        return rates
 
     def point_law(self, problem: Problem) -> Problem:
         """Return a problem for compiled code, with its law behind pointers.

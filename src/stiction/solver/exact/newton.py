@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from stiction.solver.block_algebra import Triple, solve_blocks
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.control import CONTRACTS, diverging, settled
 from stiction.solver.exact.collocation import factors, stage
 from stiction.solver.exact.oscillation import Oscillator, Swing, swing
 from stiction.solver.exact.slip_frame import Frame
 from stiction.solver.problem import Problem
-from stiction.solver.radau import FIRST, SECOND, THIRD
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.block_algebra import Triple, solve_blocks
+from stiction.solver.stepping.control import CONTRACTS, diverging, settled
+from stiction.solver.stepping.radau import FIRST, SECOND, THIRD
 
 ITERATIONS = 10
 

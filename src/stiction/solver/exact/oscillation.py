@@ -18,11 +18,11 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
-from stiction.solver.block_algebra import Triple, dot
 from stiction.solver.compilation.jit import inlined, switch
 from stiction.solver.exact.slip_frame import Frame, Outset
-from stiction.solver.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.block_algebra import Triple, dot
+from stiction.solver.stepping.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
 
 FIFTH, APART = 0.2, sqrt(6.0) / 10.0  # the stages are 2/5 -+ sqrt(6)/10 and 1
 LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic is as good; above, it replaces the swing

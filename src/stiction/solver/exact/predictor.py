@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
-from stiction.solver.block_algebra import Triple, inverse, times
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import add_to_entry
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.oscillation import Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem
-from stiction.solver.radau import FIRST, SECOND, THIRD, A, C, D, cubic
 from stiction.solver.state import Memory
+from stiction.solver.stepping.block_algebra import Triple, inverse, times
+from stiction.solver.stepping.radau import FIRST, SECOND, THIRD, A, C, D, cubic
 from stiction.solver.stick import margin
 
 

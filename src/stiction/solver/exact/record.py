@@ -10,13 +10,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.solver.block_algebra import Triple, less
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.newton import products
 from stiction.solver.exact.oscillation import Oscillator, Swing, after, oscillator, swings
 from stiction.solver.exact.slip_frame import Frame, Outset
-from stiction.solver.radau import cubic, integral
 from stiction.solver.state import Motion
+from stiction.solver.stepping.block_algebra import Triple, less
+from stiction.solver.stepping.radau import cubic, integral
 
 WIDTH = 24
 SIZE, KIND, OSCILLATOR, REST, TURN, PRODUCTS = 6, 7, 8, 15, 18, 21  # columns, after the motion's

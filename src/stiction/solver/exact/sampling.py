@@ -15,7 +15,6 @@ from math import sqrt
 
 import numpy as np
 
-from stiction.solver.block_algebra import Triple, dot, less
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.error_estimate import moving
 from stiction.solver.exact.newton import products, solve
@@ -31,8 +30,9 @@ from stiction.solver.exact.oscillation import (
 from stiction.solver.exact.record import on_polynomial
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
-from stiction.solver.radau import A, C, cubic
 from stiction.solver.state import Accuracy, Motion
+from stiction.solver.stepping.block_algebra import Triple, dot, less
+from stiction.solver.stepping.radau import A, C, cubic
 from stiction.solver.stick import holding
 from stiction.solver.surface import Tensor, friction_along, speed_ratio
 
@@ -147,7 +147,7 @@ def sample_slip(
     """Fill the samples of an accepted slip step; return the next index."""
     if k >= len(times) or times[k] > frame.t + h:
         return k
-    motion = moving(problem, frame, start, accuracy)
+    motion, _ = moving(problem, frame, start, accuracy)
     while k < len(times) and times[k] <= frame.t + h:
         dt = min(times[k] - frame.t, h)
         z_1, z_2, v, turn = within(problem, frame, start, swing, h, p, w, dt, accuracy, motion)

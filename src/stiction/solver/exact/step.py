@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from math import inf
 
-from stiction.solver.block_algebra import Triple
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.exact.error_estimate import dips, local_error, moving
 from stiction.solver.exact.newton import solve
 from stiction.solver.exact.oscillation import NO_LANDING, Swing, oscillator, swing, within_reach
 from stiction.solver.exact.predictor import passes, predict, swung_to_rest, time_to_landing
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.problem import Problem
-from stiction.solver.state import Accuracy, Memory, size_to_try
+from stiction.solver.state import Accuracy, Limit, Memory, size_to_try
+from stiction.solver.stepping.block_algebra import Triple
+from stiction.solver.stepping.control import (
+    ATTEMPTS,
+    FAILED,
+    RESOLUTION,
+    limit_there,
+    step_factor,
+    within_limit,
+)
 
 ROUNDING = 1e-15  # of the time: a landing so close to the end of the stretch is at its end
 DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
@@ -27,7 +34,7 @@ def step(
     t_stop: float,
     memory: Memory,
     accuracy: Accuracy,
-) -> tuple[bool, bool, Swing, float, Triple, Triple, float, int, int]:
+) -> tuple[bool, bool, Swing, float, Triple, Triple, float, Limit, int, int]:
     """Take one step of slip, as long as the tolerance and `t_stop` allow.
 
     Returns
@@ -40,10 +47,14 @@ def step(
         The oscillation on which the step is superposed.
     h, p, w, error
         Step size (s), stages, and error over tolerance.
+    limit
+        Of steps about steady sliding.
     rejected, iterations : int
     """
-    o, motion = oscillator(frame, start), moving(problem, frame, start, accuracy)
-    t, h = frame.t, within_reach(o, min(size_to_try(memory), accuracy.longest), accuracy, motion)
+    o, (motion, apart) = oscillator(frame, start), moving(problem, frame, start, accuracy)
+    t, size = frame.t, min(size_to_try(memory), accuracy.longest)
+    limit = limit_there(memory.limit, size, t_stop - t, apart, motion, frame.r, accuracy)
+    h = within_reach(o, within_limit(size, limit), accuracy, motion)
     until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
     landing = False
     if EVEN * until < h:
@@ -89,9 +100,9 @@ def step(
             if error > 1.0:
                 factor = step_factor(error, 1.0)
             elif not dips(o, s, h, frame.r, p, least):
-                return True, landing, s, h, p, w, error, rejected, iterations
+                return True, landing, s, h, p, w, error, limit, rejected, iterations
         rejected += 1
         if landing:  # try once: shorter steps approach a landing that is too far away
             may_land = False
         h, landing = min(h, tried) * factor if h > 0.0 else tried * factor, False
-    return False, False, s, h, p, w, inf, rejected, iterations
+    return False, False, s, h, p, w, inf, limit, rejected, iterations

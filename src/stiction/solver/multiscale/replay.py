@@ -15,6 +15,7 @@ from stiction.solver.multiscale.steps import advance
 from stiction.solver.multiscale.walk import elongation_at_landing, sample_known_stick
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
+    ASKS,
     COMPLETED,
     NOTHING,
     RUNNING,
@@ -22,6 +23,7 @@ from stiction.solver.state import (
     Motion,
     State,
     at_takeoff,
+    without_limit,
 )
 from stiction.solver.stick import stick_duration
 
@@ -76,7 +78,7 @@ def sample_cycle(
     slip, counts = landing - stick.end, state.counts
     code, alone = RUNNING, State(motion, memory, NOTHING)
     # it may stick for a moment although the map just has no stick
-    while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
+    while code in (RUNNING, ASKS) and k < until and alone.motion.t < landing - SAME * slip:
         alone = State(alone.motion, alone.memory, NOTHING)
         code, alone, k, _ = advance(
             problem,
@@ -91,6 +93,8 @@ def sample_cycle(
             known,
         )
         counts = add_counts(counts, alone.counts)
+        if code == ASKS:  # what lands at its known time does not rest in steady sliding
+            alone = State(alone.motion, without_limit(alone.memory), NOTHING)
     return code, State(state.motion, state.memory, counts), k
 
 

@@ -1,4 +1,4 @@
-"""Friction and its derivatives for the smooth solver, by the type of law; smoothed set-valued laws.
+"""Friction and its derivatives for the smooth solver, by the type of law.
 
 One call returns friction and its derivatives, and writes the rates of the states to arrays.
 """
@@ -6,7 +6,6 @@ One call returns friction and its derivatives, and writes the rates of the state
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import atan, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,109 +14,14 @@ from stiction.friction.law import Vector, states
 from stiction.solver.compilation.jit import entry_by_address, inlined
 from stiction.solver.compilation.pointer import caller, code_and_fields, pointee, types
 from stiction.solver.compilation.stand_in import called_from_both, stand_in
-from stiction.solver.problem import (
-    Elliptic,
-    Isotropic,
-    by_type,
-    change,
-    coefficient_and_slope,
-    force,
-    gradient,
-    grain,
-)
+from stiction.solver.problem import change, force, gradient, grain
+from stiction.solver.regularised import Friction, friction_and_gradient
 from stiction.solver.smooth.workspace import TRIAL, Workspace
 
 FINEST = 1e-300  # m/s
 INCREMENT = 1.5e-8  # of a difference: the root of the rounding error
 
-# friction x and y, and their derivatives by slip: xx, xy, yx, yy
-Friction = tuple[float, float, float, float, float, float]
 State = tuple[float, ...]
-
-
-class Smoothed(NamedTuple):
-    """F N s/sqrt(s.N s + delta^2) (M60): a set-valued law F without its jump at zero slip.
-
-    Parameters
-    ----------
-    law : FrictionLaw
-        The set-valued law.
-    surface : Isotropic or Elliptic
-        The tensor N, see `stiction.solver.surface`; 1 for an isotropic surface.
-    delta : float
-        m/s.
-    """
-
-    law: Any
-    surface: Isotropic | Elliptic
-    delta: float
-
-    def slip_factor(law, square: float) -> tuple[float, float]:
-        """Return h = 1/sqrt(q^2 + delta^2) and -h'/(q h), for q^2 = s.N s."""
-        h = 1.0 / sqrt(square + law.delta * law.delta)
-        return h, h * h
-
-    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
-        """Return the friction force (N)."""
-        f = friction_and_gradient(law, slip, load)
-        return f[0], f[1]
-
-    def grain(law, state: tuple[float, ...]) -> float:
-        """Return delta: friction is proportional, or nearly so, to the slip velocity below."""
-        return law.delta
-
-
-class SmoothedByArctan(Smoothed):
-    """F N s/q (2/pi) atan(q/delta), q^2 = s.N s: as `Smoothed`, by the arc tangent.
-
-    Leine et al., Nonlinear Dynamics 16 (1998), 41, doi:10.1023/A:1008289604683. It approaches F as
-    delta/q only, (M60) as its square.
-    """
-
-    __slots__ = ()
-
-    def slip_factor(law, square: float) -> tuple[float, float]:
-        """Return h = (2/pi) atan(q/delta)/q and -h'/(q h), for q^2; a series where q is small."""
-        x = sqrt(square) / law.delta
-        if x < 1e-3:  # the first term left out is of the order x^4
-            h = 2.0 / (pi * law.delta) * (1.0 - x * x / 3.0)
-            return h, (2.0 / 3.0 - (4.0 / 5.0 - 2.0 / 9.0) * x * x) / (law.delta * law.delta)
-        share = atan(x) / x
-        h = 2.0 / (pi * law.delta) * share
-        return h, (share - 1.0 / (1.0 + x * x)) / (share * square)
-
-
-SMOOTHED: dict[str, Any] = {"root": Smoothed, "arctan": SmoothedByArctan}
-
-
-def slip_factor(law: Smoothed, square: float) -> tuple[float, float]:
-    """Return h(q) and -h'/(q h), by which a slip s becomes friction, for q^2."""
-    return law.slip_factor(square)
-
-
-by_type(slip_factor)
-
-
-@called_from_both
-def friction_and_gradient(law: Smoothed, slip: Vector, load: float) -> Friction:
-    """Return mu(v) W h N s (N) and its derivatives by the slip velocity (N s/m)."""
-    x, y = slip
-    n = law.surface
-    n_x, n_y = n.xx * x + n.xy * y, n.xy * x + n.yy * y
-    v, (per, fall) = sqrt(x * x + y * y), slip_factor(law, x * n_x + y * n_y)
-    mu, slope = coefficient_and_slope(law.law, v)
-    f, along = mu * load * per, slope * load * per / v if v > 0.0 else 0.0
-    # d(f n)/ds, n = N s: f N + n (mu'/mu s/v + n h'/(q h)) f
-    turn = f * fall
-    by_x, by_y = along * x - turn * n_x, along * y - turn * n_y
-    return (
-        f * n_x,
-        f * n_y,
-        f * n.xx + n_x * by_x,
-        f * n.xy + n_x * by_y,
-        f * n.xy + n_y * by_x,
-        f * n.yy + n_y * by_y,
-    )
 
 
 class PointedFlow(NamedTuple):

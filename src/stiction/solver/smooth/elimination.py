@@ -7,11 +7,11 @@ states that decay add positive numbers to the diagonal of D, and Radau IIA leave
 
 from __future__ import annotations
 
-from stiction.solver.block_algebra import Matrix, Triple, inverse, less, product, times
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.radau import D
 from stiction.solver.smooth.right_hand_side import Point, Stages
 from stiction.solver.smooth.workspace import INSIDE, START, Workspace, X, Y
+from stiction.solver.stepping.block_algebra import Matrix, Triple, inverse, less, product, times
+from stiction.solver.stepping.radau import D
 
 Blocks = tuple[Matrix, Matrix, Matrix, Matrix]
 # coefficients of two equations (xx, xy, yx, yy) and their residuals

@@ -15,15 +15,6 @@ from numpy.polynomial import Polynomial
 from stiction.friction.law import Vector
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
-from stiction.solver.radau import (
-    DEFECT_WEIGHT,
-    INTERIOR,
-    C,
-    cubic,
-    cubic_slope,
-    integral,
-    leading_factor,
-)
 from stiction.solver.smooth.coordinate import coordinate, slip_at
 from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
 from stiction.solver.smooth.newton import correct, larger
@@ -36,6 +27,15 @@ from stiction.solver.smooth.right_hand_side import (
 )
 from stiction.solver.smooth.workspace import INSIDE, START, WANTED, Workspace
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.radau import (
+    DEFECT_WEIGHT,
+    INTERIOR,
+    C,
+    cubic,
+    cubic_slope,
+    integral,
+    leading_factor,
+)
 
 BALANCE_ITERATIONS = 20
 # how the error goes inside a step, 1 in magnitude at c_1, where it is largest

@@ -3,22 +3,35 @@
 from __future__ import annotations
 
 from math import hypot, inf, isfinite
+from typing import NamedTuple
 
 import numpy as np
 
-from stiction.solver.block_algebra import dot
-from stiction.solver.compilation.jit import compiled, inlined
-from stiction.solver.control import CALMEST, GROWTH, ease, step_factor, trend
+from stiction.solver.compilation.jit import compiled, inlined, piece
 from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel
-from stiction.solver.radau import A
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import grain_of
-from stiction.solver.smooth.right_hand_side import SmoothOutset, evaluate, measure, moving, pull
+from stiction.solver.smooth.right_hand_side import (
+    Point,
+    SmoothOutset,
+    evaluate,
+    keep_slopes,
+    measure,
+    moving,
+    pull,
+)
 from stiction.solver.smooth.sampling import sample
-from stiction.solver.smooth.state import Numbers, SmoothMotion, SmoothState
+from stiction.solver.smooth.state import (
+    Numbers,
+    SmoothMotion,
+    SmoothState,
+    with_limit,
+    with_numbers,
+)
 from stiction.solver.smooth.step import remember, step
 from stiction.solver.smooth.workspace import LAST, START, Workspace
 from stiction.solver.state import (
+    ASKS,
     COMPLETED,
     CUT,
     NON_FINITE,
@@ -27,16 +40,43 @@ from stiction.solver.state import (
     Accuracy,
     count_step,
 )
+from stiction.solver.stepping.amplification import grows, write_rates
+from stiction.solver.stepping.block_algebra import dot
+from stiction.solver.stepping.control import (
+    AGAIN,
+    ASKED,
+    CALMEST,
+    GROWTH,
+    NEAR,
+    ease,
+    limit_there,
+    step_factor,
+    trend,
+    within_limit,
+)
+from stiction.solver.stepping.radau import A
 
 EAGER = 0.1  # of the growth that the error allows: the first size tried knows nothing of friction
 COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is linear in effect
 
 
+class Begun(NamedTuple):
+    """A step's start, its slip coordinate, friction and slip speed; then what `moving` returns."""
+
+    start: SmoothOutset
+    q_x: float
+    q_y: float
+    at: Point
+    slip: float
+    moved: float
+    apart: float
+
+
 @inlined
 def begin(
     problem: Problem, motion: SmoothMotion, z: np.ndarray, w: Workspace, accuracy: Accuracy
-) -> tuple[SmoothOutset, float, float]:
-    """Write the first row of a step; return its start and its slip coordinate."""
+) -> Begun:
+    """Write the first row of a step, and begin it."""
     t, u_x, u_y, s_x, s_y = motion
     speed = accuracy.speed
     w.values[START, 0], w.values[START, 1] = s_x, s_y
@@ -53,8 +93,11 @@ def begin(
     acting = pull(problem, start, 0.0)
     at = evaluate(problem, eps, acting.load, q_x, q_y, w, START, len(z) > 0)
     measure(problem, acting.load, w)
-    share = min(1.0, moving(problem, t, acting, at, accuracy) / (speed + hypot(s_x, s_y)))
-    return SmoothOutset(t, u_x, u_y, eps, unit, share), q_x, q_y
+    moved, apart = moving(problem, t, acting, at, accuracy)
+    slip = hypot(s_x, s_y)
+    share = min(1.0, moved / (speed + slip))
+    start = SmoothOutset(t, u_x, u_y, eps, unit, share)
+    return Begun(start, q_x, q_y, at, slip, moved, apart)
 
 
 @inlined
@@ -68,6 +111,19 @@ def motion_at_end(
     slid_y = h * dot(A[2], (v[1, 1], v[2, 1], v[3, 1]))
     u_x, u_y = start.u_x + (d_x - slid_x), start.u_y + (d_y - slid_y)
     return SmoothMotion(end, u_x, u_y, v[LAST, 0], v[LAST, 1])
+
+
+@inlined
+def steady(w: Workspace, left: float) -> bool:
+    """Return whether the states at a step's start are about those of steady sliding.
+
+    They would change by less than a hundredth of their scale until they forget, or until the end.
+    """
+    for k in range(2, w.size.shape[0]):
+        forgotten = abs(w.jacobian[START, k, k]) + 1.0 / left
+        if not abs(w.flow[START, k]) < NEAR * w.size[k] * forgotten:
+            return False
+    return True
 
 
 @inlined
@@ -92,8 +148,8 @@ def keep(w: Workspace, z: np.ndarray, past: np.ndarray) -> None:
             past[k, i] = w.values[k, i]
 
 
-@compiled
-def advance(
+@piece
+def steps(
     problem: Problem,
     state: SmoothState,
     t_end: float,
@@ -105,16 +161,11 @@ def advance(
     w: Workspace,
     inner: Workspace,
 ) -> tuple[int, Numbers, int, int]:
-    """Advance until `t_end` or until the budget is used up, as `exact.loop.advance` does.
-
-    The arrays of `state` change; returned is the rest of it, see `state.with_numbers`. Rows of
-    `samples` are 7 + n long; see `stiction.solver.smooth.sampling`. `inner` is for steps within a
-    step. No array is made here: to compile that takes half a second.
-    """
+    """Advance like `advance`, until the longest step is asked for; then `w` has the rates."""
     motion, z, memory, counts = state
     past = memory.past
     h, h_last, warm = min(memory.h, accuracy.longest), memory.h_last, memory.warm
-    before = memory.ease
+    before, limit = memory.ease, memory.limit
     code, turns = RUNNING, 0
     while turns < budget:
         if motion.t >= t_end:
@@ -123,7 +174,16 @@ def advance(
         if not finite(motion, z):
             code = NON_FINITE
             break
-        start, q_x, q_y = begin(problem, motion, z, w, accuracy)
+        start, q_x, q_y, at, slip, moved, apart = begin(problem, motion, z, w, accuracy)
+        there = limit_there(limit, h, t_end - motion.t, apart, moved, slip, accuracy)
+        if there[0] != ASKED:
+            limit = there
+        elif steady(w, t_end - motion.t):
+            keep_slopes(problem, at, w)
+            write_rates(problem, w.jacobian[START], w.rates)
+            code = ASKS
+            break
+        h = within_limit(h, limit)
         remember(w, past, start.eps)
         smooth = smooth_until(problem.bend, motion.t, t_end)
         done, taken, error, rejected, iterations = step(
@@ -149,4 +209,36 @@ def advance(
         h_last, warm = taken, end < t_end and not cut
     if motion.t >= t_end:
         code = COMPLETED
-    return code, (motion[:], (h, h_last, before, warm), counts[:]), k, turns
+    return code, (motion[:], (h, h_last, before, warm, limit), counts[:]), k, turns
+
+
+@compiled
+def advance(
+    problem: Problem,
+    state: SmoothState,
+    t_end: float,
+    accuracy: Accuracy,
+    budget: int,
+    times: np.ndarray,
+    samples: np.ndarray,
+    k: int,
+    w: Workspace,
+    inner: Workspace,
+) -> tuple[int, Numbers, int, int]:
+    """Advance until `t_end` or until the budget is used up, as `exact.loop.advance` does.
+
+    The arrays of `state` change; returned is the rest of it, see `state.with_numbers`. Rows of
+    `samples` are 7 + n long; see `stiction.solver.smooth.sampling`. `inner` is for steps within a
+    step. No array is made here: to compile that takes half a second.
+    """
+    turns = 0
+    while True:
+        most = budget - turns
+        code, numbers, k, used = steps(
+            problem, state, t_end, accuracy, most, times, samples, k, w, inner
+        )
+        turns += used
+        t, h = numbers[0][0], numbers[1][0]
+        if code != ASKS or grows(w.rates, w.growth, h, t_end - t):
+            return code, numbers, k, turns
+        state = with_limit(with_numbers(state, numbers), (inf, AGAIN * h))

@@ -7,12 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.friction import states
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import Isotropic, Problem, at, call_for, force
+from stiction.solver.regularised import SMOOTHED
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.smooth import loop
-from stiction.solver.smooth.dispatch import SMOOTHED, point_to_flow
+from stiction.solver.smooth.dispatch import point_to_flow
 from stiction.solver.smooth.state import (
     SmoothMemory,
     SmoothMotion,
@@ -21,7 +23,7 @@ from stiction.solver.smooth.state import (
     with_numbers,
 )
 from stiction.solver.smooth.workspace import workspace
-from stiction.solver.state import NOTHING, Accuracy, Output, first_step
+from stiction.solver.state import NO_LIMIT, NOTHING, Accuracy, Output, first_step
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 
@@ -50,15 +52,15 @@ class Smooth:
         motion = SmoothMotion(initial.time, *u, *slip)
         internal = np.array(initial.internal(slider), dtype=np.float64)
         h = self.first_step = first_step(system_of(slider))
-        memory = SmoothMemory(h, h, 1.0, False, np.zeros((4, 2 + self.states)))
+        memory = SmoothMemory(h, h, 1.0, False, np.zeros((4, 2 + self.states)), NO_LIMIT)
         return SmoothState(motion, internal, memory, NOTHING)
 
     def enter_segment(self, state: SmoothState, x: float, y: float) -> SmoothState:
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
-        (t, u_x, u_y, s_x, s_y), internal, (h, h_last, ease, _, past), counts = state
+        (t, u_x, u_y, s_x, s_y), internal, (h, h_last, ease, _, past, _), counts = state
         motion = SmoothMotion(t, u_x, u_y, s_x + x, s_y + y)
         # in a hold a step may become as long as the rest of the run
-        memory = SmoothMemory(min(h, self.first_step), h_last, ease, False, past)
+        memory = SmoothMemory(min(h, self.first_step), h_last, ease, False, past, NO_LIMIT)
         return SmoothState(motion, internal, memory, counts)
 
     def advance(
@@ -87,6 +89,10 @@ class Smooth:
         slip = problem.rig.outward((s_x, s_y))
         f = problem.rig.inward(force(self.law, slip, at(problem.load, t), z))
         return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
+
+    def rates(self, problem: Problem, state: SmoothState) -> Floats:
+        """Return the matrix of a small disturbance; see `amplification`."""
+        return self.rooms[0].rates
 
     def step_accuracy(self, held: Accuracy) -> Accuracy:
         """Return the tolerances of each step.

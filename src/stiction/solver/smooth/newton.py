@@ -5,11 +5,8 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import NamedTuple
 
-from stiction.solver.block_algebra import Factors, Matrix, Triple, eliminate, solve_blocks, times
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.control import CONTRACTS, diverging, settled
 from stiction.solver.problem import Problem
-from stiction.solver.radau import A, C, D
 from stiction.solver.smooth.coordinate import damped_rise, slip_at
 from stiction.solver.smooth.elimination import (
     correct_states,
@@ -29,6 +26,16 @@ from stiction.solver.smooth.right_hand_side import (
 )
 from stiction.solver.smooth.workspace import FIRST, LAST, SECOND, START, WANTED, Workspace
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.block_algebra import (
+    Factors,
+    Matrix,
+    Triple,
+    eliminate,
+    solve_blocks,
+    times,
+)
+from stiction.solver.stepping.control import CONTRACTS, diverging, settled
+from stiction.solver.stepping.radau import A, C, D
 
 ITERATIONS = 14
 FIRM = 0.01  # of the tolerance: corrections that are negligible, where states remember them

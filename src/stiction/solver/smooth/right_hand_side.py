@@ -6,7 +6,6 @@ from math import sqrt
 from typing import NamedTuple
 
 from stiction.friction.law import Vector
-from stiction.solver.block_algebra import Triple
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import (
     Problem,
@@ -20,10 +19,12 @@ from stiction.solver.problem import (
     rate_change,
     travel,
 )
+from stiction.solver.regularised import Friction
 from stiction.solver.smooth.coordinate import slip_and_slope
-from stiction.solver.smooth.dispatch import Friction, flow
+from stiction.solver.smooth.dispatch import flow
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.block_algebra import Triple
 from stiction.solver.stick import holding
 
 NOTICED = 0.01  # change of the friction coefficient that sets the scale of a state's errors
@@ -155,6 +156,20 @@ def acting(
 
 
 @inlined
+def keep_slopes(problem: Problem, at: Point, w: Workspace) -> None:
+    """Write the derivatives of friction over mass by slip at a step's start to its Jacobian.
+
+    A law without states writes none, and in the axes of a general rig they are others.
+    """
+    m, c = w.jacobian[START], cross_damping(problem.rig) * problem.system.per_mass
+    per = 1.0 / (at.s_xx * at.s_yy - at.s_xy * at.s_xy)
+    m[0, 0] = (at.f_xx * at.s_yy - at.f_xy * at.s_xy) * per
+    m[0, 1] = (at.f_xy * at.s_xx - at.f_xx * at.s_xy) * per - c
+    m[1, 0] = (at.f_yx * at.s_yy - at.f_yy * at.s_xy) * per - c
+    m[1, 1] = (at.f_yy * at.s_xx - at.f_yx * at.s_xy) * per
+
+
+@inlined
 def inertia_share(
     problem: Problem, h: float, a: float, q: tuple[float, float], s: Triple, f: Triple
 ) -> float:
@@ -175,16 +190,23 @@ def inertia_share(
 
 
 @inlined
-def moving(problem: Problem, t: float, p: Pull, at_start: Point, accuracy: Accuracy) -> float:
-    """Return the speed of the motion about steady sliding at a step's start (M42), m/s."""
+def moving(
+    problem: Problem, t: float, p: Pull, at_start: Point, accuracy: Accuracy
+) -> tuple[float, float]:
+    """Return the speed of the motion about steady sliding at a step's start (M42), m/s.
+
+    The second is its square with the time of the faster spring in place of both.
+    """
     system, (s_x, s_y) = problem.system, (at_start.s_x, at_start.s_y)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
     by_x = g_x - (p.x - system.c_x * s_x * system.per_mass - at_start.f_x)
     by_y = g_y - (p.y - system.c_y * s_y * system.per_mass - at_start.f_y)
     x, y = v_x - s_x, v_y - s_y
-    square = by_x * by_x * accuracy.square_x + by_y * by_y * accuracy.square_y
-    return max(sqrt(x * x + y * y + square), accuracy.least)
+    apart, b_x, b_y = x * x + y * y, by_x * by_x, by_y * by_y
+    square = b_x * accuracy.square_x + b_y * accuracy.square_y
+    fast = (b_x + b_y) * min(accuracy.square_x, accuracy.square_y)
+    return max(sqrt(apart + square), accuracy.least), apart + fast
 
 
 @inlined

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.solver.state import Counts
+from stiction.solver.compilation.stand_in import called_from_both
+from stiction.solver.state import Counts, Limit
 
 
 class SmoothMotion(NamedTuple):
@@ -24,7 +25,8 @@ class SmoothMemory(NamedTuple):
 
     h : size to try next, s; h_last : size of the last step; ease : its error over
     tolerance, to the power -1/4; warm : whether `past`, slip
-    velocities and internal states at its start and stages (4, 2 + n), predicts the next.
+    velocities and internal states at its start and stages (4, 2 + n), predicts the next; limit :
+    of steps about steady sliding.
     """
 
     h: float
@@ -32,6 +34,7 @@ class SmoothMemory(NamedTuple):
     ease: float
     warm: bool
     past: np.ndarray
+    limit: Limit
 
 
 class SmoothState(NamedTuple):
@@ -46,15 +49,23 @@ class SmoothState(NamedTuple):
 Numbers = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
 
 
+@called_from_both
 def with_numbers(state: SmoothState, numbers: Numbers) -> SmoothState:
     """Return the state with the arrays that it has, and these of motion, memory and counts."""
-    motion, (h, h_last, ease, warm), counts = numbers
-    memory = SmoothMemory(h, h_last, ease, warm, state.memory.past)
+    motion, (h, h_last, ease, warm, limit), counts = numbers
+    memory = SmoothMemory(h, h_last, ease, warm, state.memory.past, limit)
     return SmoothState(SmoothMotion(*motion), state.internal, memory, Counts(*counts))
+
+
+@called_from_both
+def with_limit(state: SmoothState, limit: Limit) -> SmoothState:
+    """Return the state with another limit of steps about steady sliding."""
+    motion, internal, (h, h_last, ease, warm, past, _), counts = state
+    return SmoothState(motion, internal, SmoothMemory(h, h_last, ease, warm, past, limit), counts)
 
 
 def copy_of(state: SmoothState) -> SmoothState:
     """Return the state with arrays of its own."""
-    motion, internal, (h, h_last, ease, warm, past), counts = state
-    memory = SmoothMemory(h, h_last, ease, warm, past.copy())
+    motion, internal, memory, counts = state
+    memory = memory._replace(past=memory.past.copy())
     return SmoothState(motion, internal.copy(), memory, counts)

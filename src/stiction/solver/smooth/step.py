@@ -6,17 +6,17 @@ from math import inf, sqrt
 
 import numpy as np
 
-from stiction.solver.block_algebra import Triple
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.problem import Problem
-from stiction.solver.radau import C, cubic
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.newton import solve
 from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import LAST, START, Workspace
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.block_algebra import Triple
+from stiction.solver.stepping.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
+from stiction.solver.stepping.radau import C, cubic
 
 HELD = 2.0  # of delta: slower slip follows the force
 LANDINGS = 3  # tries to end a step where slip turns back

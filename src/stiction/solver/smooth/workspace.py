@@ -27,7 +27,8 @@ class Workspace(NamedTuple):
     scales of the errors of values; error : estimated error of values inside the step; past : slip
     coordinate and z of the last step; cubic : values inside the step and their derivative
     times h, ``[which, column]``; blocks, point, right : linear equations of a step and of a
-    point inside it, see `elimination`.
+    point inside it, see `elimination`; rates, growth : matrix of a small disturbance of
+    (u, s, z), and three for what becomes of it, see `stepping.amplification`.
     """
 
     values: np.ndarray
@@ -40,6 +41,8 @@ class Workspace(NamedTuple):
     blocks: np.ndarray
     point: np.ndarray
     right: np.ndarray
+    rates: np.ndarray
+    growth: np.ndarray
 
 
 def workspace(n: int) -> Workspace:
@@ -56,4 +59,6 @@ def workspace(n: int) -> Workspace:
         np.zeros((n, n, 9)),
         np.zeros((n, n)),
         np.zeros((n, 3)),
+        np.zeros((2 + n, 2 + n)),
+        np.zeros((3, 2 + n, 2 + n)),
     )

@@ -19,7 +19,20 @@ from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import Workspace
 from stiction.solver.state import Accuracy
 
-SIZES = [(6, 4), (6, 4), (6, 4, 4), 4, 4, (4, 4), (2, 4), (4, 4, 9), (4, 4), (4, 3)]
+SIZES = [
+    (6, 4),
+    (6, 4),
+    (6, 4, 4),
+    4,
+    4,
+    (4, 4),
+    (2, 4),
+    (4, 4, 9),
+    (4, 4),
+    (4, 3),
+    (6, 6),
+    (3, 6, 6),
+]
 HELD = Accuracy(1e-6, 1e-12, 1e-4, 0.1, 0.02, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 0.0, 1e-12)
 BRISTLES = st.laws.LuGre(0.15, 0.2, "10 mm/s", 1e5, 300.0, 2.0)
 

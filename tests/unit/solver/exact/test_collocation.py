@@ -7,7 +7,7 @@ from tests.entry import plain
 from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
 from stiction.solver.exact import collocation, newton, oscillation, slip_frame
-from stiction.solver.radau import A, C, D
+from stiction.solver.stepping.radau import A, C, D
 
 STAGES = [(np.array(x[:3]), np.array(x[3:])) for x in inside(2, *[(0.5, 2.0)] * 3, *[(-1, 1)] * 3)]
 A, C, D = np.array(A), np.array(C), np.array(D)

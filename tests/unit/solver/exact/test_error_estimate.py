@@ -33,10 +33,12 @@ def test_the_motion_about_steady_sliding(name, drawn):
     change = printed.drive("rate", frame.t) - frame.r * e[0]
     curve = printed.drive("rate_change", frame.t) - s
     square = change @ change + curve**2 @ [ACCURACY.square_x, ACCURACY.square_y]
-    found = plain(error_estimate.moving)(problem, frame, start, ACCURACY)
+    found, apart = plain(error_estimate.moving)(problem, frame, start, ACCURACY)
     assert found == pytest.approx(np.sqrt(square), rel=1e-12)
+    fast = min(ACCURACY.square_x, ACCURACY.square_y)
+    assert apart == pytest.approx(change @ change + curve @ curve * fast, rel=1e-12)
     more = ACCURACY._replace(least=2 * found)
-    assert plain(error_estimate.moving)(problem, frame, start, more) == 2 * found
+    assert plain(error_estimate.moving)(problem, frame, start, more)[0] == 2 * found
 
 
 @ALL

@@ -24,7 +24,7 @@ from stiction.solver.exact.oscillation import (
     within_reach,
 )
 from stiction.solver.exact.slip_frame import outset
-from stiction.solver.radau import A, C, D, cubic
+from stiction.solver.stepping.radau import A, C, D, cubic
 
 OSCILLATORS = [
     Oscillator(4e7, 1 / 4e7, -50.0, 1.7e-5, -0.01, -1e-5, 0.02),  # friction that weakens

@@ -11,13 +11,13 @@ from tests.unit.solver.exact.test_collocation import begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 
 from stiction.solver.exact import newton, oscillation, predictor, slip_frame
-from stiction.solver.radau import A, C, D
-from stiction.solver.state import Memory
+from stiction.solver.state import NO_LIMIT, Memory
+from stiction.solver.stepping.radau import A, C, D
 from stiction.solver.stick import margin, stick_duration
 
 NODES = np.array([0.0, *C])
 NOTHING = (0.0, 0.0, 0.0, 0.0)
-COLD = Memory(1e-3, (0.0,) * 8, 0, 1e-3, 1.0, False, NOTHING, NOTHING)
+COLD = Memory(1e-3, (0.0,) * 8, 0, 1e-3, 1.0, False, NOTHING, NOTHING, NO_LIMIT)
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
 
 

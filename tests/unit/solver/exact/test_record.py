@@ -23,7 +23,7 @@ def test_the_motion_inside_a_kept_step(name, drawn, size):
     assert not np.isnan(row).any()
     motion = Motion(frame.t, frame.u_x, frame.u_y, frame.r, frame.e_x, frame.e_y)
     assert plain(record.start_of)(row) == motion
-    moving = plain(error_estimate.moving)(problem, frame, start, EXACT)
+    moving, _ = plain(error_estimate.moving)(problem, frame, start, EXACT)
     scale = np.array([h * max(p), h * max(p), max(p), 1.0])
     for part, rel in ((0.0, 1e-14), (0.3, 1e-2 * size**2), (0.8, 1e-2 * size**2), (1.0, 1e-12)):
         exact = plain(sampling.within)(

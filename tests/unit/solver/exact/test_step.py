@@ -10,10 +10,10 @@ from tests.unit.solver.exact.test_collocation import begin, residuals
 from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.exact.test_predictor import COLD
 
-from stiction.solver.control import RESOLUTION, step_factor
 from stiction.solver.exact import error_estimate, newton, oscillation, predictor, slip_frame
 from stiction.solver.exact.step import step
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.control import RESOLUTION, step_factor
 
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
 
@@ -39,12 +39,12 @@ def take_step(name, drawn, accuracy, h=1e-3, t_stop=inf):
 def test_an_accepted_step_keeps_its_tolerance(name, drawn, tolerance):
     """Its residuals vanish, and its error is the estimate's, over the tolerance."""
     accuracy = held_to(tolerance)
-    (done, landing, s, h, p, w, error, rejected, iterations), (problem, frame, o, start) = (
+    (done, landing, s, h, p, w, error, _, rejected, iterations), (problem, frame, o, start) = (
         take_step(name, drawn, accuracy)
     )
     assert (done, landing) == (True, False)
     assert iterations > rejected
-    motion = plain(error_estimate.moving)(problem, frame, start, accuracy)
+    motion, _ = plain(error_estimate.moving)(problem, frame, start, accuracy)
     wanted = plain(error_estimate.local_error)(problem, frame, o, s, h, p, w, accuracy, motion)
     assert error == pytest.approx(wanted / tolerance)
     assert 0.0 < error <= 1.0
@@ -60,7 +60,7 @@ def test_an_accepted_step_keeps_its_tolerance(name, drawn, tolerance):
 @ALL
 def test_a_step_that_is_refused_is_tried_again_shorter(name, drawn):
     """Until it is accepted; the size that was is accepted at once."""
-    (_, _, _, h, _, _, _, rejected, _), _ = take_step(name, drawn, held_to(1e-9), h=3e-3)
+    (_, _, _, h, _, _, _, _, rejected, _), _ = take_step(name, drawn, held_to(1e-9), h=3e-3)
     assert rejected > 0
     assert h < 3e-3
     (_, _, _, same, *_, again, _), _ = take_step(name, drawn, held_to(1e-9), h=h)
@@ -137,7 +137,7 @@ def test_a_landing_that_was_not_foreseen_is_found_from_the_step_beyond(name, par
     found = plain(step)(problem, frame, start, inf, memory, accuracy)
     blind = plain(step)
     monkeypatch.setitem(blind.__globals__, "time_to_landing", lambda *_: inf)
-    done, landing, _, h, p, _, _, rejected, iterations = blind(
+    done, landing, _, h, p, _, _, _, rejected, iterations = blind(
         problem, frame, start, inf, memory, accuracy
     )
     assert (done, landing, rejected) == (True, True, 0)
@@ -170,7 +170,7 @@ def test_a_landing_beyond_the_end_of_the_stretch_is_no_landing(monkeypatch):
 def test_no_step_is_found_where_none_converges():
     """Each try is 0.3 times as long, until that is no time at all."""
     never = held_to(1e-3)._replace(newton=0.0)
-    (done, landing, *_, error, rejected, iterations), _ = take_step("steady", SLIDES[0], never)
+    (done, landing, *_, error, _, rejected, iterations), _ = take_step("steady", SLIDES[0], never)
     assert (done, landing, error) == (False, False, inf)
     assert 1e-3 * 0.3**rejected <= RESOLUTION * 0.35 < 1e-3 * 0.3 ** (rejected - 1)
     assert iterations >= rejected

@@ -22,6 +22,7 @@ from stiction.solver.multiscale.return_map import (
 from stiction.solver.multiscale.section import elongation_held
 from stiction.solver.state import (
     COMPLETED,
+    NO_LIMIT,
     RUNNING,
     Accuracy,
     Counts,
@@ -125,7 +126,7 @@ def test_from_a_landing_to_the_angle_of_its_stick_and_back(name):
     landing = Motion(0.7, u[0] - 0.01 * v[0], u[1] - 0.01 * v[1], 0.0, 0.6, 0.8)
     stick = plain(replay.stick_of)(problem, landing)
     assert stick == pytest.approx((0.7, 0.71, theta), rel=1e-9)
-    memory = Memory(1.0, (0.3,) * 8, 5, 2.0, 1.1, True, (1.0,) * 4, (2.0,) * 4)
+    memory = Memory(1.0, (0.3,) * 8, 5, 2.0, 1.1, True, (1.0,) * 4, (2.0,) * 4, NO_LIMIT)
     counts = Counts(1, 2, 3, 4, 5.0, 6)
     state = State(landing._replace(t=0.1, u_x=0.0, u_y=0.0), memory, counts)
     found = plain(replay.state_at_landing)(problem, state, stick)

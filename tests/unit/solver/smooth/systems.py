@@ -11,12 +11,13 @@ from tests.systems import Printed, motion_of, problem_of
 import stiction as st
 from stiction.friction.law import Internal, states
 from stiction.solver.problem import Elliptic, Isotropic
-from stiction.solver.radau import A, C, D
+from stiction.solver.regularised import Smoothed
 from stiction.solver.smooth import dispatch, loop
-from stiction.solver.smooth.dispatch import PointedFlow, Smoothed
+from stiction.solver.smooth.dispatch import PointedFlow
 from stiction.solver.smooth.state import SmoothMotion
 from stiction.solver.smooth.workspace import workspace
 from stiction.solver.state import Accuracy
+from stiction.solver.stepping.radau import A, C, D
 
 A, C, D = np.array(A), np.array(C), np.array(D)
 
@@ -74,7 +75,7 @@ def begun(law, drive="program", accuracy=EXACT, motion=MOTION):
     """Return a problem with a step's start, its workspace and the slip coordinate."""
     problem, z = smooth_problem(law, drive), np.array(LAWS[law][1])
     w = workspace(len(z))
-    start, q_x, q_y = plain(loop.begin)(problem, SmoothMotion(TIME, *motion), z, w, accuracy)
+    start, q_x, q_y, *_ = plain(loop.begin)(problem, SmoothMotion(TIME, *motion), z, w, accuracy)
     return problem, start, w, (q_x, q_y)
 
 

@@ -6,8 +6,9 @@ from tests.entry import plain
 from tests.unit.solver.smooth.systems import LAWS, STATEFUL, STATELESS, behind, derivative
 
 from stiction.friction.law import states
+from stiction.solver.regularised import Smoothed
 from stiction.solver.smooth import dispatch
-from stiction.solver.smooth.dispatch import FINEST, INCREMENT, PointedFlow, Smoothed
+from stiction.solver.smooth.dispatch import FINEST, INCREMENT, PointedFlow
 from stiction.solver.smooth.workspace import SECOND, TRIAL, workspace
 
 LOAD, PER_MASS = 7.0, 4.0

@@ -5,11 +5,11 @@ import pytest
 from tests.drawn import inside
 from tests.entry import plain
 
-from stiction.solver.block_algebra import eliminate, solve_blocks
-from stiction.solver.radau import D
 from stiction.solver.smooth import elimination
 from stiction.solver.smooth.right_hand_side import Point, Stages
 from stiction.solver.smooth.workspace import INSIDE, START, workspace
+from stiction.solver.stepping.block_algebra import eliminate, solve_blocks
+from stiction.solver.stepping.radau import D
 
 D = np.array(D)
 H = 0.3

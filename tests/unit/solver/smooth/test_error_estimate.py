@@ -19,9 +19,9 @@ from tests.unit.solver.smooth.systems import (
     begun,
 )
 
-from stiction.solver.radau import DEFECT_WEIGHT, INTERIOR
 from stiction.solver.smooth import error_estimate, newton
 from stiction.solver.smooth.workspace import INSIDE, START, workspace
+from stiction.solver.stepping.radau import DEFECT_WEIGHT, INTERIOR
 
 NODES = np.array([0.0, *C])
 NONE = (0.0, 0.0)

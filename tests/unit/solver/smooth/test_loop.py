@@ -22,7 +22,6 @@ from tests.unit.solver.smooth.systems import (
 )
 
 import stiction as st
-from stiction.solver.control import GROWTH, step_factor
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.segments import stretches
 from stiction.solver.smooth import loop, right_hand_side
@@ -39,12 +38,14 @@ from stiction.solver.smooth.state import (
 from stiction.solver.smooth.workspace import START, workspace
 from stiction.solver.state import (
     COMPLETED,
+    NO_LIMIT,
     NON_FINITE,
     NOTHING,
     RUNNING,
     STEP_UNDERFLOW,
     Output,
 )
+from stiction.solver.stepping.control import GROWTH, step_factor
 
 HELD = EXACT._replace(tolerance=1e-7, newton=1e-9)
 NO_TIMES = np.zeros(0)
@@ -52,7 +53,7 @@ NO_TIMES = np.zeros(0)
 
 def state_of(name, motion=MOTION, h=1e-5):
     z = np.array(LAWS[name][1])
-    memory = SmoothMemory(h, h, 1.0, False, np.zeros((4, 2 + len(z))))
+    memory = SmoothMemory(h, h, 1.0, False, np.zeros((4, 2 + len(z))), NO_LIMIT)
     return SmoothState(SmoothMotion(TIME, *motion), z, memory, NOTHING)
 
 
@@ -86,19 +87,19 @@ def test_where_a_step_starts(name):
     assert w.size[:2].tolist() == [min(grain, EXACT.speed)] * 2
     pull = plain(right_hand_side.pull)(problem, start, 0.0)
     at = plain(right_hand_side.evaluate)(problem, start.eps, pull.load, *q, w, START, True)
-    moving = plain(right_hand_side.moving)(problem, TIME, pull, at, EXACT)
+    moving, _ = plain(right_hand_side.moving)(problem, TIME, pull, at, EXACT)
     share = moving / (EXACT.speed + hypot(*MOTION[2:]))
     assert share > 1.0
     assert start.share == 1.0
     still = workspace_of(name)
     slow = EXACT._replace(speed=5.0 * moving)
     motion = SmoothMotion(TIME, *MOTION)
-    start, _, _ = plain(loop.begin)(problem, motion, np.array(z), still, slow)
+    start, *_ = plain(loop.begin)(problem, motion, np.array(z), still, slow)
     assert start.share == pytest.approx(moving / (slow.speed + hypot(*MOTION[2:])))
     if logarithmic:  # far above the grain the slip velocity is its own coordinate
         for part, wanted in ((0.99, grain), (1.01, inf)):
             rough = EXACT._replace(speed=grain / COARSEST / part)
-            start, _, _ = plain(loop.begin)(
+            start, *_ = plain(loop.begin)(
                 problem, SmoothMotion(TIME, *MOTION), np.array(z), still, rough
             )
             assert start.eps == (grain if part < 1.0 else inf) == wanted

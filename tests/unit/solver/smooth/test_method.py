@@ -9,7 +9,7 @@ from tests.unit.solver.smooth.systems import EXACT
 
 import stiction as st
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.smooth.dispatch import Smoothed
+from stiction.solver.regularised import Smoothed
 from stiction.solver.smooth.method import SPEED_SHARE, Smooth
 from stiction.solver.state import NOTHING
 from stiction.system.description import Description, Settings

@@ -17,13 +17,13 @@ from tests.unit.solver.smooth.systems import (
     derivative,
 )
 
-from stiction.solver.block_algebra import solve_blocks
-from stiction.solver.radau import A, C, D
 from stiction.solver.smooth import elimination, newton, right_hand_side
 from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_at
 from stiction.solver.smooth.newton import ITERATIONS
 from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import START
+from stiction.solver.stepping.block_algebra import solve_blocks
+from stiction.solver.stepping.radau import A, C, D
 
 A, C, D = np.array(A), np.array(C), np.array(D)
 NODES = np.array([0.0, *C])

@@ -9,9 +9,9 @@ from tests.drawn import inside
 from tests.entry import plain
 from tests.unit.solver.smooth.systems import EXACT, LAWS, C, Equations, at_stages, begun
 
-from stiction.solver.control import ATTEMPTS, RESOLUTION, step_factor
 from stiction.solver.smooth import error_estimate, newton, step
 from stiction.solver.smooth.workspace import START, workspace
+from stiction.solver.stepping.control import ATTEMPTS, RESOLUTION, step_factor
 
 NODES = np.array([0.0, *C])
 ROWS = [np.array(each) for each in inside(3, *[(-1.0, 1.0)] * 12)]

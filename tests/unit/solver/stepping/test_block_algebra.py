@@ -5,7 +5,7 @@ import pytest
 from tests.drawn import inside
 from tests.entry import plain
 
-from stiction.solver import block_algebra as blocks
+from stiction.solver.stepping import block_algebra as blocks
 
 MATRICES = [np.reshape(each, (4, 3, 3)) for each in inside(3, *[(-1.0, 1.0)] * 36)]
 

@@ -12,8 +12,8 @@ from math import sqrt
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from stiction.solver.block_algebra import Matrix, Triple
 from stiction.solver.compilation.jit import inlined, number
+from stiction.solver.stepping.block_algebra import Matrix, Triple
 
 _S6 = sqrt(6.0)
 FIRST, SECOND, THIRD = map(number, range(3))  # the stages, as indices

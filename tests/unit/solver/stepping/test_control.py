@@ -3,7 +3,7 @@
 import pytest
 from tests.entry import plain
 
-from stiction.solver import control
+from stiction.solver.stepping import control
 
 
 @pytest.mark.parametrize("error", [1e-3, 0.3, 1.0, 20.0])

@@ -5,8 +5,8 @@ import pytest
 from numpy.polynomial import Polynomial
 from tests.entry import plain
 
-from stiction.solver import radau
-from stiction.solver.radau import A, C, D
+from stiction.solver.stepping import radau
+from stiction.solver.stepping.radau import A, C, D
 
 NODES = np.array([0.0, *C])
 CUBIC = Polynomial([0.3, -1.2, 2.5, 0.7])

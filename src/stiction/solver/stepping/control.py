@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import sqrt
 
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.state import NO_LIMIT, Accuracy, Limit
 
 ATTEMPTS = 100  # of a step before it fails; 0.4^100 is below the resolution of any float
 # of the time, far below a float's resolution: motion goes on within a thin boundary layer
@@ -18,6 +19,11 @@ FAILED = 0.3  # of the size, where a step was not solved
 CONTRACTS = 0.1  # of a correction to the last one: the Jacobian is kept
 CALMEST = 3.0  # of eases that are kept: a smaller error than that begins no trend
 PATIENCE = 3  # iterations that may diverge
+ASKED = -1.0  # in place of the longest step of a limit
+SEEN = 100.0  # times what errors hide: the error of a step tells of it
+NEAR = 0.01  # of the slip speed: at most so far from steady sliding
+LATE = 1e-6  # of the time left: the size of steps from which the modes are asked for
+AGAIN = 1e3  # of that at which they were: steady sliding is then known better
 
 
 @inlined
@@ -46,6 +52,31 @@ def ease(error: float) -> float:
 def step_factor(error: float, limit: float) -> float:
     """Return the factor for the step size from the error over tolerance (M43)."""
     return min(limit, max(0.2, 0.9 * ease(error)))
+
+
+@inlined
+def limit_there(
+    limit: Limit, h: float, left: float, apart: float, motion: float, slip: float, held: Accuracy
+) -> Limit:
+    """Return the limit of a step of `h`, given that of the step before, when so much is `left` (s).
+
+    `motion` is that about steady sliding (M42), `apart` the square of it in a radian of the faster
+    spring, `slip` the slip speed. Where it is not far above what errors hide, a step may be longer
+    than the growth takes, which it then damps: the modes are asked for.
+    """
+    near = NEAR * slip
+    if not apart <= near * near:
+        return NO_LIMIT
+    seen = SEEN * max(held.least, held.tolerance * min(held.speed + slip, motion))
+    if apart > seen * seen:
+        return NO_LIMIT
+    return (ASKED if h > max(limit[1], LATE * left) else limit[0]), limit[1]
+
+
+@inlined
+def within_limit(h: float, limit: Limit) -> float:
+    """Return the size of a step that is no longer than the longest, where that is known."""
+    return min(h, limit[0]) if limit[0] > 0.0 else h
 
 
 @inlined
