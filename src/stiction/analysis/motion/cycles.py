@@ -19,6 +19,7 @@ from stiction.analysis.motion.disturbance import (
 )
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_frequencies
 from stiction.analysis.signals.peak_refinement import Vertices, vertices
 from stiction.analysis.signals.robust import without_outliers
@@ -144,19 +145,21 @@ def swings(record: Record) -> Swings:
     force = without_outliers(record.force)
     if force is not record.force:
         record = record.model_copy(update={"force": force})
-    found = _swings(record)
+    found, grid = _swings(record), even_grid(record.time)
+    if grid is None:
+        return found
     for _ in range(LINES):
-        carried = _cycles_on_a_wave(record, found)
+        carried = _cycles_on_a_wave(record, grid, found)
         if carried is not None:
             return carried
-        without = _without_line(record, found)
+        without = _without_line(record, grid, found)
         if without is None:
             break
         record, found = without
     return found
 
 
-def _cycles_on_a_wave(record: Record, found: Swings) -> Swings | None:
+def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings) -> Swings | None:
     """Return stick-slip that a slower wave carries, if it does.
 
     So does the wave of a disc that turns, or of a load that varies. Where it falls as fast as the
@@ -164,8 +167,8 @@ def _cycles_on_a_wave(record: Record, found: Swings) -> Swings | None:
     """
     if record.slip_speed is not None:
         return None
-    for frequency in peak_frequencies(record.time, record.force):
-        wave = slow_wave(record.time, record.force, frequency)
+    for frequency in peak_frequencies(grid, record.force):
+        wave = slow_wave(grid, record.force, frequency)
         if not may_be_carried(frequency, record.duration, record.force - wave, found.table):
             continue
         carried = _swings(record, wave)
@@ -175,12 +178,12 @@ def _cycles_on_a_wave(record: Record, found: Swings) -> Swings | None:
     return None
 
 
-def _without_line(record: Record, found: Swings) -> tuple[Record, Swings] | None:
+def _without_line(record: Record, grid: EvenGrid, found: Swings) -> tuple[Record, Swings] | None:
     """Return record and swings without a line beside the motion, if there is one.
 
     Lines of the mains come first: others may be the stick-slip that a slow wave carries.
     """
-    lines = narrow_lines(record.time, record.force)
+    lines = narrow_lines(grid, record.force)
     for line in sorted(lines, key=lambda line: not of_mains(line.frequency)):
         if any(abs(line.frequency / each.frequency - 1.0) < SAME for each in found.lines):
             continue  # what is left of a line

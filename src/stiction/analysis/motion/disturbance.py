@@ -7,7 +7,7 @@ import numpy as np
 from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.rest import STICKING, rest_share
-from stiction.analysis.signals.even_grid import even_grid
+from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import part_means, part_starts
 from stiction.analysis.signals.turning_points import turning_points
@@ -54,15 +54,12 @@ def is_subharmonic(line: Line, table: CycleTable) -> bool:
     return whole > WHOLE and float(np.median(drop)) < line.height
 
 
-def slow_wave(time: Floats, force: Floats, frequency: float) -> Floats:
-    """Return what of a force (N) is slower than `frequency` (Hz), at its times (s).
+def slow_wave(grid: EvenGrid, force: Floats, frequency: float) -> Floats:
+    """Return what of a force (N) is slower than `frequency` (Hz), at its times, which have a grid.
 
     Means over a period, and those of what they leave: a wave of five periods is kept to 0.4 %, and
     nothing of a motion with that frequency.
     """
-    grid = even_grid(time)
-    if grid is None:
-        return np.zeros(len(time))
     length = max(round(1.0 / (frequency * grid.step)), 1)
     even = grid.on(force)
     slow = _means_over(even, length)

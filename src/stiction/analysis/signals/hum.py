@@ -53,42 +53,43 @@ class Line(NamedTuple):
     values: Floats
 
 
-def narrow_lines(time: Floats, force: Floats) -> list[Line]:
+def narrow_lines(grid: EvenGrid | None, force: Floats) -> list[Line]:
     """Return up to four lines that are narrow and alone, the clearest first.
 
     Parameters
     ----------
-    time, force : ndarray
-        (n,), s, and N.
+    grid : EvenGrid or None
+        That of the record's times.
+    force : ndarray
+        (n,), N.
     """
-    seen = _spectrum_on_grid(time, force)
-    if seen is None:
+    seen = _spectrum_on_grid(grid, force)
+    if grid is None or seen is None:
         return []
-    grid, power, width = seen
+    power, width = seen
     floor = beside(power)
     found = _peaks(power, floor, ALONE)
     return [_measure_line(force, grid, power, floor, width, at) for at in found]
 
 
-def peak_frequencies(time: Floats, force: Floats) -> list[float]:
+def peak_frequencies(grid: EvenGrid | None, force: Floats) -> list[float]:
     """Return up to four frequencies (Hz) at which the spectrum is highest within half an octave.
 
     The clearest first, as in `narrow_lines`; but these may be broad, and not alone.
     """
-    seen = _spectrum_on_grid(time, force)
-    if seen is None:
+    seen = _spectrum_on_grid(grid, force)
+    if grid is None or seen is None:
         return []
-    grid, power, width = seen
+    power, width = seen
     found = _peaks(power, beside(power), 1.0)
     return [_middle(power, at) * width / grid.step for at in found]
 
 
-def _spectrum_on_grid(time: Floats, force: Floats) -> tuple[EvenGrid, Floats, float] | None:
-    """Return the grid of a record, and its `spectrum` there; None if it can show no line."""
-    grid = even_grid(time)
+def _spectrum_on_grid(grid: EvenGrid | None, force: Floats) -> tuple[Floats, float] | None:
+    """Return the `spectrum` of a force on the grid of its times; None if it can show no line."""
     if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
         return None
-    return grid, *spectrum(grid.on(force))
+    return spectrum(grid.on(force))
 
 
 def _measure_line(
@@ -143,10 +144,11 @@ def beat_frequency(time: Floats, force: Floats) -> float | None:
 
     Noise in a band of frequencies has as many lines as the band is wide.
     """
-    seen = _spectrum_on_grid(time, force)
-    if seen is None:
+    grid = even_grid(time)
+    seen = _spectrum_on_grid(grid, force)
+    if grid is None or seen is None:
         return None
-    grid, power, width = seen
+    power, width = seen
     power[:PERIODS] = 0.0
     total, lines = float(power.sum()), []
     for _ in range(2):

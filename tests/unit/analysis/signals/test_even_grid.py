@@ -63,7 +63,7 @@ def test_the_frequency_of_a_line_lies_within_its_error(sampled, seed):
 @SAMPLED
 def test_a_line_is_taken_off_at_the_times_of_the_record(sampled):
     uneven, frequency, line = record(sampled, 1)
-    (found, *_) = narrow_lines(uneven.time, uneven.force)
+    (found, *_) = narrow_lines(even_grid(uneven.time), uneven.force)
     assert found.frequency == pytest.approx(frequency, rel=1e-4)
     left = np.std(found.values - line) / np.std(line)
     # straight lines make it smaller by sinc^2, where all samples are interpolated
@@ -91,7 +91,7 @@ def test_samples_in_bursts_get_none_and_are_told_why():
     grid = even_grid(time)
     assert grid is not None
     assert "of the time lies in gaps between samples" in why_not(grid)
-    assert narrow_lines(time, np.sin(300.0 * time)) == []
+    assert narrow_lines(even_grid(time), np.sin(300.0 * time)) == []
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -106,7 +106,7 @@ def test_a_line_is_taken_off_from_samples_at_random_times(seed):
     frequency = random.uniform(50.0, 120.0)  # of 3.5 to 8 times on the grid a period
     line = 0.3 * np.sin(2 * np.pi * frequency * time + 1.0)
     force = np.minimum(time, 1.0) + line + 0.01 * random.normal(size=N)
-    (found, *_) = narrow_lines(time, force)
+    (found, *_) = narrow_lines(even_grid(time), force)
     assert found.frequency == pytest.approx(frequency, rel=1e-4)
     assert np.std(found.values - line) < 0.1 * np.std(line)
 

@@ -7,6 +7,7 @@ from math import pi
 import numpy as np
 import pytest
 
+from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import beat_frequency, peak_frequencies
 
 
@@ -14,7 +15,7 @@ from stiction.analysis.signals.hum import beat_frequency, peak_frequencies
 def test_the_clearest_peak_is_that_of_a_sine(frequency: float) -> None:
     time = np.arange(0.0, 100.0, 0.01)
     noise = 0.01 * np.random.default_rng(1).normal(size=len(time))
-    found = peak_frequencies(time, np.sin(2 * pi * frequency * time + 1.0) + noise)
+    found = peak_frequencies(even_grid(time), np.sin(2 * pi * frequency * time + 1.0) + noise)
     assert found[0] == pytest.approx(frequency, abs=0.02)
 
 

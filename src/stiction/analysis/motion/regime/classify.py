@@ -21,6 +21,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
 from stiction.trajectory import Trajectory
 
@@ -100,7 +101,7 @@ def _or_hum(record: Record, period: float, differs: float, seen: Regime) -> Regi
     free = seen.kind in MAY_BE_HUM and not COUPLED <= own <= OWN
     if not free or record.slip_speed is not None:
         return seen
-    for line in narrow_lines(record.time, record.force):
+    for line in narrow_lines(even_grid(record.time), record.force):
         if of_mains(line.frequency) and abs(line.frequency * period - 1.0) < differs:
             without, left = swings_without(line, record)
             other = regime_of(without, left)

@@ -19,6 +19,7 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
 )
 from stiction.analysis.record import Record
+from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import beat_frequency, narrow_lines, of_mains
 from stiction.analysis.signals.turning_points import CLEAR
 
@@ -96,7 +97,7 @@ def _steady(record: Record, found: Swings, sure: float, evidence: dict[str, floa
     least = max(SMOOTH * evidence["scatter"], VARIES * abs(float(np.mean(found.force))))
     if evidence["span"] > least:
         return Regime(STEADY, 0.5 * sure, evidence | {"wanders": evidence["span"]}, STICK_SLIP)
-    lines = narrow_lines(record.time, record.force)
+    lines = narrow_lines(even_grid(record.time), record.force)
     line = next((line for line in lines if not of_mains(line.frequency)), None)
     if line is not None:
         evidence |= {"hidden": line.frequency, "hidden_height": line.height}
