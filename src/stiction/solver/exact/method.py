@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import sqrt
+from math import nan, sqrt
 from typing import Any
 
 import numpy as np
@@ -79,10 +79,18 @@ class Exact:
         return [motion.u_x, motion.u_y, *slip, *force, float(motion.r == 0.0)]
 
     def rates(self, problem: Problem, state: State) -> Floats:
-        """Return the matrix of a small disturbance; see `amplification`."""
+        """Return the matrix of a small disturbance; see `amplification`.
+
+        It is not a number where Python raises what compiled code does not: a user's law may divide
+        by zero, or by what overflows.
+        """
         m, rates = state.motion, np.zeros((4, 4))
         slip = m.r * m.e_x, m.r * m.e_y
-        slopes = gradient_in_axes(self.sliding, problem, slip, at(problem.load, m.t))
+        try:
+            with np.errstate(all="ignore"):
+                slopes = gradient_in_axes(self.sliding, problem, slip, at(problem.load, m.t))
+        except (ArithmeticError, ValueError):
+            slopes = np.full((2, 2), nan)
         write_rates(problem, slopes, rates)
         return rates
 

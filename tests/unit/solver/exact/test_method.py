@@ -1,5 +1,8 @@
 """What stands between a run and the exact solver: its state, jumps of the drive, samples."""
 
+from math import cosh, tanh
+from typing import NamedTuple
+
 import numpy as np
 import pytest
 from tests.entry import plain
@@ -98,3 +101,31 @@ def test_times_that_may_not_be_written_to_are_taken_without_compiling_anew():
     found = integrate(description, times, 10**6, None).samples
     assert found.tolist() == wanted.tolist()
     assert len(steps.overloads) == known
+
+
+class Overflows(NamedTuple):
+    """A law of which the slope is zero to compiled code, and an error to Python."""
+
+    mu: float = 0.5
+    falls: float = 0.1
+    v_c: float = 1e-6
+
+    def coefficient(law, v):
+        return law.mu - law.falls * tanh(v / law.v_c)
+
+    def slope(law, v):
+        return -law.falls / law.v_c / cosh(v / law.v_c) ** 2
+
+
+def test_a_slope_that_python_cannot_tell_does_not_end_a_run():
+    """The run comes to steady sliding, where its modes are asked for; they are then unknown."""
+    law, velocity = Overflows(), 1e-3
+    with pytest.raises(OverflowError):
+        law.slope(velocity)
+    slider = st.Slider(
+        mass=1.0, k_x=1e4, k_y=1e6, phi="0.2 deg", normal_load=10.0, friction=law,
+        drive=st.ConstantVelocity(velocity), c_x=100.0, c_y=100.0,
+    )  # fmt: skip
+    run = st.simulate(slider, 20.0, sample_rate=0)
+    assert run.status.ok
+    assert run.data["slip_x"].values[-1] == pytest.approx(velocity, rel=1e-4)
