@@ -108,3 +108,21 @@ def test_a_run_leaves_steady_sliding_that_is_unstable(kind, number):
     found = look(15, kind, number)
     assert found.runs >= 6
     assert found.rests == ()
+
+
+def test_a_run_that_rests_in_a_ramp_leaves_where_the_ramp_ends():
+    """A load that rises makes steady sliding unstable; its lag hides that from long steps."""
+    law, weak, velocity = st.ExponentialWeakening(0.5, 0.45, 1e-3), 10.0, 1e-3
+    slider = st.Slider(
+        mass=1.0, k_x=1e4, k_y=1e6, phi="0.5 deg", normal_load=weak, friction=law,
+        drive=st.ConstantVelocity(velocity), c_x=-2.0 * weak * law.slope(velocity),
+    )  # fmt: skip
+    strong = slider.replace(normal_load=4.0 * weak)
+    verdicts = [st.linear_stability.steady_sliding(each).verdict for each in (slider, strong)]
+    assert verdicts == ["stable", "unstable"]
+    start = st.linear_stability.steady_sliding(slider).disturbed_start(1e-9)
+    program = [st.protocols.Ramp(4.0 * weak, 20.0), st.protocols.Constant(4.0 * weak, 1.0)]
+    slider = slider.replace(load=st.protocols.LoadProgram(program=program))
+    run = st.simulate(slider, 21.0, sample_rate=1000.0, rtol=1e-3, initial=start)
+    off = np.abs(run.data["slip_x"].values / velocity - 1.0)
+    assert off[20_001:].max() > 0.5
