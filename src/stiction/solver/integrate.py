@@ -143,11 +143,18 @@ def steepest_weakening(law: Hashable, speed: float) -> float:
     It is sought at ten speeds per decade, and again around the steepest.
     """
     known: Any = law
+
+    def weakening(v: float) -> float:
+        try:
+            return -float(known.slope(v))
+        except ArithmeticError:  # compiled code tells inf there, or zero over it
+            return 0.0
+
     tenths = range(-90, 11)
-    slopes = [-float(known.slope(speed * 10.0 ** (i / 10))) for i in tenths]
+    slopes = [weakening(speed * 10.0 ** (i / 10)) for i in tenths]
     steepest = tenths[slopes.index(max(slopes))]
     beside = (speed * 10.0 ** (min(steepest + i / 4, 10.0) / 10) for i in range(-3, 4))
-    return max(0.0, -float(known.slope(0.0)), *slopes, *(-float(known.slope(v)) for v in beside))
+    return max(0.0, weakening(0.0), *slopes, *map(weakening, beside))
 
 
 Report = Callable[[float], None]
@@ -254,7 +261,8 @@ def integrate(
 def knowing_growth(method: Method, stretch: Stretch, state: Any) -> Any:
     """Return a state that knows the longest step that shows growth about steady sliding."""
     left, memory = stretch.end - state.motion.t, state.memory
-    longest = longest_step(method.rates(stretch.problem, state), memory.h, left)
+    rates, enough = method.rates(stretch.problem, state), memory.limit[1]
+    longest = longest_step(rates, memory.h, left / enough)
     return state._replace(memory=memory._replace(limit=(longest, AGAIN * memory.h)))
 
 

@@ -99,6 +99,7 @@ PLANNED = 8
 # steps up to which it need not be asked for again
 Limit = tuple[float, float]
 NO_LIMIT: Limit = (inf, 0.0)
+NEVER_ASKED: Limit = (inf, inf)  # of what lands again at a known time
 
 
 class Memory(NamedTuple):
@@ -201,17 +202,23 @@ def after_cut(memory: Memory) -> Memory:
 
 
 @inlined
-def without_limit(memory: Memory) -> Memory:
-    """Return the memory of a motion that may take steps of any length about steady sliding."""
+def with_limit(memory: Memory, limit: Limit) -> Memory:
+    """Return the memory with another limit of steps about steady sliding."""
     h, plan, place, h_last, ease, warm, p, w, _ = memory
-    return Memory(h, plan, place, h_last, ease, warm, p, w, (inf, inf))
+    return Memory(h, plan, place, h_last, ease, warm, p, w, limit)
+
+
+@inlined
+def elsewhere(limit: Limit) -> Limit:
+    """Return the limit away from steady sliding: none, to be asked for where it is near again."""
+    return limit if limit[1] == inf else NO_LIMIT
 
 
 @inlined
 def at_takeoff(memory: Memory) -> Memory:
     """Return the memory at the end of a stick."""
-    h, h_last, ease = memory.plan[0], memory.h_last, memory.ease
-    return Memory(h, memory.plan, 0, h_last, ease, False, memory.p, memory.w, NO_LIMIT)
+    h, h_last, ease, limit = memory.plan[0], memory.h_last, memory.ease, elsewhere(memory.limit)
+    return Memory(h, memory.plan, 0, h_last, ease, False, memory.p, memory.w, limit)
 
 
 @inlined

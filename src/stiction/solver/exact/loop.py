@@ -33,7 +33,6 @@ from stiction.solver.problem import (
 from stiction.solver.state import (
     ASKS,
     COMPLETED,
-    NO_LIMIT,
     NON_FINITE,
     PLANNED,
     RUNNING,
@@ -47,6 +46,7 @@ from stiction.solver.state import (
     after_cut,
     at_takeoff,
     count_step,
+    elsewhere,
     plain,
     size_to_try,
     write_plan,
@@ -166,7 +166,7 @@ def slip(
         not landing,
         (r, p[0], p[1], p[2]),
         (0.0, w[0], w[1], w[2]),
-        NO_LIMIT if landing else limit,
+        elsewhere(limit) if landing else limit,
     )
     r = 0.0 if landing else p[2] * sqrt(1.0 + w[2] * w[2])
     return True, State(Motion(end, u_x, u_y, r, e_x, e_y), memory, counts), k

@@ -24,6 +24,8 @@ from stiction.solver.multiscale.section import angle, elongation_held, lead, wra
 from stiction.solver.multiscale.steps import advance
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
+    NEVER_ASKED,
+    NO_LIMIT,
     NOTHING,
     RUNNING,
     Accuracy,
@@ -32,6 +34,7 @@ from stiction.solver.state import (
     Motion,
     State,
     at_takeoff,
+    with_limit,
 )
 from stiction.solver.stick import stick_duration
 
@@ -80,13 +83,14 @@ def solve_cycle(
     u_x, u_y = elongation_held(problem, theta)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
     motion = Motion(0.0, u_x - v_x * early, u_y - v_y * early, 0.0, 1.0, 0.0)
-    state = State(motion, at_takeoff(memory), NOTHING)
+    state = State(motion, with_limit(at_takeoff(memory), NEVER_ASKED), NOTHING)
     times, samples, stick = known.never, known.nowhere, known.stick
     known.record.used[0] = 0
     code, state, _, turns = advance(
         problem, state, early + longest, fine, most, times, samples, FIRST, stick, known
     )
     end = state.motion
+    state = State(end, with_limit(state.memory, NO_LIMIT), state.counts)
     held, _ = stick_duration(problem, end.t, end.u_x, end.u_y, inf)
     there = angle(problem, end.u_x + v_x * held, end.u_y + v_y * held)
     swing = wrap_angle(there - angle(problem, end.u_x, end.u_y))

@@ -15,15 +15,15 @@ from stiction.solver.multiscale.steps import advance
 from stiction.solver.multiscale.walk import elongation_at_landing, sample_known_stick
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
-    ASKS,
     COMPLETED,
+    NEVER_ASKED,
     NOTHING,
     RUNNING,
     Accuracy,
     Motion,
     State,
     at_takeoff,
-    without_limit,
+    with_limit,
 )
 from stiction.solver.stick import stick_duration
 
@@ -76,9 +76,9 @@ def sample_cycle(
     while until < len(times) and times[until] <= landing:
         until += 1
     slip, counts = landing - stick.end, state.counts
-    code, alone = RUNNING, State(motion, memory, NOTHING)
+    code, alone = RUNNING, State(motion, with_limit(memory, NEVER_ASKED), NOTHING)
     # it may stick for a moment although the map just has no stick
-    while code in (RUNNING, ASKS) and k < until and alone.motion.t < landing - SAME * slip:
+    while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
         alone = State(alone.motion, alone.memory, NOTHING)
         code, alone, k, _ = advance(
             problem,
@@ -93,8 +93,6 @@ def sample_cycle(
             known,
         )
         counts = add_counts(counts, alone.counts)
-        if code == ASKS:  # what lands at its known time does not rest in steady sliding
-            alone = State(alone.motion, without_limit(alone.memory), NOTHING)
     return code, State(state.motion, state.memory, counts), k
 
 

@@ -179,6 +179,7 @@ def steps(
         if there[0] != ASKED:
             limit = there
         elif steady(w, t_end - motion.t):
+            limit = there
             keep_slopes(problem, at, w)
             write_rates(problem, w.jacobian[START], w.rates)
             code = ASKS
@@ -238,7 +239,7 @@ def advance(
             problem, state, t_end, accuracy, most, times, samples, k, w, inner
         )
         turns += used
-        t, h = numbers[0][0], numbers[1][0]
-        if code != ASKS or grows(w.rates, w.growth, h, t_end - t):
+        t, h, enough = numbers[0][0], numbers[1][0], numbers[1][4][1]
+        if code != ASKS or grows(w.rates, w.growth, h, (t_end - t) / enough):
             return code, numbers, k, turns
         state = with_limit(with_numbers(state, numbers), (inf, AGAIN * h))

@@ -146,7 +146,7 @@ def longest_step(rates: Floats, h: float, left: float) -> float:
     h : float
         s, about the size of the steps that are taken.
     left : float
-        s, until the end: what grows by less than e times until then does not count.
+        s: what grows by less than e times in that time does not count.
 
     Returns
     -------

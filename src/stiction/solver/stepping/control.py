@@ -6,10 +6,10 @@ control of step sizes is Gustafsson's, ACM Trans. Math. Softw. 20 (1994), 496.
 
 from __future__ import annotations
 
-from math import sqrt
+from math import log, sqrt
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.state import NO_LIMIT, Accuracy, Limit
+from stiction.solver.state import Accuracy, Limit, elsewhere
 
 ATTEMPTS = 100  # of a step before it fails; 0.4^100 is below the resolution of any float
 # of the time, far below a float's resolution: motion goes on within a thin boundary layer
@@ -22,6 +22,7 @@ PATIENCE = 3  # iterations that may diverge
 ASKED = -1.0  # in place of the longest step of a limit
 SEEN = 100.0  # times what errors hide: the error of a step tells of it
 NEAR = 0.01  # of the slip speed: at most so far from steady sliding
+ROUNDING = 1e-16  # of the slip speed: it is no closer to steady sliding
 LATE = 1e-6  # of the time left: the size of steps from which the modes are asked for
 AGAIN = 1e3  # of that at which they were: steady sliding is then known better
 
@@ -62,15 +63,19 @@ def limit_there(
 
     `motion` is that about steady sliding (M42), `apart` the square of it in a radian of the faster
     spring, `slip` the slip speed. Where it is not far above what errors hide, a step may be longer
-    than the growth takes, which it then damps: the modes are asked for.
+    than the growth takes, which it then damps: the modes are asked for. The second number is then
+    by how many factors of e a disturbance must grow until errors no longer hide it.
     """
     near = NEAR * slip
     if not apart <= near * near:
-        return NO_LIMIT
-    seen = SEEN * max(held.least, held.tolerance * min(held.speed + slip, motion))
-    if apart > seen * seen:
-        return NO_LIMIT
-    return (ASKED if h > max(limit[1], LATE * left) else limit[0]), limit[1]
+        return elsewhere(limit)
+    hidden = max(held.least, held.tolerance * min(held.speed + slip, motion))
+    off = sqrt(apart) + ROUNDING * slip
+    if off > SEEN * hidden:
+        return elsewhere(limit)
+    if h <= max(limit[1], LATE * left):
+        return limit
+    return ASKED, max(1.0, log(hidden / off))
 
 
 @inlined

@@ -117,9 +117,10 @@ class Overflows(NamedTuple):
         return -law.falls / law.v_c / cosh(v / law.v_c) ** 2
 
 
-def test_a_slope_that_python_cannot_tell_does_not_end_a_run():
+@pytest.mark.parametrize("velocity", [1e-3, 1e-2])
+def test_a_slope_that_python_cannot_tell_does_not_end_a_run(velocity):
     """The run comes to steady sliding, where its modes are asked for; they are then unknown."""
-    law, velocity = Overflows(), 1e-3
+    law = Overflows()
     with pytest.raises(OverflowError):
         law.slope(velocity)
     slider = st.Slider(

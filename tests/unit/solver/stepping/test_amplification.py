@@ -126,3 +126,23 @@ def test_a_run_that_rests_in_a_ramp_leaves_where_the_ramp_ends():
     run = st.simulate(slider, 21.0, sample_rate=1000.0, rtol=1e-3, initial=start)
     off = np.abs(run.data["slip_x"].values / velocity - 1.0)
     assert off[20_001:].max() > 0.5
+
+
+def test_what_stays_hidden_costs_no_steps():
+    """A mode that grows by e^2 from 1e-13 of the slip is never seen; from 1e-6 it is."""
+    law, velocity = st.ExponentialWeakening(0.5, 0.45, 1e-3), 1e-3
+    slope = -10.0 * law.slope(velocity)
+    slider = st.Slider(
+        mass=1.0, k_x=1e4, k_y=1e6, phi="0 deg", normal_load=10.0, friction=law,
+        drive=st.ConstantVelocity(velocity), c_x=slope - 0.02,
+    )  # fmt: skip
+    steady = st.linear_stability.steady_sliding(slider)
+    assert steady.growth_rate == pytest.approx(0.01, rel=1e-3)
+    steps = [
+        st.simulate(
+            slider, 200.0, sample_rate=0, initial=steady.disturbed_start(size)
+        ).statistics.steps
+        for size in (1e-13, 1e-6)
+    ]
+    assert steps[0] < 500
+    assert steps[1] > 5000
