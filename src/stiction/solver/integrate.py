@@ -16,7 +16,7 @@ from stiction.friction import has_state
 from stiction.solver.exact.method import Exact
 from stiction.solver.multiscale.automatic import Automatic
 from stiction.solver.multiscale.method import Multiscale
-from stiction.solver.problem import Problem
+from stiction.solver.problem import Problem, varies
 from stiction.solver.segments import (
     Stretch,
     begin,
@@ -38,7 +38,7 @@ from stiction.solver.state import (
     Output,
 )
 from stiction.solver.stepping.amplification import longest_step
-from stiction.solver.stepping.control import AGAIN
+from stiction.solver.stepping.control import Time, known_up_to
 from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -263,7 +263,8 @@ def knowing_growth(method: Method, stretch: Stretch, state: Any) -> Any:
     left, memory = stretch.end - state.motion.t, state.memory
     rates, enough = method.rates(stretch.problem, state), memory.limit[1]
     longest = longest_step(rates, memory.h, left / enough)
-    return state._replace(memory=memory._replace(limit=(longest, AGAIN * memory.h)))
+    known = known_up_to(memory.h, Time(state.motion.t, left, varies(stretch.problem)))
+    return state._replace(memory=memory._replace(limit=(longest, known)))
 
 
 def outward(slider: Slider, samples: np.ndarray) -> np.ndarray:

@@ -339,6 +339,12 @@ def _grain(law: Any, state: Any) -> Any:
     return getattr(law.instance_class, "grain", lambda law, state: EVERYWHERE)
 
 
+@called_from_both
+def varies(problem: Problem) -> bool:
+    """Return whether drive or load vary, as known at compile time."""
+    return not (steady(problem.drive) and constant(problem.load))
+
+
 @inlined
 def in_principal_axes(problem: Problem, vector: tuple[float, float]) -> tuple[float, float]:
     """Return a laboratory vector (X, Y) in the solver's axes."""

@@ -96,9 +96,9 @@ PLANNED = 8
 
 
 # The longest step that shows how disturbances of steady sliding grow (M43a), s; and the size of
-# steps up to which it need not be asked for again
+# steps, or where drive or load vary the time, up to which it need not be asked for again
 Limit = tuple[float, float]
-NO_LIMIT: Limit = (inf, 0.0)
+NO_LIMIT: Limit = (inf, -inf)
 NEVER_ASKED: Limit = (inf, inf)  # of what lands again at a known time
 
 

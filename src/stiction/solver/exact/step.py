@@ -10,13 +10,14 @@ from stiction.solver.exact.newton import solve
 from stiction.solver.exact.oscillation import NO_LANDING, Swing, oscillator, swing, within_reach
 from stiction.solver.exact.predictor import passes, predict, swung_to_rest, time_to_landing
 from stiction.solver.exact.slip_frame import Frame, Outset
-from stiction.solver.problem import Problem
+from stiction.solver.problem import Problem, varies
 from stiction.solver.state import Accuracy, Limit, Memory, size_to_try
 from stiction.solver.stepping.block_algebra import Triple
 from stiction.solver.stepping.control import (
     ATTEMPTS,
     FAILED,
     RESOLUTION,
+    Time,
     limit_there,
     step_factor,
     within_limit,
@@ -53,7 +54,8 @@ def step(
     """
     o, (motion, apart) = oscillator(frame, start), moving(problem, frame, start, accuracy)
     t, size = frame.t, min(size_to_try(memory), accuracy.longest)
-    limit = limit_there(memory.limit, size, t_stop - t, apart, motion, frame.r, accuracy)
+    at = Time(t, t_stop - t, varies(problem))
+    limit = limit_there(memory.limit, size, at, apart, motion, frame.r, accuracy)
     h = within_reach(o, within_limit(size, limit), accuracy, motion)
     until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
     landing = False

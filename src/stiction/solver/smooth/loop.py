@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.solver.compilation.jit import compiled, inlined, piece
-from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel
+from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel, varies
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import grain_of
 from stiction.solver.smooth.right_hand_side import (
@@ -43,12 +43,13 @@ from stiction.solver.state import (
 from stiction.solver.stepping.amplification import grows, write_rates
 from stiction.solver.stepping.block_algebra import dot
 from stiction.solver.stepping.control import (
-    AGAIN,
     ASKED,
     CALMEST,
     GROWTH,
     NEAR,
+    Time,
     ease,
+    known_up_to,
     limit_there,
     step_factor,
     trend,
@@ -175,10 +176,11 @@ def steps(
             code = NON_FINITE
             break
         start, q_x, q_y, at, slip, moved, apart = begin(problem, motion, z, w, accuracy)
-        there = limit_there(limit, h, t_end - motion.t, apart, moved, slip, accuracy)
+        now = Time(motion.t, t_end - motion.t, varies(problem))
+        there = limit_there(limit, h, now, apart, moved, slip, accuracy)
         if there[0] != ASKED:
             limit = there
-        elif steady(w, t_end - motion.t):
+        elif steady(w, now.left):
             limit = there
             keep_slopes(problem, at, w)
             write_rates(problem, w.jacobian[START], w.rates)
@@ -242,4 +244,5 @@ def advance(
         t, h, enough = numbers[0][0], numbers[1][0], numbers[1][4][1]
         if code != ASKS or grows(w.rates, w.growth, h, (t_end - t) / enough):
             return code, numbers, k, turns
-        state = with_limit(with_numbers(state, numbers), (inf, AGAIN * h))
+        known = known_up_to(h, Time(t, t_end - t, varies(problem)))
+        state = with_limit(with_numbers(state, numbers), (inf, known))
