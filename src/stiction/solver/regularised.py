@@ -103,7 +103,8 @@ def friction_and_gradient(law: Smoothed, slip: Vector, load: float) -> Friction:
 
 def gradient_in_axes(law: Smoothed, problem: Problem, slip: Vector, load: float) -> Floats:
     """Return the derivative of friction over mass by slip, (2, 2), in the solver's axes."""
-    turn = problem.rig.axes()
-    _, _, *slopes = friction_and_gradient(law, problem.rig.outward(slip), load)
-    turned: Floats = turn.T @ np.reshape(slopes, (2, 2)) @ turn
+    outward = problem.rig.outward
+    turn = np.array([outward((1.0, 0.0)), outward((0.0, 1.0))])
+    _, _, *slopes = friction_and_gradient(law, outward(slip), load)
+    turned: Floats = turn @ np.reshape(slopes, (2, 2)) @ turn.T
     return turned * problem.system.per_mass

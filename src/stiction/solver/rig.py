@@ -12,9 +12,6 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-import numpy as np
-
-from stiction.arrays import Floats
 from stiction.friction.law import Vector
 
 
@@ -38,10 +35,6 @@ class Aligned(NamedTuple):
     def metric(rig) -> tuple[float, float, float]:
         """Return G (xx, xy, yy), by which |s|^2 = r.G r."""
         return 1.0, 0.0, 1.0
-
-    def axes(rig) -> Floats:
-        """Return the solver's axes, the columns of T."""
-        return np.eye(2)
 
     def into_axes(rig, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
         """Return a laboratory vector (X, Y) in the axes x and y."""
@@ -86,10 +79,6 @@ class General(NamedTuple):
             rig.t_xx * rig.t_xy + rig.t_yx * rig.t_yy,
             rig.t_xy * rig.t_xy + rig.t_yy * rig.t_yy,
         )
-
-    def axes(rig) -> Floats:
-        """Return the solver's axes, the columns of T."""
-        return np.array([[rig.t_xx, rig.t_xy], [rig.t_yx, rig.t_yy]])
 
     def into_axes(rig, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
         """Return a laboratory vector (X, Y) in the solver's axes."""

@@ -16,6 +16,7 @@ from stiction.solver.exact.slip_frame import Frame, Outset, friction, pull
 from stiction.solver.problem import Problem, in_principal_axes, rate, rate_change
 from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import Triple, less
+from stiction.solver.stepping.control import motion_of
 from stiction.solver.stepping.radau import (
     DEFECT_WEIGHT,
     INTERIOR,
@@ -38,8 +39,7 @@ def moving(
     """Return the relative speed of the springs' ends at a step's start (M42), m/s.
 
     For an oscillation this is its amplitude, from the elongation rate u', and u'' times the time of
-    a radian of each spring. It is at least the effect of rounding. The second is its
-    square with the faster radian in place of both.
+    a radian of each spring; see `motion_of`.
     """
     r, e_x, e_y = frame.r, frame.e_x, frame.e_y
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t))
@@ -47,10 +47,7 @@ def moving(
     s_1, s_2 = start.a_1 - start.f, start.a_2 - start.turn
     x, y = v_x - r * e_x, v_y - r * e_y
     by_x, by_y = g_x - s_1 * e_x + s_2 * e_y, g_y - s_1 * e_y - s_2 * e_x
-    apart, b_x, b_y = x * x + y * y, by_x * by_x, by_y * by_y
-    square = b_x * accuracy.square_x + b_y * accuracy.square_y
-    fast = (b_x + b_y) * min(accuracy.square_x, accuracy.square_y)
-    return max(sqrt(apart + square), accuracy.least), apart + fast
+    return motion_of((x, y), (by_x, by_y), accuracy)
 
 
 @inlined

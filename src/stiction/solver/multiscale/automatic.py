@@ -14,8 +14,8 @@ from math import floor, nan
 from typing import NamedTuple
 
 from stiction.solver.exact.method import Exact
-from stiction.solver.multiscale.method import Multiscale, repeats
-from stiction.solver.problem import Problem
+from stiction.solver.multiscale.method import Multiscale
+from stiction.solver.problem import Problem, varies
 from stiction.solver.state import RUNNING, Accuracy, Output, State
 from stiction.system.slider import Slider
 
@@ -68,7 +68,7 @@ class Automatic(Multiscale):
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        if self.at is None or not repeats(problem):
+        if self.at is None or varies(problem):
             return Exact.advance(self, problem, state, end, held, budget, out)
         if isinstance(self.at, MapTrial):
             code, now = super().advance(problem, state, end, held, budget, out)

@@ -16,18 +16,13 @@ from stiction.solver.exact.method import Exact, advance_compiled
 from stiction.solver.multiscale.loop import stride
 from stiction.solver.multiscale.return_map import STEP_SHARE, Returns, empty_map
 from stiction.solver.multiscale.steps import address_of_steps, kinds_of_steps
-from stiction.solver.problem import Problem, constant, kinds_of, steady
+from stiction.solver.problem import Problem, kinds_of, varies
 from stiction.solver.state import Accuracy, Output, State
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 
 _met: set[tuple[Any, ...]] = set()
 _compiled_beside: dict[tuple[Any, ...], Callable[[], object]] = {}
-
-
-def repeats(problem: Problem) -> bool:
-    """Return whether drive and load are steady, so that one map holds for all cycles."""
-    return steady(problem.drive) and constant(problem.load)
 
 
 class Multiscale(Exact):
@@ -57,7 +52,7 @@ class Multiscale(Exact):
         self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
-        if not repeats(problem):
+        if varies(problem):  # else one map holds for all cycles
             return super().advance(problem, state, end, held, budget, out)
         self.compile_map(problem)
         known = self.map_of(problem, out)

@@ -178,10 +178,9 @@ def steps(
         start, q_x, q_y, at, slip, moved, apart = begin(problem, motion, z, w, accuracy)
         now = Time(motion.t, t_end - motion.t, varies(problem))
         there = limit_there(limit, h, now, apart, moved, slip, accuracy)
-        if there[0] != ASKED:
+        if there[0] != ASKED or steady(w, now.left):
             limit = there
-        elif steady(w, now.left):
-            limit = there
+        if limit[0] == ASKED:
             keep_slopes(problem, at, w)
             write_rates(problem, w.jacobian[START], w.rates)
             code = ASKS

@@ -25,6 +25,7 @@ from stiction.solver.smooth.dispatch import flow
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import Triple
+from stiction.solver.stepping.control import motion_of
 from stiction.solver.stick import holding
 
 NOTICED = 0.01  # change of the friction coefficient that sets the scale of a state's errors
@@ -193,20 +194,14 @@ def inertia_share(
 def moving(
     problem: Problem, t: float, p: Pull, at_start: Point, accuracy: Accuracy
 ) -> tuple[float, float]:
-    """Return the speed of the motion about steady sliding at a step's start (M42), m/s.
-
-    The second is its square with the time of the faster spring in place of both.
-    """
+    """Return the motion about steady sliding at a step's start (M42); see `motion_of`."""
     system, (s_x, s_y) = problem.system, (at_start.s_x, at_start.s_y)
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
     g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
     by_x = g_x - (p.x - system.c_x * s_x * system.per_mass - at_start.f_x)
     by_y = g_y - (p.y - system.c_y * s_y * system.per_mass - at_start.f_y)
     x, y = v_x - s_x, v_y - s_y
-    apart, b_x, b_y = x * x + y * y, by_x * by_x, by_y * by_y
-    square = b_x * accuracy.square_x + b_y * accuracy.square_y
-    fast = (b_x + b_y) * min(accuracy.square_x, accuracy.square_y)
-    return max(sqrt(apart + square), accuracy.least), apart + fast
+    return motion_of((x, y), (by_x, by_y), accuracy)
 
 
 @inlined

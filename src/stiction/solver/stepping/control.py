@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import inf, log, sqrt
 from typing import NamedTuple
 
+from stiction.friction.law import Vector
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.compilation.stand_in import called_from_both
 from stiction.solver.state import Accuracy, Limit, elsewhere
@@ -65,6 +66,20 @@ def ease(error: float) -> float:
 def step_factor(error: float, limit: float) -> float:
     """Return the factor for the step size from the error over tolerance (M43)."""
     return min(limit, max(0.2, 0.9 * ease(error)))
+
+
+@inlined
+def motion_of(rate: Vector, change: Vector, held: Accuracy) -> tuple[float, float]:
+    """Return the motion (M42) of an elongation rate (m/s) that changes so fast (m/s^2), in m/s.
+
+    It is at least the effect of rounding. The second is its square with the faster radian in place
+    of both.
+    """
+    (x, y), (by_x, by_y) = rate, change
+    apart, b_x, b_y = x * x + y * y, by_x * by_x, by_y * by_y
+    square = b_x * held.square_x + b_y * held.square_y
+    fast = (b_x + b_y) * min(held.square_x, held.square_y)
+    return max(sqrt(apart + square), held.least), apart + fast
 
 
 @inlined
