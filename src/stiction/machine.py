@@ -1,4 +1,4 @@
-"""Cores and memory that this process may use.
+"""Cores and memory that this process may use, and processes beside it.
 
 Work that needs more memory is refused before it starts.
 """
@@ -6,6 +6,8 @@ Work that needs more memory is refused before it starts.
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -36,6 +38,23 @@ def shortage(size: float) -> str:
         return ""
     lends = f"this machine lends {largest_object() / 1e9:.3g} GB"
     return f"takes {size / 1e9:.3g} GB of memory, and {lends}"
+
+
+def python(module: str, stdout: int = subprocess.DEVNULL) -> subprocess.Popen[bytes]:
+    """Start a module of this package in a second process, which reads what to do.
+
+    Raises
+    ------
+    OSError
+        If no process can be started.
+    """
+    return subprocess.Popen(
+        [sys.executable, "-P", "-m", module],  # -P: nothing from the working folder
+        stdin=subprocess.PIPE,
+        stdout=stdout,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,  # Ctrl-C is for this process, which ends the other
+    )
 
 
 def _physical() -> float:

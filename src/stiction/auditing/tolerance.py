@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from decimal import ROUND_DOWN, Context, Decimal
+from functools import partial
 from math import degrees, isnan, nan, radians
 from typing import NamedTuple
 
@@ -17,7 +18,7 @@ from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.priors import Rig
 from stiction.linear_stability import growth_rate
-from stiction.study.execution.engines import Threads
+from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
@@ -165,13 +166,16 @@ def read_all(rigs: list[Slider], progress: Progress) -> Floats:
     """Return the readings of several rigs, (n, 4)."""
     found = np.empty((len(rigs), len(Reading._fields)))
 
-    def work(number: int, _: Callable[[], bool]) -> tuple[int, Reading]:
-        return number, read(rigs[number])
-
-    for done, (number, reading) in enumerate(Threads().results(work, range(len(rigs))), 1):
+    work = partial(read_one, rigs)
+    for done, (number, reading) in enumerate(Cores().results(work, range(len(rigs))), 1):
         found[number] = reading
         progress(done / len(rigs))
     return found
+
+
+def read_one(rigs: list[Slider], number: int, _: Callable[[], bool]) -> tuple[int, Reading]:
+    """Return the number of a rig, and its reading."""
+    return number, read(rigs[number])
 
 
 def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
@@ -18,7 +19,7 @@ from stiction.inference.jitter import Jitter, SampledMotion, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
 from stiction.storage.arrays import read_arrays, write_arrays
-from stiction.study.execution.engines import Threads
+from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 
@@ -121,19 +122,24 @@ def simulate_all(
     )
     missing = [each for each in blocks if each not in done]
 
-    def work(block: int, _: Callable[[], bool]) -> tuple[int, tuple[Floats, Floats]]:
-        rows = [simulate(plan, i, seed) for i in range(block * BLOCK, (block + 1) * BLOCK)]
-        found = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
-        if folder is not None:
-            write_block(folder, block, *found)
-        return block, found
-
-    for ready, (block, rows) in enumerate(Threads().results(work, missing), 1):
+    work = partial(simulate_block, plan, folder, seed)
+    for ready, (block, rows) in enumerate(Cores().results(work, missing), 1):
         done[block] = rows
         if progress is not None:
             progress(ready / len(missing))
     scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
     return scores, found
+
+
+def simulate_block(
+    plan: Plan, folder: Path | None, seed: int, block: int, _: Callable[[], bool]
+) -> tuple[int, tuple[Floats, Floats]]:
+    """Simulate a block, keep it in the folder, and return its number, scores and features."""
+    rows = [simulate(plan, i, seed) for i in range(block * BLOCK, (block + 1) * BLOCK)]
+    found = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+    if folder is not None:
+        write_block(folder, block, *found)
+    return block, found
 
 
 class Synthetic(NamedTuple):

@@ -8,6 +8,7 @@ is not what was measured (A. Gelman, X.-L. Meng & H. Stern, Stat. Sinica 6, 733 
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,7 @@ from stiction.inference.features import Cycles
 from stiction.inference.library import Plan, Synthetic, synthesise
 from stiction.inference.observation import Observation
 from stiction.inference.posterior import Fit
-from stiction.study.execution.engines import Threads
+from stiction.study.execution.cores import Cores
 
 DRAWS = 60  # simulations with parameters of the posterior
 TAILS = (0.025, 0.975)
@@ -83,8 +84,8 @@ def predict(
     step = seen.conditions.step
     made: list[Synthetic] = []
     chosen = np.linspace(0, len(fit.scores) - 1, DRAWS).astype(int)
-    work = simulation(fit.plan, fit.scores[chosen])
-    for done, found in enumerate(Threads().results(work, range(DRAWS)), 1):
+    work = partial(simulate_one, fit.plan, fit.scores[chosen])
+    for done, found in enumerate(Cores().results(work, range(DRAWS)), 1):
         made += [found] if found else []
         if progress is not None:
             progress(done / DRAWS)
@@ -101,13 +102,11 @@ def predict(
     return Predictive(measured, simulated, larger, made[int(np.argmin(others))])
 
 
-def simulation(plan: Plan, scores: Floats) -> Callable[[int, Callable[[], bool]], Synthetic | None]:
-    """Return the task of one simulation under the first conditions."""
-
-    def work(number: int, _: Callable[[], bool]) -> Synthetic | None:
-        return next(synthesise(plan, scores[number], np.random.default_rng([1, number])))
-
-    return work
+def simulate_one(
+    plan: Plan, scores: Floats, number: int, _: Callable[[], bool]
+) -> Synthetic | None:
+    """Return a synthetic record under the first conditions."""
+    return next(synthesise(plan, scores[number], np.random.default_rng([1, number])))
 
 
 def departures(measured: Floats, simulated: Floats) -> tuple[float, Floats]:

@@ -80,10 +80,10 @@ def sweep(
         With --refine, a kind of motion to distinguish from all others, such as "settling"; repeat
         it for more. By default every change of kind counts. Example: --apart settling.
     threads
-        Number of runs at a time in this process; by default the number of cores. Example: --threads
-        4.
+        Number of runs at a time, all in this process. By default there are as many as cores, and
+        after some seconds further processes take all but one. Example: --threads 4.
     workers
-        Number of processes on this machine, by dask, in place of threads. Example: --workers 4.
+        Number of processes on this machine, by dask. Example: --workers 4.
     scheduler
         A dask scheduler for the runs, tcp://host:port. Its workers write to the store themselves:
         all must see the same files. Example: --scheduler tcp://node1:8786.
@@ -143,8 +143,6 @@ def engine(
     threads: int | None, workers: int | None, scheduler: str | None, dashboard: bool = False
 ) -> Engine:
     """Return the requested engine."""
-    from stiction.study.execution.engines import Threads
-
     if sum(each is not None for each in (threads, workers, scheduler)) > 1:
         raise StictionError("--threads, --workers and --scheduler exclude each other; give one")
     for name, count in (("threads", threads), ("workers", workers)):
@@ -152,8 +150,11 @@ def engine(
             raise StictionError(f"--{name} must be at least 1, is {count}")
     if dashboard and workers is None:
         raise StictionError("--dashboard needs --workers; give both")
-    if workers is None and scheduler is None:
-        return Threads() if threads is None else Threads(threads)
-    from stiction.study.execution.engines import Processes, Scheduler
+    from stiction.study.execution.cores import Cores
+    from stiction.study.execution.engines import Processes, Scheduler, Threads
 
-    return Processes(workers, dashboard) if workers is not None else Scheduler(str(scheduler))
+    if threads is not None:
+        return Threads(threads)
+    if workers is not None:
+        return Processes(workers, dashboard)
+    return Cores() if scheduler is None else Scheduler(scheduler)

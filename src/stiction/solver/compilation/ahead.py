@@ -8,18 +8,18 @@ from __future__ import annotations
 
 import atexit
 import pickle
-import subprocess
 import sys
 from collections.abc import Callable
 from contextlib import suppress
 from importlib import import_module
+from subprocess import Popen
 from typing import Any
 
-from stiction.machine import CORES
+from stiction.machine import CORES, python
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED
 
-_begun: list[subprocess.Popen[bytes]] = []
+_begun: list[Popen[bytes]] = []
 
 
 def is_compiled(function: Any, kinds: tuple[Any, ...]) -> bool:
@@ -37,13 +37,7 @@ def compile_beside(function: Any, kinds: tuple[Any, ...]) -> Callable[[], object
     made = function.py_func
     task = pickle.dumps((made.__module__, made.__qualname__, kinds))
     try:
-        begun = subprocess.Popen(
-            [sys.executable, "-P", "-m", __name__],  # -P: nothing from the working folder
-            stdin=subprocess.PIPE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-            start_new_session=True,  # Ctrl-C is for this process, which ends the other
-        )
+        begun = python(__name__)
     except OSError:
         return lambda: None
     _begun.append(begun)

@@ -52,23 +52,35 @@ class Threads(NamedTuple):
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield the outcome of each task."""
-        unwanted = threading.Event()
-        waiting = iter(tasks)
-        with ThreadPoolExecutor(self.workers, "study") as pool:
+        return in_threads(self.workers, work, tasks)
 
-            def handed_out(count: int) -> set[Future[T]]:
-                return {pool.submit(work, task, unwanted.is_set) for task in islice(waiting, count)}
 
-            try:
-                flying = handed_out(AHEAD * self.workers)
-                while flying:
-                    done, flying = wait(flying, PATIENCE, FIRST_COMPLETED)
-                    flying |= handed_out(len(done))
-                    for future in done:
-                        yield future.result()
-            finally:
-                unwanted.set()
-                pool.shutdown(wait=True, cancel_futures=True)
+def in_threads(
+    count: int, work: Work[T], tasks: Iterable[int], end: Callable[[], None] | None = None
+) -> Iterator[T]:
+    """Yield the outcome of each task, of which some threads do one each; `end` is called last.
+
+    It is called before the threads are waited for, so it may end what they wait for.
+    """
+    unwanted = threading.Event()
+    waiting = iter(tasks)
+    with ThreadPoolExecutor(count, "study") as pool:
+
+        def handed_out(more: int) -> set[Future[T]]:
+            return {pool.submit(work, task, unwanted.is_set) for task in islice(waiting, more)}
+
+        try:
+            flying = handed_out(AHEAD * count)
+            while flying:
+                done, flying = wait(flying, PATIENCE, FIRST_COMPLETED)
+                flying |= handed_out(len(done))
+                for future in done:
+                    yield future.result()
+        finally:
+            unwanted.set()
+            if end is not None:
+                end()
+            pool.shutdown(wait=True, cancel_futures=True)
 
 
 class Processes(NamedTuple):

@@ -12,7 +12,8 @@ import numpy as np
 
 from stiction.errors import STATUSES, DescriptionError
 from stiction.storage.files import folder_lock
-from stiction.study.execution.engines import Engine, Threads
+from stiction.study.execution.cores import Cores
+from stiction.study.execution.engines import Engine
 from stiction.study.plan.layout import Index, places, runs_of, size_of
 from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.creation import create
@@ -147,7 +148,8 @@ def sweep(
     path : str or Path
         The store: a folder, made if it does not exist.
     engine : Engine, optional
-        The engine for the runs; by default threads of this process.
+        The engine for the runs; by default all cores of this machine: threads, and processes
+        beside them if it takes longer than some seconds.
     progress : callable, optional
         Called with a `Tally` after each task.
 
@@ -195,7 +197,7 @@ def do(
     layout, begun = store.layout, perf_counter()
     left = sum(runs_of(layout.region(task)) for task in tasks)
     tally = Tally(layout.runs, layout.runs - left, 0, 0, 0.0)
-    for came in (engine or Threads()).results(partial(do_block, study, store), tasks):
+    for came in (engine or Cores()).results(partial(do_block, study, store), tasks):
         tally = tally._replace(
             now=tally.now + came.runs,
             failed=tally.failed + came.failed,

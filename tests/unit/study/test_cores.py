@@ -1,0 +1,111 @@
+"""All cores: processes that start beside the threads do the same, and are missed by nobody."""
+
+import os
+import time
+from functools import partial
+from itertools import count
+
+import pytest
+from tests.tasks import forces, stop_elsewhere, who
+from tests.waiting import PATIENCE
+
+import stiction as st
+from stiction.study.execution import cores
+from stiction.study.execution.cores import Cores
+
+LAW = """
+from typing import NamedTuple
+
+class Worn(NamedTuple):
+    mu_0: float
+
+    def coefficient(law, v):
+        return law.mu_0 / (1.0 + 20.0 * v)
+
+    def slope(law, v):
+        return -20.0 * law.mu_0 / (1.0 + 20.0 * v) ** 2
+"""
+TABLE = """
+[slider]
+mass = "0.25 kg"
+k_x = "1 kN/m"
+k_y = "10 MN/m"
+phi = "1 deg"
+normal_load = "10 N"
+[friction]
+law = "worn.py:Worn"
+mu_0 = 0.2
+[drive]
+velocity = "1 mm/s"
+"""
+
+
+@pytest.fixture(autouse=True)
+def at_once(monkeypatch):
+    """Processes start at once, and there is one."""
+    monkeypatch.setattr(cores, "LONG", 0.0)
+
+
+def others(found):
+    """Yield what comes until another process has done something."""
+    end = time.monotonic() + PATIENCE
+    for each in found:
+        yield each
+        if each[1] != os.getpid():
+            return
+        assert time.monotonic() < end, "no process starts"
+
+
+def is_alive(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_a_process_does_tasks_and_ends_with_them():
+    found = Cores(2).results(who, count())
+    done = [*others(found)]
+    found.close()
+    tasks = [task for task, _ in done]
+    assert len(set(tasks)) == len(tasks)
+    assert not is_alive(done[-1][1])
+
+
+def test_what_another_process_cannot_be_told_is_done_here():
+    done = Cores(2).results(lambda task, _: (task, os.getpid()), range(100))
+    assert sorted(done) == [(task, os.getpid()) for task in range(100)]
+
+
+@pytest.mark.parametrize("how", ["dies", "fails", "answers nonsense"])
+def test_what_a_process_leaves_is_done_here(how, tmp_path):
+    """Tasks go on until a process has taken one, and all come back."""
+    seen, given = tmp_path / "seen", []
+
+    def tasks():
+        while not seen.exists():
+            given.append(len(given))
+            yield given[-1]
+
+    found = Cores(2).results(partial(stop_elsewhere, how, os.getpid(), seen), tasks())
+    assert sorted(found) == given
+
+
+def test_nobody_waits_for_a_process_when_the_work_is_broken_off(tmp_path):
+    seen = tmp_path / "seen"
+    found = Cores(2).results(partial(stop_elsewhere, "never ends", os.getpid(), seen), count())
+    for _ in found:
+        if seen.exists() and seen.read_text():
+            break
+    found.close()
+    assert not is_alive(int(seen.read_text()))
+
+
+def test_a_law_from_a_file_gives_the_same_in_another_process(tmp_path):
+    (tmp_path / "worn.py").write_text(LAW)
+    (tmp_path / "a.toml").write_text(TABLE)
+    slider = st.Slider.from_toml(tmp_path / "a.toml")
+    found = Cores(2).results(partial(forces, slider), count())
+    assert len({force for force, _ in others(found)}) == 1
+    found.close()
