@@ -4,8 +4,9 @@
 channels and each seed of held-out records, coverage of 95 % intervals, the p-value of ranks against
 uniform ones (simulation-based calibration: S. Talts et al., arXiv:1804.06788), and widths of the
 posterior. Records have 20 cycles, friction that differs by 0.1 % to 3 % from cycle to cycle, noise
-of 0.2 % of the friction force at rest and, on the displacement, of 0.2 % of the slip length. FOLDER
-holds the simulations, so that a second call only compares.
+of 0.2 % of the friction force at rest and, on the displacement, of 0.2 % of the slip length. One
+rig is measured once more with a load cell that smears its slips. FOLDER holds the simulations, so
+that a second call only compares.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from stiction.inference.library import Library, build, features_from, plan
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Rig, Uniform
 from stiction.inference.regression_abc import Sample, quantiles, rank
+from stiction.recording.sensor import LowPass
 
 Floats = NDArray[np.float64]
 
@@ -57,6 +59,8 @@ RIGS = {  # two that differ in stiffness, friction and drive
         "mu_0": (0.17, 0.24), "mu_inf": (0.1, 0.16), "velocity": "1 mm/s",
     },
 }  # fmt: skip
+RIGS["pin on plate, filter at 20 Hz"] = RIGS["pin on plate"]
+FILTERS = {"pin on plate, filter at 20 Hz": (LowPass(20.0, 4),)}  # of the load cell
 CYCLES, PER_CYCLE = 20, 200
 NOISE = 0.002
 SHOWN = ("phi", "friction.mu_0", "friction.mu_inf", "friction.v_f", "k_x", "k_y", "jitter")
@@ -81,8 +85,8 @@ def rig_of(name: str) -> tuple[Rig, Conditions]:
     cycle = 0.6 * slider.F_0 / (slider.k_x * velocity)
     level = float(f"{NOISE * slider.F_0:.2g}")
     noise = {
-        "force": Noise(level, gain=0.01, zero=5 * level),
-        "force_across": Noise(level, gain=0.01),
+        "force": Noise(level, gain=0.01, zero=5 * level, filters=FILTERS.get(name, ())),
+        "force_across": Noise(level, gain=0.01, filters=FILTERS.get(name, ())),
         "position": Noise(level / slider.k_x),
     }
     step = cycle / PER_CYCLE

@@ -20,7 +20,7 @@ from stiction.inference.features import (
     features,
     find_cycles,
 )
-from stiction.recording.sensor import white_noise
+from stiction.recording.sensor import FASTEST, LowPass, white_noise
 from stiction.system.slider import Slider
 
 PER_CYCLE = 200  # samples: more are averaged
@@ -32,11 +32,22 @@ UNEVEN = 0.01  # of the sample interval, by which intervals may differ
 
 
 class Noise(NamedTuple):
-    """Of one channel's samples: standard deviation, and uncertainty of gain and zero."""
+    """What a sensor does to a channel's samples.
+
+    Parameters
+    ----------
+    level : float
+        Standard deviation of its noise.
+    gain, zero : float
+        Uncertainty of its gain and of its zero.
+    filters : tuple of LowPass
+        Its bandwidth and its anti-alias filter, where they show between such samples.
+    """
 
     level: float
     gain: float = 0.0
     zero: float = 0.0
+    filters: tuple[LowPass, ...] = ()
 
 
 class Conditions(NamedTuple):
@@ -114,9 +125,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     block = max(round(cycle / step / PER_CYCLE), 1)
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
     thin = {each: block_means(values, block) for each, values in channels.items()}
-    thin_noise = {
-        each: its._replace(level=round_up(its.level / block**0.5)) for each, its in noise.items()
-    }
+    thin_noise = {each: thinned(its, block, step * block) for each, its in noise.items()}
     found = find_cycles(thin["force"])
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = type(found)(*(each[:number] for each in found))
@@ -144,10 +153,16 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
     """Return the noise of a channel, as its sensor states it or as its samples show it."""
     sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
     level = 0.0 if sensor is None else float(np.hypot(sensor.noise, sensor.quantisation / 12**0.5))
-    gain, zero = (
-        (0.0, 0.0) if sensor is None else (sensor.gain_uncertainty, sensor.zero_uncertainty)
-    )
-    return Noise(level or white_noise(values), gain, zero)
+    noise = Noise(level or white_noise(values))
+    if sensor is None:
+        return noise
+    return Noise(noise.level, sensor.gain_uncertainty, sensor.zero_uncertainty, sensor.filters)
+
+
+def thinned(noise: Noise, block: int, step: float) -> Noise:
+    """Return the noise of means of blocks of samples, `step` apart."""
+    shown = tuple(each for each in noise.filters if each.cut * step <= FASTEST)
+    return noise._replace(level=round_up(noise.level / block**0.5), filters=shown)
 
 
 def block_means(values: Floats, block: int) -> Floats:

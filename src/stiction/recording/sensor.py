@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import import_module
 from math import ceil, comb, log2, sqrt
 from typing import Annotated, Any, NamedTuple, Self
@@ -32,6 +33,13 @@ REPEATED = 4  # samples for each of them, on average
 LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
+
+
+class LowPass(NamedTuple):
+    """A Butterworth filter: its cut-off (Hz), where it leaves half of the power, and its order."""
+
+    cut: float
+    order: int
 
 
 class Sensor(Described):
@@ -125,10 +133,13 @@ class Sensor(Described):
         ResultError
             If the values are too coarse for the filter.
         """
-        for cut, order in ((self.bandwidth, 1), (self.filter, self.filter_order)):
-            if cut is not None:
-                values = _low_pass(values, cut, order, rate)
-        return values
+        return low_passed(values, self.filters, rate)
+
+    @property
+    def filters(self) -> tuple[LowPass, ...]:
+        """What bandwidth and anti-alias filter do to a signal."""
+        its = LowPass(self.bandwidth or 0.0, 1), LowPass(self.filter or 0.0, self.filter_order)
+        return tuple(each for each in its if each.cut)
 
     def readings(self, values: Floats, seed: int | np.random.SeedSequence) -> Floats:
         """Return sampled values with gain, zero, noise and quantisation; the same for one seed."""
@@ -149,19 +160,24 @@ class Sensor(Described):
         return Sensor(**(its | in_values | rest))
 
 
-def _low_pass(values: Floats, cut: float, order: int, rate: float) -> Floats:
-    signal: Any = import_module("scipy.signal")  # slow to import
-    if cut > FASTEST * rate:
-        factor = 2 ** ceil(log2(cut / (FASTEST * rate)))
-        raise ResultError(
-            f"a filter at {cut:g} Hz needs samples at {cut / FASTEST:g} Hz or more, the run has "
-            f"{rate:g} Hz; simulate it with {factor} times the sample rate"
-        )
-    sections = signal.butter(order, cut, fs=rate, output="sos")
-    if not len(values):
-        return values
-    start = signal.sosfilt_zi(sections) * values[0]
-    return np.asarray(signal.sosfilt(sections, values, zi=start)[0])
+def low_passed(values: Floats, filters: Iterable[LowPass], rate: float) -> Floats:
+    """Return equally spaced values, `rate` a second, as low-pass filters leave them.
+
+    See `Sensor.response`.
+    """
+    for cut, order in filters:
+        signal: Any = import_module("scipy.signal")  # slow to import
+        if cut > FASTEST * rate:
+            factor = 2 ** ceil(log2(cut / (FASTEST * rate)))
+            raise ResultError(
+                f"a filter at {cut:g} Hz needs samples at {cut / FASTEST:g} Hz or more, the run "
+                f"has {rate:g} Hz; simulate it with {factor} times the sample rate"
+            )
+        if len(values):
+            sections = signal.butter(order, cut, fs=rate, output="sos")
+            start = signal.sosfilt_zi(sections) * values[0]
+            values = np.asarray(signal.sosfilt(sections, values, zi=start)[0])
+    return values
 
 
 class NoiseLevel(NamedTuple):

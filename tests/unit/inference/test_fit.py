@@ -13,8 +13,9 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import find_cycles
 from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, move, stretch
-from stiction.inference.library import build
-from stiction.inference.observation import observe
+from stiction.inference.library import build, draw
+from stiction.inference.observation import Noise, observe
+from stiction.recording.sensor import LowPass, low_passed
 
 
 @pytest.fixture(scope="module")
@@ -92,6 +93,30 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     assert "beyond which the records point: friction.mu_0" in wrong.tables()[0].sentences[0]
     unlike = replace(found, farther=0.02).tables()[0].sentences
     assert unlike[0].startswith("The records are not like those of the rig as described")
+
+
+def test_a_filter_counts_where_it_shows_between_the_samples_of_a_fit(rig, record):
+    sensor = st.Sensor(filter="20 Hz", bandwidth="1 kHz", noise="4 mN")
+    filtered = record.model_copy(update={"sensors": {"force": sensor}})
+    (plain, seen) = (observe(each, rig.slider).conditions for each in (record, filtered))
+    assert plain.noise["force"].filters == ()
+    assert seen.noise["force"].filters == (LowPass(20.0, 4),)  # 100 samples a second
+    assert plan_for(rig, [seen]).key != plan_for(rig, [plain]).key
+
+
+def test_simulated_records_pass_the_filters_of_their_sensors(rig, record):
+    conditions = observe(record, rig.slider).conditions
+    channels = []
+    for filters in ((), (LowPass(20.0, 4),)):
+        noise = {"force": Noise(0.0, filters=filters), "position": Noise(0.0)}
+        plan = plan_for(rig, [conditions._replace(noise=noise)])
+        (made,) = draw(plan, 1, 0)[1]
+        channels.append(made.channels)
+    plain, filtered = channels
+    assert np.array_equal(filtered["position"], plain["position"])
+    rate = 1.0 / conditions.step
+    assert np.array_equal(filtered["force"], low_passed(plain["force"], [LowPass(20.0, 4)], rate))
+    assert np.ptp(filtered["force"] - plain["force"]) > 0.05  # N: it smears the slips
 
 
 def test_each_cycle_has_friction_of_its_own(rig):
