@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from importlib import import_module
-from math import ceil, comb, log2, sqrt
+from math import ceil, comb, inf, log2, sqrt
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
@@ -140,6 +140,11 @@ class Sensor(Described):
         """What bandwidth and anti-alias filter do to a signal."""
         its = LowPass(self.bandwidth or 0.0, 1), LowPass(self.filter or 0.0, self.filter_order)
         return tuple(each for each in its if each.cut)
+
+    @property
+    def cut_off(self) -> float:
+        """The lowest frequency of which less than half of the power passes, Hz."""
+        return min((each.cut for each in self.filters), default=inf)
 
     def readings(self, values: Floats, seed: int | np.random.SeedSequence) -> Floats:
         """Return sampled values with gain, zero, noise and quantisation; the same for one seed."""

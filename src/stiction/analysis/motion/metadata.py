@@ -167,9 +167,8 @@ def _transverse_frequency(record: Record) -> StatedQuantity | None:
     frequency = (record.stiffness_across / record.mass) ** 0.5 / (2.0 * pi)
     highest = SEEN * record.sample_rate
     sensor = (record.sensors or {}).get("force")
-    cuts = [x for x in (sensor.bandwidth, sensor.filter) if x] if sensor is not None else []
     how = "0.4 of the sample rate, or the sensor's cut-off"
-    shown = min([highest, *cuts])
+    shown = highest if sensor is None else min(highest, sensor.cut_off)
     name = "frequencies up to, and the transverse one"
     return StatedQuantity(name, "Hz", shown, nan, frequency, 1.0, float("inf"), how)
 

@@ -96,6 +96,18 @@ def test_coarse_sampling_is_named() -> None:
     assert "Sample at" in doubts_in_words(time, 1.0 + 0.3 * (time % 1.1))
 
 
+@pytest.mark.parametrize("cut", [1.0, 3.0, 30.0])
+def test_a_filter_that_smears_the_slips_is_named_where_it_is_stated(cut) -> None:
+    """A slip takes half a period of the mass on its spring, or somewhat more."""
+    slider = st.presets.nakano_popov_2020()
+    run = st.simulate(slider, 5.0, sample_rate="10 kHz")
+    sensor = st.Sensor(filter=cut * slider.natural_frequency_x, noise="2 mN")
+    found = st.analyse(st.measure(run, sensor, seed=1))
+    assert any("smeared" in each for each in found.warnings) == (cut < 10.0)
+    silent = found.record.model_copy(update={"sensors": None})
+    assert not any("smeared" in each for each in st.analyse(silent).warnings)
+
+
 def test_a_break_away_before_steady_sliding() -> None:
     time = np.arange(0.0, 10.0, 1e-3)
     noise = 0.01 * np.random.default_rng(2).standard_normal(len(time))
