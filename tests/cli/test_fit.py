@@ -49,6 +49,8 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     assert "Experimental" in said
     assert "Compared with" in said
     assert "called 1, 2" in said.lower()
+    assert f"Warnings about {data}" in said
+    assert "Sample at" in " ".join(said.split())  # slips of four samples
     names = {"posterior.png", "corner.png", "mechanism.png"}
     assert {path.name for path in figures.iterdir()} == names
     odds = xr.open_dataset(output, group="mechanism")
@@ -61,7 +63,9 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     assert inside("audit", rig, "--record", data, *units, *library, "-o", page) == 0
     assert {path: path.stat().st_mtime_ns for path in folder.glob("*/*.npz")} == made
     out = capsys.readouterr().out
-    assert out.index("What the record says") < out.index("Verdict")
+    titles = ("What the record says", "Warnings about the record", "Verdict")
+    places = [out.index(title) for title in titles]
+    assert places == sorted(places)
     assert "What would change it" in out
     assert "simulated with the fitted" in page.read_text()
 

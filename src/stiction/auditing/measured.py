@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from stiction.analysis.record import Record
+from stiction.analysis.report import analyse
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
@@ -32,7 +33,8 @@ BOTH_HOLD = (
     "fitted values have one like it, which is enough for an explanation; of those nearest to the "
     "record among all values of the priors few have, and a claim of rotation needs both."
 )
-GROUNDS, CHANGES = "What that rests on", "What would change it"
+WARNINGS, GROUNDS = "Warnings about the record", "What that rests on"
+CHANGES = "What would change it"
 NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
 
 
@@ -121,8 +123,10 @@ def sections(found: RecordComparison) -> list[Section]:
     """Return the sections of a report."""
     if found.fit is None:
         return [Section(RECORD, [f"No verdict: {found.reason}."])]
+    warned = analyse(found.record).warnings
     parts = [
         Section(RECORD, [verdict(found), DESCRIBED]),
+        *([Section(WARNINGS, [*warned])] if warned else []),
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]
@@ -242,9 +246,9 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
     lines = []
     if not found.like:
         lines.append(
-            "Look at drift, hum and filters, which are not simulated; at the stated stiffness, "
-            "mass, load and velocity (stiction analyse); at the law of friction; and whether the "
-            "priors are too narrow."
+            "Look at drift and hum, which are not simulated, and at filters that no sensor states; "
+            "at the stated stiffness, mass, load and velocity (stiction analyse); at the law of "
+            "friction; and whether the priors are too narrow."
         )
     if found.absent:
         listed = " and ".join(NAMES.get(name, name) for name in found.absent)

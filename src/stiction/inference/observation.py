@@ -125,7 +125,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     block = max(round(cycle / step / PER_CYCLE), 1)
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
     thin = {each: block_means(values, block) for each, values in channels.items()}
-    thin_noise = {each: thinned(its, block, step * block) for each, its in noise.items()}
+    thin_noise = {each: average(its, block, step * block) for each, its in noise.items()}
     found = find_cycles(thin["force"])
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = type(found)(*(each[:number] for each in found))
@@ -159,7 +159,7 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
     return Noise(noise.level, sensor.gain_uncertainty, sensor.zero_uncertainty, sensor.filters)
 
 
-def thinned(noise: Noise, block: int, step: float) -> Noise:
+def average(noise: Noise, block: int, step: float) -> Noise:
     """Return the noise of means of blocks of samples, `step` apart."""
     shown = tuple(each for each in noise.filters if each.cut * step <= FASTEST)
     return noise._replace(level=round_up(noise.level / block**0.5), filters=shown)

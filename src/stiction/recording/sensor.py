@@ -133,7 +133,7 @@ class Sensor(Described):
         ResultError
             If the values are too coarse for the filter.
         """
-        return low_passed(values, self.filters, rate)
+        return low_pass(values, self.filters, rate)
 
     @property
     def filters(self) -> tuple[LowPass, ...]:
@@ -165,7 +165,7 @@ class Sensor(Described):
         return Sensor(**(its | in_values | rest))
 
 
-def low_passed(values: Floats, filters: Iterable[LowPass], rate: float) -> Floats:
+def low_pass(values: Floats, filters: Iterable[LowPass], rate: float) -> Floats:
     """Return equally spaced values, `rate` a second, as low-pass filters leave them.
 
     See `Sensor.response`.

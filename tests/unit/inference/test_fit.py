@@ -15,7 +15,7 @@ from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, move, stretch
 from stiction.inference.library import build, draw
 from stiction.inference.observation import Noise, observe
-from stiction.recording.sensor import LowPass, low_passed
+from stiction.recording.sensor import LowPass, low_pass
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +115,7 @@ def test_simulated_records_pass_the_filters_of_their_sensors(rig, record):
     plain, filtered = channels
     assert np.array_equal(filtered["position"], plain["position"])
     rate = 1.0 / conditions.step
-    assert np.array_equal(filtered["force"], low_passed(plain["force"], [LowPass(20.0, 4)], rate))
+    assert np.array_equal(filtered["force"], low_pass(plain["force"], [LowPass(20.0, 4)], rate))
     assert np.ptp(filtered["force"] - plain["force"]) > 0.05  # N: it smears the slips
 
 

@@ -70,7 +70,7 @@ def warnings(
         *_mass(wrong.get(SWING), kind),
         *_mains(kind, cycles),
         *_coarse(record, cycles),
-        *_smeared(record, cycles),
+        *_smear(record, cycles),
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
         *_doubt_times(record),
@@ -335,7 +335,7 @@ def _coarse(record: Record, cycles: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _smeared(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+def _smear(record: Record, cycles: xr.Dataset) -> Iterator[str]:
     sensor = (record.sensors or {}).get("force")
     if sensor is None or not cycles.sizes["cycle"]:
         return

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
@@ -20,6 +20,10 @@ from stiction.cli.options import (
     record_in,
 )
 from stiction.cli.terminal import say
+from stiction.text.sections import Section
+
+if TYPE_CHECKING:
+    from stiction.analysis.record import Record
 
 
 def fit(
@@ -102,7 +106,7 @@ def fit(
             given, known, simulations=simulations, library=kept, seed=seed, progress=report
         )
     origins = [part for each in given if each.origin is not None for part in each.origin.tables()]
-    sections, groups = [*origins, *found.tables()], {}
+    sections, groups = [*origins, *warnings(records, given), *found.tables()], {}
     plots: dict[str, Any] = {"posterior": found, "corner": found}
     if mechanism:
         with progress("simulating other mechanisms") as report:
@@ -116,6 +120,14 @@ def fit(
     say(f"wrote {found.save(output, **groups)}")
     if figures is not None:
         write_figures(plots, figures)
+
+
+def warnings(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
+    """Return what analyses of records warn of: a fit does not see it."""
+    from stiction.analysis.report import analyse
+
+    found = [(path, analyse(each).warnings) for path, each in zip(paths, records, strict=True)]
+    return [Section(f"Warnings about {path}", [*said]) for path, said in found if said]
 
 
 def write_figures(plots: Mapping[str, Any], folder: Path) -> None:
