@@ -18,7 +18,7 @@ from stiction.inference.features import BEND, Cycles, FeatureGroup, features, fi
 from stiction.inference.jitter import Jitter, SampledMotion, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
-from stiction.recording.sensor import low_pass
+from stiction.recording.sensor import FASTEST, low_pass
 from stiction.storage.arrays import read_arrays, write_arrays
 from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_unchecked
@@ -214,7 +214,8 @@ def measure(
         gain, zero = random.standard_normal(2) * (noise.gain, noise.zero) + (1.0, 0.0)
         if name == "force":
             gain, zero = values.get("gain", 1.0), values.get("zero", 0.0)
-        values_of = gain * low_pass(exact[name], noise.filters, 1.0 / conditions.step) + zero
+        shown = [each for each in noise.filters if each.cut * conditions.step <= FASTEST]
+        values_of = gain * low_pass(exact[name], shown, 1.0 / conditions.step) + zero
         found[name] = values_of + noise.level * random.standard_normal(len(values_of))
     return found
 

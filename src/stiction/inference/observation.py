@@ -20,7 +20,7 @@ from stiction.inference.features import (
     features,
     find_cycles,
 )
-from stiction.recording.sensor import FASTEST, LowPass, white_noise
+from stiction.recording.sensor import LowPass, white_noise
 from stiction.system.slider import Slider
 
 PER_CYCLE = 200  # samples: more are averaged
@@ -41,7 +41,7 @@ class Noise(NamedTuple):
     gain, zero : float
         Uncertainty of its gain and of its zero.
     filters : tuple of LowPass
-        Its bandwidth and its anti-alias filter, where they show between such samples.
+        Its bandwidth and its anti-alias filter.
     """
 
     level: float
@@ -125,7 +125,9 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     block = max(round(cycle / step / PER_CYCLE), 1)
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
     thin = {each: block_means(values, block) for each, values in channels.items()}
-    thin_noise = {each: average(its, block, step * block) for each, its in noise.items()}
+    thin_noise = {
+        each: its._replace(level=round_up(its.level / block**0.5)) for each, its in noise.items()
+    }
     found = find_cycles(thin["force"])
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = type(found)(*(each[:number] for each in found))
@@ -157,12 +159,6 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
     if sensor is None:
         return noise
     return Noise(noise.level, sensor.gain_uncertainty, sensor.zero_uncertainty, sensor.filters)
-
-
-def average(noise: Noise, block: int, step: float) -> Noise:
-    """Return the noise of means of blocks of samples, `step` apart."""
-    shown = tuple(each for each in noise.filters if each.cut * step <= FASTEST)
-    return noise._replace(level=round_up(noise.level / block**0.5), filters=shown)
 
 
 def block_means(values: Floats, block: int) -> Floats:

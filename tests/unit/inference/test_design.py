@@ -14,6 +14,7 @@ from stiction.inference.next_test.advice import Advice, Expected, expectation, m
 from stiction.inference.next_test.further import AGAIN, Wanted, further_tests
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Normal
+from stiction.recording.sensor import LowPass
 
 RIGS = 200
 NOISE = 0.5  # of a feature, over the prior's standard deviation
@@ -188,3 +189,13 @@ def test_a_rig_that_is_turned_forgets_the_angles_it_had():
     turned = Conditions(5e-4, 4.0, 0.1, 0.01, 20, 1.0, {}).slider_of(slider)
     assert turned.misalignment == slider.phi + 0.1
     assert turned.direction == (np.cos(slider.phi + 0.1), np.sin(slider.phi + 0.1))
+
+
+def test_what_is_known_of_a_sensor_stays_with_another_noise():
+    slider = st.presets.nakano_popov_2020()
+    its = Noise(1e-3, gain=0.01, filters=(LowPass(20.0, 4),))
+    present = further.usual_conditions(slider)._replace(noise={"force": its})
+    found = further.with_noise(present, slider, Wanted(noise="3 mN")).noise
+    assert found["force"] == its._replace(level=3e-3)
+    assert found["force_across"] == Noise(3e-3)
+    assert further.with_noise(present, slider, Wanted()).noise["force"] == its

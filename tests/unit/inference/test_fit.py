@@ -95,27 +95,28 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     assert unlike[0].startswith("The records are not like those of the rig as described")
 
 
-def test_a_filter_counts_where_it_shows_between_the_samples_of_a_fit(rig, record):
+def test_the_filters_of_a_sensor_belong_to_the_conditions_of_a_record(rig, record):
     sensor = st.Sensor(filter="20 Hz", bandwidth="1 kHz", noise="4 mN")
     filtered = record.model_copy(update={"sensors": {"force": sensor}})
     (plain, seen) = (observe(each, rig.slider).conditions for each in (record, filtered))
     assert plain.noise["force"].filters == ()
-    assert seen.noise["force"].filters == (LowPass(20.0, 4),)  # 100 samples a second
+    assert seen.noise["force"].filters == (LowPass(1e3, 1), LowPass(20.0, 4))
     assert plan_for(rig, [seen]).key != plan_for(rig, [plain]).key
 
 
-def test_simulated_records_pass_the_filters_of_their_sensors(rig, record):
+def test_simulated_records_pass_the_filters_that_show_between_their_samples(rig, record):
     conditions = observe(record, rig.slider).conditions
-    channels = []
-    for filters in ((), (LowPass(20.0, 4),)):
-        noise = {"force": Noise(0.0, filters=filters), "position": Noise(0.0)}
-        plan = plan_for(rig, [conditions._replace(noise=noise)])
-        (made,) = draw(plan, 1, 0)[1]
-        channels.append(made.channels)
-    plain, filtered = channels
-    assert np.array_equal(filtered["position"], plain["position"])
     rate = 1.0 / conditions.step
-    assert np.array_equal(filtered["force"], low_pass(plain["force"], [LowPass(20.0, 4)], rate))
+    slow, fast = LowPass(0.2 * rate, 4), LowPass(10.0 * rate, 1)
+    channels = []
+    for filters in ((), (fast,), (fast, slow)):
+        noise = {"force": Noise(0.0, filters=filters), "position": Noise(0.0)}
+        (made,) = draw(plan_for(rig, [conditions._replace(noise=noise)]), 1, 0)[1]
+        channels.append(made.channels)
+    plain, same, filtered = channels
+    assert np.array_equal(same["force"], plain["force"])
+    assert np.array_equal(filtered["position"], plain["position"])
+    assert np.array_equal(filtered["force"], low_pass(plain["force"], [slow], rate))
     assert np.ptp(filtered["force"] - plain["force"]) > 0.05  # N: it smears the slips
 
 

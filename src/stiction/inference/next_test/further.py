@@ -84,7 +84,7 @@ def with_noise(conditions: Conditions, slider: Slider, wanted: Wanted) -> Condit
         "position": Noise(wanted.position_noise or force / slider.k_x),
     }
     given = {"force": wanted.noise, "force_across": wanted.noise, "position": wanted.position_noise}
-    kept = {name: its for name, its in known.items() if given[name] is None}
+    kept = {name: its._replace(level=given[name] or its.level) for name, its in known.items()}
     return conditions._replace(noise={**usual, **kept})
 
 
