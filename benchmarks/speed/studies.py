@@ -49,7 +49,7 @@ def timed(work):
                       "memory": 1e-6 * peak()}))
 
 with tempfile.TemporaryDirectory() as folder:  # imports what is needed, loads the kernel
-    study(2, 2, 0.01).run(Path(folder) / "a.zarr")
+    st.sweep(study(2, 2, 0.01), Path(folder) / "a.zarr")
 """
 SWEEP = (
     COMMON
@@ -57,7 +57,7 @@ SWEEP = (
 side, cores = int(sys.argv[1]), int(sys.argv[2])
 made = study(side, side, 5.0)
 with tempfile.TemporaryDirectory() as folder:
-    timed(lambda: made.run(Path(folder) / "a.zarr", engine=Cores(cores)))
+    timed(lambda: st.sweep(made, Path(folder) / "a.zarr", engine=Cores(cores)))
 """
 )
 KERNEL = (
@@ -67,21 +67,20 @@ from concurrent.futures import ThreadPoolExecutor
 side, threads = int(sys.argv[1]), int(sys.argv[2])
 made = study(side, side, 5.0)
 asked = []
-solve = observed_run.solve
 
 def note(description, times, progress=None):
     asked.append((description, times))
     raise st.StictionError
 
-observed_run.solve = note
+observed_run.solve_coarsely = note
 for index in ((i, j) for i in range(side) for j in range(side)):
     try:
         observe_run(made.description(index), None)
     except st.StictionError:
         pass
-from stiction.solver.integrate import integrate
+from stiction.simulation import solve_coarsely
 with ThreadPoolExecutor(threads) as pool:
-    timed(lambda: list(pool.map(lambda each: integrate(*each, 10**8, None).code, asked)))
+    timed(lambda: list(pool.map(lambda each: solve_coarsely(*each).code, asked)))
 """
 )
 PLAN = (
@@ -97,7 +96,7 @@ with tempfile.TemporaryDirectory() as folder:
     begin = perf_counter()
     before = 1e-6 * peak()
     try:
-        made.run(path, engine=Threads(1), progress=enough)
+        st.sweep(made, path, engine=Threads(1), progress=enough)
     except KeyboardInterrupt:
         pass
     metadata = sum(file.stat().st_size for file in path.rglob("zarr.json"))
@@ -117,7 +116,7 @@ HEADINGS = (
 NOTES = (
     "Fig. 3's system for 5 s at each point of a grid of phi from 0.5 to 10 deg and V from 0.1 to "
     f"10 mm/s; the best of {ROUNDS}, taken in turn, after a study of four runs. The kernel: "
-    "`integrate` alone, for the same descriptions at the same sample times, made before. A study: "
+    "the solver alone, for the same descriptions at the same sample times, made before. A study: "
     "descriptions, measures, store, on threads, and beside them on processes after two seconds; "
     "their memory is not in the table. The share is that of processor time.",
     "Planned: a store is made for so many runs of 0.1 ms of motion, and 2 s of them done.",
