@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.record import Record
+from stiction.analysis.signals.even_grid import MOST_MISSING, even_grid
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
@@ -22,13 +23,13 @@ from stiction.inference.features import (
 )
 from stiction.recording.sensor import LowPass, white_noise
 from stiction.system.slider import Slider
+from stiction.text.quantity_text import percent
 
 PER_CYCLE = 200  # samples: more are averaged
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
-UNEVEN = 0.01  # of the sample interval, by which intervals may differ
 
 
 class Noise(NamedTuple):
@@ -105,15 +106,20 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     Raises
     ------
     ResultError
-        If it has too few cycles, or is not equally spaced.
+        If it has too few cycles, or its samples leave too large gaps.
     """
+    grid = even_grid(record.time)
+    if grid is None or not grid.serves:
+        raise ResultError(
+            f"{name} has samples too far apart, or too close together, for a fit, which takes an "
+            f"uneven clock and gaps in {percent(MOST_MISSING)} of the time; fit a part without gaps"
+        )
     channels = {
-        each: values for each in USED if (values := getattr(record, each, None)) is not None
+        each: grid.on(values)
+        for each in USED
+        if (values := getattr(record, each, None)) is not None
     }
-    interval = np.diff(record.time)
-    step = float(np.median(interval))
-    if np.abs(interval - step).max() > UNEVEN * step:
-        raise ResultError(f"{name} must be equally spaced for a fit; interpolate it first")
+    step = grid.step
     found = find_cycles(channels["force"])
     count = len(found.peak)
     if count < LEAST_CYCLES:

@@ -95,6 +95,27 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     assert unlike[0].startswith("The records are not like those of the rig as described")
 
 
+def test_a_record_with_lost_samples_is_taken_and_one_with_large_gaps_is_not(rig, record, libraries):
+    """Features change by less than they differ between the rigs of the prior."""
+    plain = observe(record, rig.slider)
+    plan = plan_for(rig, [plain.conditions])
+    spread = build(plan, SIMULATIONS, libraries / f"{plan.key}-0").features.std(axis=0)
+    lost = np.random.default_rng(1).choice(len(record.time), len(record.time) // 30, replace=False)
+    lossy = without(record, lost)
+    seen = observe(lossy, rig.slider)
+    assert seen.conditions.step == pytest.approx(plain.conditions.step, rel=1e-9)
+    assert seen.conditions.cycles == plain.conditions.cycles
+    assert (np.abs(seen.features - plain.features) < spread).all()
+    with pytest.raises(ResultError, match="fit a part without gaps"):
+        observe(without(record, slice(200, 700)), rig.slider)
+
+
+def without(record, lost):
+    """Return a record without some of its samples."""
+    its = {name: np.delete(getattr(record, name), lost) for name in ("time", "force")}
+    return record.model_copy(update=its)
+
+
 def test_the_filters_of_a_sensor_belong_to_the_conditions_of_a_record(rig, record):
     sensor = st.Sensor(filter="20 Hz", bandwidth="1 kHz", noise="4 mN")
     filtered = record.model_copy(update={"sensors": {"force": sensor}})

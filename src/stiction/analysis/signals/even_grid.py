@@ -18,6 +18,7 @@ from stiction.arrays import Floats
 from stiction.text.quantity_text import percent
 
 EVEN = 0.1  # of a step: how far a sample may lie off the grid to count as on it
+OWN = 0.4  # of a step: samples so close to their own times leave none out, which one lies 0.5 off
 GAP = 1.75  # steps between two samples: in a longer interval a sample is missing
 MOST_MISSING = 0.1  # of the grid's points, without a spectrum beyond
 CROWDED = 0.5  # of a step: so close to the sample before, a sample is one too many
@@ -127,6 +128,11 @@ def even_grid(time: Floats) -> EvenGrid | None:
     plain = EvenGrid(time, float(time[0]), float(time[-1] - time[0]) / (n - 1), n)
     if plain.exact:
         return plain
+    number = np.arange(n, dtype=np.float64)
+    step, start = np.polyfit(number, time - time[0], 1)
+    each = EvenGrid(time, float(time[0] + start), float(step), n)
+    if np.abs(each.places - number).max() < OWN:  # a clock that jitters, or times that are rounded
+        return each
     start, step = _fit_grid(time)
     start -= step * np.floor((start - time[0]) / step + 0.5)
     size = int(np.floor((time[-1] - start) / step + 0.5)) + 1

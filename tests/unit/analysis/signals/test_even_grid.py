@@ -119,3 +119,27 @@ def test_a_window_within_a_gap_shows_no_line():
     inside = (found["time"].values > 0.515) & (found["time"].values < 0.545)
     assert np.isnan(found["frequency"].values[inside]).all()
     assert np.isfinite(found["frequency"].values[~inside]).mean() > 0.8
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_times_that_are_rounded_belong_to_an_even_clock(seed):
+    """300 Hz in milliseconds: intervals of 3, 3 and 4 ms, whose median is no step."""
+    random = np.random.default_rng(seed)
+    rate = 10.0 ** random.uniform(0.0, 4.0)
+    resolution = random.uniform(0.01, 0.75) / rate
+    number = np.arange(random.integers(100, 3000))
+    time = resolution * np.round((number / rate + random.uniform(-5.0, 5.0)) / resolution)
+    grid = even_grid(time)
+    assert grid.size == len(time)
+    # a line through errors of half the resolution at most
+    assert abs(grid.step * rate - 1.0) < 2.0 * resolution * rate / len(time)
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_a_missing_sample_is_seen_wherever_it_is(seed):
+    random = np.random.default_rng(seed)
+    size = int(random.integers(100, 3000))
+    left_out = int(random.integers(1, size - 1))
+    grid = even_grid(np.delete(np.arange(size) / 300.0, left_out))
+    assert grid.size == size
+    assert np.flatnonzero(grid.missing).tolist() == [left_out]
