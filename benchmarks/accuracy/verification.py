@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
 
@@ -11,7 +10,6 @@ from rich.progress import Progress
 
 from benchmarks.accuracy import convergence
 from benchmarks.cases import GROUPS
-from benchmarks.cases.case import Case
 from benchmarks.cases.closed_forms import closed_forms
 from benchmarks.section import Cell, Section, Table
 from stiction.presets import Number
@@ -48,16 +46,17 @@ def _all_cases(progress: Progress) -> list[tuple[Cell, ...]]:
     """Return the rows of all cases; nothing is timed, so they run side by side."""
     task = progress.add_task("verification", total=len(GROUPS))
     with ProcessPoolExecutor(os.cpu_count(), mp_context=get_context("spawn")) as pool:
-        running = [pool.submit(_rows, group) for group in GROUPS]
+        running = [pool.submit(_rows, number) for number in range(len(GROUPS))]
         for each in as_completed(running):
             each.result()
             progress.advance(task)
     return [row for each in running for row in each.result()]
 
 
-def _rows(group: Sequence[Case]) -> list[tuple[Cell, ...]]:
+def _rows(number: int) -> list[tuple[Cell, ...]]:
+    """Return the rows of a group of cases, which another process finds by its number."""
     rows: list[tuple[Cell, ...]] = []
-    for case in group:
+    for case in GROUPS[number]:
         for numbers in zip(*(case.numbers(rtol) for rtol in TOLERANCES), strict=True):
             n = numbers[0]
             errors = [number.deviation for number in numbers]
