@@ -76,8 +76,8 @@ def laws(law: Any, jitter: Jitter, random: np.random.Generator) -> Iterator[Any]
         factors = np.exp(
             jitter.spread * (share * common + rest * np.array(own)) + number * jitter.drift
         )
-        its = {name: getattr(law, name) * f for name, f in zip(names, factors, strict=True)}
-        yield law._replace(**its)
+        pairs = zip(names, factors.tolist(), strict=True)  # NumPy's numbers take Python longer
+        yield law._replace(**{name: getattr(law, name) * factor for name, factor in pairs})
 
 
 def coefficients(law: Any) -> list[str]:
