@@ -183,6 +183,18 @@ def test_a_fitted_friction_below_the_largest_force_is_doubted(found) -> None:
     assert "too small: the force itself reaches 1.99" in "\n".join(creep.section(small).sentences)
 
 
+def test_no_sentence_counts_with_a_wild_sample(found) -> None:
+    wild = found.record.model_copy(update={"force": found.record.force.copy()})
+    wild.force[30_000] = 99.9
+    small = found._replace(record=wild, misalignment=found.misalignment._replace(F_0=1.9))
+    assert "too small: the force itself reaches 1.99" in "\n".join(creep.section(small).sentences)
+    time = np.arange(0.0, 20.0, 1e-3)
+    spiked = 0.4 + 0.1 * (time % 2.0)
+    spiked[7000] = 99.9
+    shown = st.analyse(st.Record(time=time, force=spiked)).parts["metadata"]
+    assert "zero" not in [each.quantity for each in shown]  # it begins at two thirds of its force
+
+
 def test_an_aligned_run_implies_no_misalignment(slider: st.Slider) -> None:
     found = st.analyse(st.simulate(slider.replace(phi="0 deg"), 5.0, sample_rate=10e3))
     assert (found.divergence, found.misalignment) == (None, None)

@@ -15,6 +15,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import Line, of_mains
+from stiction.analysis.signals.robust import largest_magnitude
 from stiction.arrays import xr
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -374,7 +375,7 @@ def _is_about_zero(friction: Friction, cycles: xr.Dataset) -> bool:
 
 def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
     """Doubt the zero if a record begins unloaded, or reaches impossible values."""
-    largest = float(np.abs(record.force).max(initial=0.0))
+    largest = largest_magnitude(record.force)
     if friction.kinetic is not None and _is_about_zero(friction, cycles):
         yield (
             f"The mean friction is about zero, {in_words(friction.kinetic.force, 'N')}: the zero "

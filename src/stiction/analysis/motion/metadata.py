@@ -10,7 +10,7 @@ import numpy as np
 from stiction.analysis.motion.drift import find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import trimmed_mean
+from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
 from stiction.arrays import Floats, xr
 
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
@@ -178,7 +178,7 @@ def _zero(record: Record) -> StatedQuantity | None:
     some = record.force[: max(8, len(record) // 400)]
     if not len(some) or len(record) < 4 * len(some):
         return None
-    largest = float(np.abs(record.force).max(initial=0.0))
+    largest = largest_magnitude(record.force)
     read, spread = float(np.median(some)), float(np.std(some))
     if not abs(read) < AT_REST * largest or spread > AT_REST * largest:
         return None

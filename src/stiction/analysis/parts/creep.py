@@ -10,6 +10,7 @@ import numpy as np
 from stiction.analysis.creep.findings import RESTS, drive_speed
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import SLIGHT, number
+from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import xr
 from stiction.friction import states
 from stiction.text.sections import Section
@@ -27,7 +28,7 @@ SURE = 2.0  # standard errors that a fit must be away from nothing
 
 def _below_peak(found: Analysis, its: Misalignment) -> str:
     """Return a doubt on F_0 where the spring force exceeds it, which no rotation allows."""
-    peak = float(found.record.force.max())
+    peak = float(without_outliers(found.record.force).max())
     if peak <= its.F_0 + SURE * its.F_0_error:
         return ""
     return (

@@ -84,6 +84,11 @@ def without_outliers(values: Floats) -> Floats:
     return kept
 
 
+def largest_magnitude(values: Floats) -> float:
+    """Return the largest magnitude of some values, in their unit, wild samples left out."""
+    return float(np.abs(without_outliers(values)).max(initial=0.0))
+
+
 def _outliers(values: Floats) -> NDArray[np.bool_]:
     """Return a mask of the samples in groups that jump off and back."""
     found, steps = np.zeros(len(values), bool), np.abs(np.diff(values))

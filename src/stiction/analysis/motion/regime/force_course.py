@@ -21,6 +21,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import beat_frequency, narrow_lines, of_mains
+from stiction.analysis.signals.robust import largest_magnitude
 from stiction.analysis.signals.turning_points import CLEAR
 
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
@@ -81,7 +82,7 @@ def by_course(record: Record, found: Swings) -> Regime:
     loading = way.late_rate / drive if drive else kept
     if loading >= LOADING:
         sure = way.one_way * min(loading, 1.0) * (1.0 - vibrates)
-        if not drive and abs(record.force[0]) > UNLOADED * float(np.abs(record.force).max()):
+        if not drive and abs(record.force[0]) > UNLOADED * largest_magnitude(record.force):
             return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
         return Regime(STUCK, sure, evidence)
     return Regime(UNDETERMINED, 0.0, evidence)
