@@ -16,6 +16,7 @@ from stiction.trajectory import Trajectory
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
 LAG = 8  # samples, for the noise; successive samples of a load cell are correlated
 FEWEST = 4  # samples in a bin of a run
+OF_RECORD = 4.5  # intervals: so many hold four samples, two in each half, wherever they begin
 AIM = 0.1  # of the drive velocity: error of the mean curve in its narrowest bins
 
 # name: (unit, long name), as CF attributes
@@ -53,7 +54,7 @@ def creep_curves(
         With ``start`` and ``peak_time`` (s) over ``cycle``, from `stiction.analysis.find_cycles`.
     width : float, optional
         Width of the narrowest bin, s. By default a hundredth of the median stick phase, and at
-        least four samples of a run; in a noisy record wide enough to determine the mean of all
+        least four samples; in a noisy record wide enough to determine the mean of all
         phases to a tenth of the drive velocity. Two periods of mains hum remove it, because each
         half of a bin then averages over one period.
 
@@ -178,8 +179,10 @@ def _grain(record: Record, position: Floats) -> float:
 def _least_width(record: Record, position: Floats, length: Floats, exact: bool) -> float:
     """Return the narrowest width (s) of bins that the noise allows, given the number of phases."""
     fine = float(np.median(length)) / FINEST if len(length) else 1.0
-    if exact:  # the motion between two samples is not known
-        return max(fine, FEWEST / record.sample_rate) if len(record) > 1 else fine
+    if len(record) > 1:  # the motion between two samples is not known
+        fine = max(fine, (FEWEST if exact else OF_RECORD) / record.sample_rate)
+    if exact:
+        return fine
     if not len(length) or record.drive_velocity is None or len(record) <= 2 * LAG + 1:
         return fine
     bent = position[: -2 * LAG] - 2.0 * position[LAG:-LAG] + position[2 * LAG :]

@@ -47,7 +47,8 @@ def section(found: Analysis) -> Section:
     long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
     V = drive_speed(found.source, found.record) or 0.0
     first, last = _creeping(far, V), _creeping(near, V)
-    several = f" {_phases(*map(int, counts[[usual, 0]]))}" if counts[0] > 1 else ""
+    number = counts[0] if found.curves is None else found.curves.sizes["phase"]
+    several = f" {_phases(*map(int, (*counts[[usual, 0]], number)))}" if counts[0] > 1 else ""
     lines = [f"{long} before {_end(found)} {first}; in the last {short} {last}.{several}"]
     if first == last == RESTING and found.regime.kind == STUCK:
         return Section("Creep", ["None: it rests from beginning to end."])
@@ -93,13 +94,16 @@ def _end(found: Analysis) -> str:
     return "slip"
 
 
-def _phases(far: int, near: int) -> str:
-    """Return over how many stick phases two means are, in words."""
+def _phases(far: int, near: int, number: int) -> str:
+    """Return over how many of a number of stick phases two means are, in words."""
     if far == near:
         return f"These are means over {near} stick phases."
+    every = f"all {near}" if near == number else f"{near} of {number}"
     if far == 1:
-        return f"The first is of the one stick phase so long, the second a mean over all {near}."
-    return f"These are means over the {far} stick phases that are so long, and over all {near}."
+        return f"The first is of the one stick phase so long, the second a mean over {every}."
+    if far > near:
+        return f"These are means over {far} and {near} of {number} stick phases."
+    return f"These are means over the {far} stick phases that are so long, and over {every}."
 
 
 def _creeping(row: xr.Dataset, V: float) -> str:

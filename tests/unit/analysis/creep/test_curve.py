@@ -315,6 +315,16 @@ def test_one_phase_is_no_mean():
     assert "The first is of the one stick phase so long, the second a mean over all 2." in said
 
 
+def test_every_stick_phase_has_samples_in_the_bin_at_slip():
+    """A hundredth of 160 ms, at 2 kHz, has three samples, or four: 33 of 57 phases counted."""
+    time = 5e-4 * np.arange(20_000)
+    phase = time % 0.1703
+    force = np.where(phase < 0.16, phase, 15.5 * (0.1703 - phase))
+    record = st.Record(time=time, force=1.0 + force, stiffness=1e3, drive_velocity=1e-3)
+    found = st.analyse(record)
+    assert found.creep["phases"][0] == found.cycles.sizes["cycle"] == 57
+
+
 def test_the_slip_before_a_stick_phase_is_no_creep():
     """Without a rest, as with rate and state, the mean about a bin's end would reach into it."""
     time = np.arange(0.0, 6.0, 1e-3)
