@@ -67,7 +67,9 @@ def find_creep(
         by_force = attempt(missing, "misalignment", lambda: misalignment_from_force(record, cycles))
     known = calibrate(record, cycles, by_force)
     curves = attempt(missing, "creep", lambda: creep_curves(run or known, cycles, width))
-    mean = attempt(missing, "creep", lambda: _mean(curves, known)) if curves is not None else None
+    mean = None
+    if curves is not None:
+        mean = attempt(missing, "creep", lambda: _mean(curves, known, record))
     if run is not None and run.slider.misalignment == 0.0:
         return CreepFound(curves, mean, None, None, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
@@ -115,16 +117,22 @@ def calibrate(record: Record, cycles: xr.Dataset, found: Misalignment | None = N
     return record.model_copy(update={"stiffness": float(np.median(shown))})
 
 
-def _mean(curves: xr.Dataset, record: Record) -> xr.Dataset:
-    """Return the mean creep curve, if it does not go backwards."""
+def _mean(curves: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
+    """Return the mean creep curve, if it does not go backwards.
+
+    Counted from the loading (`calibrate`), creep that is slower there than on average is negative.
+    It is backward if it is negative with the stiffness as stated, too.
+    """
     if not np.isfinite(curves["velocity"].values).any():
         if not curves.sizes["phase"]:
             raise ResultError("no stick phase ends in a slip")
         raise ResultError("no stick phase has enough samples")
     mean = mean_creep(curves)
     velocity, error = (mean[name].values for name in ("velocity", "velocity_error"))
-    least = BACKWARD * (record.drive_velocity or 0.0)
-    backward = np.mean(velocity < -SURE * np.nan_to_num(error) - least)
+    V = record.drive_velocity or 0.0
+    ratio = (record.stiffness or 1.0) / (stated.stiffness or record.stiffness or 1.0)
+    most = np.fmax(velocity, V - ratio * (V - velocity))
+    backward = np.mean(most < -SURE * np.nan_to_num(error) - BACKWARD * V)
     if backward > SOME and record.position is None:
         raise ResultError(
             "not determined: the mass would creep against the drive; stiffness and drive velocity "

@@ -40,7 +40,9 @@ def _below_peak(found: Analysis, its: Misalignment) -> str:
 def section(found: Analysis) -> Section:
     """Return the section on creep before slip."""
     if found.creep is None:
-        return Section("Creep", [f"Not seen: {found.missing['creep']}."])
+        why = found.missing["creep"]
+        said = why if why.startswith("not determined") else f"not seen: {why}"
+        return Section("Creep", [f"{said[0].upper()}{said[1:]}."])
     counts = found.creep["phases"].values
     usual = int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
     far, near = (found.creep.isel(bin=at) for at in (usual, 0))

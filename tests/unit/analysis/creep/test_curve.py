@@ -325,6 +325,19 @@ def test_every_stick_phase_has_samples_in_the_bin_at_slip():
     assert found.creep["phases"][0] == found.cycles.sizes["cycle"] == 57
 
 
+def test_creep_that_begins_late_is_not_backward():
+    """Counted from the mean of the first half of a rise, creep is negative before it begins."""
+    time = np.arange(3000) / 40.0
+    phase = time % 1.017
+    creep = 0.1 * np.maximum(phase - 0.3, 0.0)
+    force = np.where(phase < 0.8, phase - creep, 0.75 / 0.217 * (1.017 - phase))
+    known = {"time": time, "force": 1.0 + force, "drive_velocity": 1e-3}
+    found = st.analyse(st.Record(**known, stiffness=1e3))
+    assert found.creep is not None
+    said = str(st.analyse(st.Record(**known, stiffness=930.0)))
+    assert "Not determined: the mass would creep against the drive" in said
+
+
 def test_the_slip_before_a_stick_phase_is_no_creep():
     """Without a rest, as with rate and state, the mean about a bin's end would reach into it."""
     time = np.arange(0.0, 6.0, 1e-3)
