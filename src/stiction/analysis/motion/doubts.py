@@ -309,9 +309,9 @@ def _mass(its: StatedQuantity | None, kind: str) -> Iterator[str]:
     """Doubt k/m if the period of a swing, or the duration of a slip, contradicts it."""
     if its is None:
         return
-    what, lasts = ("swings", 2.0) if kind == HARMONIC else ("slips", 1.0)
+    lasts = 2.0 if kind == HARMONIC else 1.0
     yield (
-        f"By the time of its {what} ({in_words(lasts * pi / its.found**0.5, 's')}) "
+        f"By the {its.how} ({in_words(lasts * pi / its.found**0.5, 's')}), "
         f"stiffness over mass is {its.ratio:.2g} times {its.stated:.3g} 1/s², as stated: "
         f"{_remedy_of_mass(its.ratio)}."
     )

@@ -16,6 +16,7 @@ from stiction.arrays import Floats, xr
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
 LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
 SLOW_SLIP = 0.1
+RESTED = 1.1  # times two falls: rest makes a period longer; less may be another asymmetry
 PARTS = 200  # of a record, for the speed of a drive that may turn
 TO_AND_FRO = 0.5  # of its reach: a drive that comes less far on the whole turns
 NOISE = 20.0  # standard deviations, by which means of the displacement do not differ
@@ -92,17 +93,21 @@ def _loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuanti
 def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
     """Compare k/m by the period of a swing, or the duration of a slip, with that stated.
 
-    A mass on its spring swings with the period T = 2 pi (m/k)^1/2; a slip under constant friction
-    takes half of it, and one under friction that weakens takes longer.
+    A mass on its spring swings with the period T = 2 pi (m/k)^1/2. One that rests in each cycle has
+    a longer period, but its force falls for T/2 (`stiction.analysis.motion.rest.rest_share`). A
+    slip under constant friction takes T/2 too, and one under friction that weakens takes longer.
     """
     if not cycles.sizes["cycle"] or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
     falls = cycles["trough_time"].values - cycles["peak_time"].values
     if float(np.median(falls)) * record.sample_rate < FEW:
         return None
-    swings = cycles["period"].values if kind == HARMONIC else 2.0 * falls
+    periods, how = cycles["period"].values, BY_SLIPS
+    rests = float(np.median(periods)) > RESTED * 2.0 * float(np.median(falls))
+    swings = periods if kind == HARMONIC and not rests else 2.0 * falls
+    if kind == HARMONIC:
+        how = f"period of its swings{' less the rest' if rests else ''}"
     swing = float(np.median(swings))
-    how = "period of its swings" if kind == HARMONIC else BY_SLIPS
     lowest = HEAVIER if kind == HARMONIC else SLOW_SLIP
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)

@@ -76,6 +76,21 @@ def test_a_wrong_description_is_contradicted(wrong, quantity, ratio):
     assert "contradicts" in said
 
 
+def test_the_rest_in_a_vibration_is_not_taken_for_a_heavier_mass():
+    """A mass on a spring that rests for 40 % of each cycle: its period is 1.2 times its own."""
+    law = st.laws.HyperbolicWeakening(mu_0=0.4, v_h="0.1 m/s", mu_inf=0.2)
+    rig = {"mass": 1.0, "k_x": 1e4, "k_y": 1e8, "phi": "0 deg", "normal_load": 50.0}
+    slider = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("50 mm/s"))
+    run = st.simulate(slider, "4 s", sample_rate="2 kHz")
+    force = run.samples["spring_x"]
+    known = {"stiffness": 1e4, "mass": 1.0, "drive_velocity": 0.05, "normal_load": 50.0}
+    found = st.analyse(st.Record(time=run.samples["time"], force=force, **known))
+    assert found.regime.kind == "harmonic vibration"
+    swing = next(each for each in found.parts["metadata"] if each.quantity == "stiffness over mass")
+    assert swing.ratio == pytest.approx(1.0, abs=0.05)
+    assert not any("check mass" in warning for warning in found.warnings)
+
+
 def test_the_drive_and_the_load_are_compared_with_their_channels():
     noise = 1e-6 * np.random.default_rng(2).standard_normal(len(TIME))
     its, said = compare(
