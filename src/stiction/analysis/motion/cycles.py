@@ -189,7 +189,7 @@ def _without_line(record: Record, grid: EvenGrid, found: Swings) -> tuple[Record
             continue  # what is left of a line
         rest, without = swings_without(line, record)
         without = without._replace(lines=(*found.lines, line))
-        if is_beside(line, without.table):
+        if is_beside(line, without.table, record):
             number = line.frequency * without.table.median("period")
             count, left = len(found.table), len(without.table)
             own = left < 2 * count <= 2 * left + 2 or is_subharmonic(line, without.table)

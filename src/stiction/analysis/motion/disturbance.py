@@ -6,7 +6,9 @@ import numpy as np
 
 from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.regime.kinds import COUPLED, OWN, irregularity
 from stiction.analysis.motion.rest import STICKING, rest_share
+from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import part_means, part_starts
@@ -31,16 +33,30 @@ RESIDUE = 0.05  # of a line's height: so much of it may be left where it was sub
 AS_LARGE = 0.6  # the smaller amplitude over the larger one, while it is loaded and afterwards
 
 
-def is_beside(line: Line, table: CycleTable) -> bool:
+def is_beside(line: Line, table: CycleTable, record: Record) -> bool:
     """Return whether a line is a disturbance of the motion, by the swings without it.
 
     Then they are slower and larger; or they stick, at any size of the line, because a sticking mass
-    does not vibrate.
+    does not vibrate. Larger swings that do not stick are a motion beside the line if they are
+    regular, as friction that wanders is not, and the line is not the mass's own on its spring. A
+    line of the mains needs neither.
     """
     period, drop, rise = (table[name] for name in ("period", "drop", "rise_share"))
     motion = (drop > HIGHER * line.height) | (rest_share(rise) >= STICKING)
     aside = (period * line.frequency > SLOWER) & motion
-    return len(aside) >= 2 and bool(np.median(aside) == 1.0)
+    if len(aside) < 2 or np.median(aside) < 1.0:
+        return False
+    if of_mains(line.frequency) or _sticks(table):
+        return True
+    return not _is_own(line, record) and irregularity(period, drop) <= 0.5
+
+
+def _is_own(line: Line, record: Record) -> bool:
+    """Return whether a line is as quick as the mass on its spring, where both are stated."""
+    if record.mass is None or record.stiffness is None:
+        return False
+    own = 2.0 * np.pi * (record.mass / record.stiffness) ** 0.5
+    return bool(COUPLED <= 1.0 / (line.frequency * own) <= OWN)
 
 
 def is_subharmonic(line: Line, table: CycleTable) -> bool:

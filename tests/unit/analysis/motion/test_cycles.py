@@ -333,6 +333,20 @@ def test_a_vibration_is_not_taken_for_hum() -> None:
     assert abs(st.analysis.find_cycles(record).sizes["cycle"] - 999) <= 1
 
 
+@pytest.mark.parametrize("slow", ["friction that wanders", "a disc that turns askew"])
+def test_a_vibration_beside_a_larger_slow_change_is_no_disturbance(slow: str) -> None:
+    """On a disc it is told from one by mass and stiffness: their own frequency is 31.8 Hz."""
+    time, random = np.arange(20_000) * 1e-3, np.random.default_rng(1)
+    known = {} if slow.startswith("friction") else {"mass": 50.0, "stiffness": 2e6}
+    wanders = np.interp(time, 0.5 * np.arange(42), 8.0 * random.normal(size=42))
+    change = 15.0 * np.sin(2 * pi * 0.97 * time) if known else wanders
+    vibration = 12.0 * np.sin(2 * pi * 32.4 * time) + 2.0 * random.normal(size=len(time))
+    found = st.analyse(st.Record(time=time, force=1500.0 + change + vibration, **known))
+    assert found.regime.kind == "harmonic vibration"
+    assert abs(found.cycles.sizes["cycle"] - 647) <= 1
+    assert found.warnings == ()
+
+
 @pytest.mark.parametrize("samples", [4.0, 4.4, 5.0, 6.3, 7.0])
 def test_few_samples_a_cycle_are_enough(samples: float) -> None:
     time = np.arange(int(61.5 * samples)) * 1e-2

@@ -14,6 +14,7 @@ from stiction.analysis.motion.regime.kinds import (
     COUPLED,
     HARMONIC,
     IRREGULAR,
+    OWN,
     SETTLING,
     STEADY,
     TRANSITIONAL,
@@ -26,7 +27,6 @@ from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_pe
 from stiction.trajectory import Trajectory
 
 FEWEST = 3.5  # samples a cycle: below it is not known, nor what it is
-OWN = 1.2  # times that period: up to there a vibration is that of the mass on its spring
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
 MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it

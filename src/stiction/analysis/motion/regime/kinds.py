@@ -29,6 +29,7 @@ BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rise
 # transverse spring swing as well, as friction that turns couples them. On one spring friction only
 # prolongs it
 COUPLED = 0.9
+OWN = 1.2  # times that period: up to there a vibration is that of the mass on its spring
 # A vibration is irregular beyond either: the standard deviation of the periods over their mean,
 # which noise through a wide filter brings to 0.37 and more; and the span of the drops over their
 # median, a tenth left out at each end. Noise through any filter has 1.4 of it, as amplitudes of
