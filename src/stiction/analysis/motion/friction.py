@@ -27,6 +27,7 @@ from stiction.arrays import Floats, xr
 from stiction.text.quantity_text import percent
 
 PARTS = 400  # number of means of a record in which its break-away is sought
+LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading is not resolved
 FEWEST = 32  # least number of samples
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
@@ -100,13 +101,11 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     if len(record) < FEWEST:
         few = f"of the {FEWEST} samples that are needed the record has {len(record)}"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
-    forces, times, noise = _means(record)
-    at, reason = _first_peak(forces, noise)
-    break_away = None
-    if at is None:
+    forces, times, noise = _means(record.force, record.time)
+    at, _ = _first_peak(forces, noise)
+    break_away, reason = _find_break_away(record, cycles, relative)
+    if break_away is None:
         missing["break_away"] = reason
-    else:
-        break_away = _break_away(record, forces, at, noise, relative)
     count, peak, trough = len(cycles), cycles["peak"], cycles["trough"]
     load_at_peak, load_at_trough = (
         np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
@@ -139,11 +138,27 @@ def without_loading(regime: Regime) -> str:
     return f"this is {regime.kind}"
 
 
-def _means(record: Record) -> tuple[Floats, Floats, float]:
-    """Return means over equal parts of a record, their times, and the noise of each (N)."""
-    forces, times = (part_means(x, PARTS) for x in (without_spikes(record.force), record.time))
-    bent = np.diff(record.force, 2)
-    size = float(np.median(np.diff(part_starts(len(record), PARTS), append=len(record))))
+def _find_break_away(
+    record: Record, cycles: CycleTable, relative: Floats
+) -> tuple[Measured | None, str]:
+    """Find the break-away, in so much of a record as resolves its first loading; or the reason."""
+    end = len(record)
+    if len(cycles):
+        before, first = np.searchsorted(record.time, [cycles["start"][0], cycles["trough_time"][0]])
+        end = min(end, max(FEWEST, int(first) + 1, PARTS // LOADING * int(before)))
+    force, load = record.force[:end], record.normal_load or np.nan
+    forces, _, noise = _means(force, record.time[:end])
+    at, reason = _first_peak(forces, noise)
+    if at is None:
+        return None, reason
+    return _break_away(force, forces, at, noise, load * relative), ""
+
+
+def _means(force: Floats, time: Floats) -> tuple[Floats, Floats, float]:
+    """Return means over equal parts of a force, their times, and the noise of each (N)."""
+    forces, times = (part_means(x, PARTS) for x in (without_spikes(force), time))
+    bent = np.diff(force, 2)
+    size = float(np.median(np.diff(part_starts(len(force), PARTS), append=len(force))))
     noise = float(np.median(np.abs(bent))) / 0.6745 / 6.0**0.5 / size**0.5
     return forces, times, noise
 
@@ -177,21 +192,19 @@ def _is_within(forces: Floats) -> bool:
     return bool(rise[np.argmax(rise > 0.5 * rise.max()) :].min() <= 0.0)
 
 
-def _break_away(
-    record: Record, forces: Floats, at: int, noise: float, relative: Floats
-) -> Measured:
+def _break_away(force: Floats, forces: Floats, at: int, noise: float, load: Floats) -> Measured:
     """Return the largest force near a maximum, averaged as much as the noise requires."""
-    size, first = -(-len(record) // len(forces)), at * len(record) // len(forces)
+    size, first = -(-len(force) // len(forces)), at * len(force) // len(forces)
     begin = max(0, first - 2 * size)
-    near = without_spikes(record.force)[begin : first + 3 * size]
+    near = without_spikes(force)[begin : first + 3 * size]
     rough = noise * size**0.5  # of a sample
     wanted = (rough / max(SHARP * float(np.ptp(forces)), 1e-300)) ** 2
     width = int(min(max(wanted, 1.0), size))
     smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
     error = float(np.hypot(rough / width**0.5, _peak_excess(smooth, width)))
-    force, load = float(smooth.max()), record.normal_load or np.nan
-    under = float(relative[begin + int(np.argmax(smooth)) + width // 2])
-    return Measured(force, error, np.nan, force / under / load, error / under / load)
+    largest = float(smooth.max())
+    under = float(load[begin + int(np.argmax(smooth)) + width // 2])
+    return Measured(largest, error, np.nan, largest / under, error / under)
 
 
 def _peak_excess(values: Floats, step: int) -> float:

@@ -61,3 +61,15 @@ def test_a_run_is_under_the_load_of_its_program(slider):
     load = np.interp(cycles["peak_time"], run.data["time"], run.data["normal_load"])
     assert np.ptp(load) > 3.0
     assert cycles["mu_static"].values == pytest.approx(cycles["peak"].values / load, rel=1e-6)
+
+
+@pytest.mark.parametrize("cycles", [50, 1000])
+def test_a_short_first_loading_is_seen_in_a_long_record(cycles):
+    """It took less than one of the 400 means, and the record seemed to begin loaded."""
+    time = np.arange(0.0, 1.0 + 0.05 * cycles, 2e-3)
+    saw = 1.7 + 0.3 * ((time - 0.17) % 0.05) / 0.05
+    force = np.where(time < 0.2, 10.0 * time, saw)
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(len(time))
+    friction = st.analyse(st.Record(time=time, force=force + noise, normal_load=10.0)).friction
+    assert friction.break_away.force == pytest.approx(2.0, abs=0.02)
+    assert friction.break_away.coefficient == pytest.approx(0.2, abs=0.002)
