@@ -32,6 +32,9 @@ FLAT = 4  # times as many samples at the largest value as at any other, and so m
 ENOUGH_VALUES = 16  # that are all repeated as often
 TIMES = 3  # that a force stays at its least value: at rest it does so once
 QUIET_SHARE = 0.15  # of the record
+# A cycle in which the drive may have paused: over the median period, and over the span of periods,
+# a tenth left out at each end; of measured stick-slip without a pause it comes to 1.4 spans
+PAUSED, BEYOND, FEWEST_CYCLES = 3.0, 5.0, 10
 VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 # By which power of 1000 the rate of a force is off in another unit: quantity, unit, remedy
@@ -66,6 +69,7 @@ def warnings(
         *_implausible_friction(record, friction, cycles),
         *_doubt_clipping(record),
         *_doubt_mean_period(cycles),
+        *_doubt_longest_cycle(cycles),
         *_doubt_quiet(record, friction, cycles),
         *_loading_too_fast(wrong.get(LOADING_RATE)),
         *_mass(wrong.get(SWING), kind),
@@ -244,6 +248,23 @@ def _doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
     yield (
         f"From {at} on the cycles take {second}, before {first}: if the drive or the load changed "
         "there, analyse the two parts by themselves; means over both mean little."
+    )
+
+
+def _doubt_longest_cycle(cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt means over cycles of which one takes far longer than the others, as in a pause."""
+    period = cycles["period"].values
+    if len(period) < FEWEST_CYCLES:
+        return
+    low, middle, high = np.percentile(period, (10.0, 50.0, 90.0))
+    longest = float(period.max())
+    if longest < PAUSED * middle or longest - middle < BEYOND * (high - low):
+        return
+    at = in_words(float(cycles["start"].values[period.argmax()]), "s")
+    yield (
+        f"The cycle from {at} on takes {in_words(longest, 's')}, {longest / middle:.2g} times the "
+        f"median, {in_words(float(middle), 's')}: if the drive paused, analyse the parts before "
+        "and after by themselves; means over all cycles, such as of period and creep, mean little."
     )
 
 
