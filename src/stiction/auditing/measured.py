@@ -247,17 +247,16 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
     if not found.like:
         lines.append(
             "Look at drift and hum, which are not simulated, and at filters that no sensor states; "
-            "at the stated stiffness, mass, load and velocity (stiction analyse); at the law of "
-            "friction; and whether the priors are too narrow."
+            "at the zero of the force, and the stated stiffness, mass, load and velocity (stiction "
+            "analyse); at the law of friction; and whether the priors are too narrow."
         )
     if found.absent:
         listed = " and ".join(NAMES.get(name, name) for name in found.absent)
         lines.append(f"Measuring the {listed} too would tell more of the misalignment.")
-    open_ones = [x.name for x in fit.estimates if not x.identified]
-    if open_ones:
+    if fit.unidentified:
         lines.append(
-            f"Not identifiable from this record: {', '.join(open_ones)}. Where the prior of one "
-            "of these is wrong, the verdict is."
+            f"Not identifiable from this record: {', '.join(fit.unidentified)}. Where the "
+            "prior of one of these is wrong, the verdict is."
         )
     if found.odds is None:
         lines.append(f"Other mechanisms were not compared: {found.incomparable}.")

@@ -130,18 +130,16 @@ class Fit:
     def tables(self) -> list[Section]:
         """Return the report: what is known, and what the records do not say."""
         known = [x for x in self.estimates if x.identified]
-        others = [x for x in self.estimates if not x.identified]
         sentences = self.doubts
         sentences += [
             f"{x.name} is {in_words(x.median, x.unit)}, 95 % interval {in_words(x.low, x.unit)} to "
             f"{in_words(x.high, x.unit)}."
             for x in known
         ]
-        if others:
-            names = ", ".join(x.name for x in others)
+        if self.unidentified:
             sentences.append(
-                f"Not identifiable from these records: {names}. Their posterior is more than "
-                f"{percent(NARROWER)} as wide as their prior."
+                f"Not identifiable from these records: {', '.join(self.unidentified)}. Their "
+                f"posterior is more than {percent(NARROWER)} as wide as their prior."
             )
         if "phi" in self.plan.priors and self.sign_unseen:
             sentences.append(
@@ -152,7 +150,7 @@ class Fit:
             "Experimental: the coverage is how many of such 95 % intervals hold the truth of "
             "simulated records left out, which says nothing of what the simulations leave out."
         )
-        rows = [row(x) for x in self.estimates]
+        rows = [row(x, x.name in self.unidentified) for x in self.estimates]
         headings = ("parameter", "posterior", "95 %", "prior", "95 %", "width", "coverage")
         return [Section("Fit", sentences, Table(headings, rows))]
 
@@ -162,6 +160,11 @@ class Fit:
         middles = np.median(self.scores, axis=0)
         pairs = zip(self.estimates, middles, strict=True)
         return [each.name for each, middle in pairs if abs(middle) > TAIL]
+
+    @property
+    def unidentified(self) -> list[str]:
+        """The parameters of which the records say no more than the prior, nor point beyond it."""
+        return [x.name for x in self.estimates if not x.identified and x.name not in self.beyond]
 
     @property
     def doubts(self) -> list[str]:
@@ -250,9 +253,9 @@ def words(x: Estimate) -> str:
     return f"{in_words(x.median, x.unit)} ({in_words(x.low, x.unit)} to {in_words(x.high, x.unit)})"
 
 
-def row(x: Estimate) -> tuple[str, ...]:
+def row(x: Estimate, unidentified: bool) -> tuple[str, ...]:
     """Return a row of the report."""
-    after = in_words(x.median, x.unit) if x.identified else "not identifiable"
+    after = "not identifiable" if unidentified else in_words(x.median, x.unit)
     between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
     before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
     shares = percent(x.narrower), percent(x.coverage)

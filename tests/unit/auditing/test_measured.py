@@ -90,6 +90,10 @@ def test_a_posterior_in_the_tail_of_its_prior_is_named(found):
     assert not tail.like
     assert tail.fit.beyond == [each.name for each in fit.estimates]
     assert "At an end of its prior" in str(tail.fit.tables()[0])
+    wide = tuple(each._replace(narrower=1.47) for each in fit.estimates)  # as normal scores
+    said = str(replace(tail.fit, estimates=wide).tables()[0])
+    assert "At an end of its prior" in said
+    assert "ot identifiable" not in said  # the record points beyond the prior: it says something
 
 
 def test_the_verdict_says_what_other_mechanisms_leave_open(found):

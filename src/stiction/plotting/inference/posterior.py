@@ -50,7 +50,8 @@ def plot_posterior(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.o
     with style():
         panels = panels_of(axes, len(names), 1.5)
         for ax, name, estimate in zip(panels, names, fit.estimates, strict=True):
-            draw_parameter(ax, fit.data[name], fit.prior[name], estimate.identified)
+            said = estimate.name not in fit.unidentified
+            draw_parameter(ax, fit.data[name], fit.prior[name], said)
         panels[0].legend(loc="upper right", handlelength=1.0)
     return np.array(panels, dtype=object)
 
