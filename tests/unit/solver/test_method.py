@@ -24,10 +24,10 @@ import stiction as st
 import stiction.solver
 from stiction.solver.compilation.jit import call_compiled
 from stiction.solver.exact.loop import steps
+from stiction.solver.exact.method import Exact
 from stiction.solver.exact.pursuit import slip_before_landing
 from stiction.solver.exact.record import record_of
 from stiction.solver.integrate import accuracy, scales_of, tolerance
-from stiction.solver.law import point_to
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
 from stiction.solver.regularised import (
     Smoothed,
@@ -111,12 +111,12 @@ def problem_of(slider, rtol=1e-6):
     return stretch.problem, held._replace(newton=NEWTON)
 
 
-def turn(problem, held, state, times=()):
+def turn(name, problem, held, state, times=()):
     """Let the loop turn once; return the state and the samples."""
     times, sticks = np.array(times, dtype=float), np.zeros((8, 2))
     samples = np.full((len(times), 7), np.nan)
     state = state._replace(counts=state.counts._replace(sticks=0, stuck=0.0))
-    problem = problem._replace(law=point_to(problem.law))
+    problem = Exact(SLIDERS[name]).point_law(problem)
     arguments = problem, state, 1e9, held, 1, times, samples, 0, sticks, record_of(0)
     _, after, _, _ = call_compiled(steps, kinds_of(problem), *arguments)
     return state_from_plain(after), samples
@@ -146,7 +146,7 @@ def walk(name):
         before = state.motion
         if before.r == 0.0:
             before = end_of_stick(SLIDERS[name], before)
-        after, _ = turn(problem, held, state)
+        after, _ = turn(name, problem, held, state)
         m = after.memory
         if after.counts.steps > state.counts.steps:
             error = m.ease**-4 - 1e-10 if m.ease < 3.0 else 0.0
@@ -289,7 +289,7 @@ def test_the_branch_of_a_take_off(name):
     off = []
     for h in (1e-7, 1e-8):
         memory = first.state.memory._replace(plan=(h, *first.state.memory.plan[1:]))
-        after, _ = turn(problem, held, first.state._replace(memory=memory))
+        after, _ = turn(name, problem, held, first.state._replace(memory=memory))
         assert after.memory.h_last == h
         p, w = after.memory.p[3], after.memory.w[3]
         along = excess * h + (da_1 - (c_11 + slope) * excess) * h * h / 2
@@ -512,7 +512,7 @@ def test_a_sample_is_the_end_of_a_shorter_step(name):
         )
         p, w = (solved.x * scale).reshape(2, 3)
         u, r, e = each.end(dt, p, w)
-        _, samples = turn(problem, held, step.state, [step.before.t + dt])
+        _, samples = turn(name, problem, held, step.state, [step.before.t + dt])
         # the time of the sample is rounded
         rounding = 1e-9 * r + 4e-16 * step.before.t * abs(each.a[0])
         assert samples[0, :2] == pytest.approx(u, rel=1e-11)
@@ -738,7 +738,7 @@ def test_the_printed_residuals_of_a_smooth_step_vanish():
     )
     method = Smooth(s, None)
     held, state = method.step_accuracy(held), method.begin(description)
-    problem = stretch.problem._replace(law=method.flow)
+    problem = method.point_law(stretch.problem)
     K, damping = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
     v = s.drive.velocity * np.array(s.direction)
     nothing = np.empty(0), np.empty((0, 8)), 0

@@ -10,8 +10,9 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.friction import states
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.problem import Isotropic, Problem, at, call_for, force
+from stiction.solver.problem import Isotropic, Problem, at, call_for, force, is_aligned
 from stiction.solver.regularised import SMOOTHED
+from stiction.solver.rig import as_general
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.smooth import loop
 from stiction.solver.smooth.dispatch import point_to_flow
@@ -73,7 +74,7 @@ class Smooth:
         out: Output,
     ) -> tuple[int, SmoothState]:
         """Advance until `end` (s) or until the budget is used up."""
-        smooth = problem._replace(law=self.flow, surface=Isotropic())  # the law knows its surface
+        smooth = self.point_law(problem)
         resolved = self.step_accuracy(held)
         times, samples = out.times, out.samples
         own = copy_of(state)
@@ -93,6 +94,17 @@ class Smooth:
     def rates(self, problem: Problem, state: SmoothState) -> Floats:
         """Return the matrix of a small disturbance; see `amplification`."""
         return self.rooms[0].rates
+
+    def point_law(self, problem: Problem) -> Problem:
+        """Return a problem for compiled code, with its law behind pointers.
+
+        The law knows its surface. Every rig is a general one there, so that the loop is compiled
+        for half as many types: an aligned one has products by one and by zero, which are exact.
+        """
+        rig = problem.rig
+        if is_aligned(rig):
+            rig = as_general(problem.system.cos_phi, problem.system.sin_phi)
+        return problem._replace(law=self.flow, surface=Isotropic(), rig=rig)
 
     def step_accuracy(self, held: Accuracy) -> Accuracy:
         """Return the tolerances of each step.

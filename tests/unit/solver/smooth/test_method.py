@@ -9,7 +9,9 @@ from tests.unit.solver.smooth.systems import EXACT
 
 import stiction as st
 from stiction.solver.exact.sampling import COLUMNS
+from stiction.solver.problem import kinds_of
 from stiction.solver.regularised import Smoothed
+from stiction.solver.segments import stretches
 from stiction.solver.smooth.method import SPEED_SHARE, Smooth
 from stiction.solver.state import NOTHING
 from stiction.system.description import Description, Settings
@@ -42,6 +44,16 @@ def test_a_law_is_made_smooth_where_a_width_is_given():
     assert method.law.law == ELLIPSE.friction.law
     assert method.law.surface == problem_of("ellipse").surface
     assert state.internal.shape == (0,)
+
+
+def test_the_loop_is_compiled_once_for_all_rigs_and_surfaces():
+    """Without one mass or dampers along the springs it has the same types as with both."""
+    general = AGEING.replace(mass_y="0.6 kg", mass_angle="35 deg")
+    kinds = []
+    for slider, delta in ((AGEING, None), (general, None), (STEADY, 1e-3), (ELLIPSE, 1e-3)):
+        problem = next(stretches(slider, 0.0, 1.0)).problem
+        kinds.append(kinds_of(Smooth(slider, delta).point_law(problem)))
+    assert len({*kinds}) == 1
 
 
 def test_a_jump_of_the_drive():
