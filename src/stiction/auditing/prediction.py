@@ -15,6 +15,7 @@ from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
+HALF = 32  # places along the first half of a slip where its friction is asked
 
 
 class Prediction(NamedTuple):
@@ -197,10 +198,14 @@ def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tu
     as it began above it.
     """
     V = hypot(*slider.motion.rate(0.0))
-    tau = (np.arange(64) + 0.5) * (pi / 64)
+    coefficient, load = slider.law.coefficient, slider.normal_load
+    shares = np.sin((np.arange(HALF) + 0.5) * (pi / (2 * HALF)))  # the other half is alike
+    of_speed, weights = shares.tolist(), shares * (load * pi / (2.0 * HALF))
     mean = 0.5 * peak
     for _ in range(60):  # damped by one half: steeply weakening friction would overshoot
         v = max(peak - mean, 0.0) / sqrt(stiffness * mass) + V
-        force = [slider.law.coefficient(v * sin(at)) * slider.normal_load for at in tau]
-        mean = 0.5 * (mean + float(np.mean(force * np.sin(tau)) * pi / 2.0))
+        before = mean
+        mean = 0.5 * (mean + float(np.dot([coefficient(v * share) for share in of_speed], weights)))
+        if mean == before:
+            break
     return 2.0 * (peak - mean), mean
