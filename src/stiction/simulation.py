@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from importlib.metadata import version
 from math import ceil
 from pathlib import Path
 from typing import Any, Literal
@@ -18,6 +17,7 @@ from stiction.friction import has_state, states
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
 from stiction.solver.compilation.refusal import reasons
 from stiction.solver.integrate import Solution, integrate, tolerance
+from stiction.storage.version import own_version
 from stiction.system.description import Description, Settings, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -199,7 +199,7 @@ def label(
 ) -> ColumnTable:
     """Return what a run found as named arrays, and how it was found."""
     attributes = {
-        "stiction_version": version("stiction"),
+        "stiction_version": own_version(),
         "solver": f"{kind(description)}{', multiscale' if statistics.mapped else ''}, Radau IIA 5",
         "status": status.name,
         "status_message": status.value,

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from importlib import import_module
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +30,7 @@ from stiction.result.table import Column, ColumnTable, as_table, cf_attributes
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
+from stiction.storage.version import own_version
 
 KIND = "stiction_record"  # attribute by which a stored record is recognised; its value: the layout
 KNOWN = {  # of the apparatus, stored as attributes with their units
@@ -62,7 +62,7 @@ def write_stored(
         name: Column(("time",), values, cf_attributes(CHANNELS[name].unit, CHANNELS[name].meaning))
         for name, values in channels.items()
     }
-    attributes: dict[str, Any] = {KIND: 1, "stiction_version": version("stiction")}
+    attributes: dict[str, Any] = {KIND: 1, "stiction_version": own_version()}
     attributes |= {name: float(value) for name, value in known.items()}
     attributes["units_of_attributes"] = ", ".join(f"{name}: {KNOWN[name]}" for name in known)
     attributes["sensors"] = json.dumps({name: _fields(each) for name, each in sensors.items()})

@@ -13,7 +13,6 @@ import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from importlib import import_module
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +24,7 @@ from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_fi
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 from stiction.storage.kinds import HDF5, RESULT, use_of
+from stiction.storage.version import own_version
 
 CHANGED = "is damaged, or was changed: "
 STICK_GROUP = "sticks"  # group of a result file
@@ -128,7 +128,7 @@ def is_netcdf(path: str | Path) -> bool:
 
 def age(data: ColumnTable) -> str:
     """Return a note on the version that wrote a file, '' if it is this one."""
-    wrote, this = data.attributes.get("stiction_version"), version("stiction")
+    wrote, this = data.attributes.get("stiction_version"), own_version()
     if wrote is None or str(wrote) == this:
         return ""
     return f"; stiction {wrote!s:.20} wrote it, this is {this}"
