@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stiction.analysis.signals.robust import median
 from stiction.arrays import Floats
 
 ORDERED = -0.9  # rank correlation of size and number: each smaller than the last, but for noise
@@ -90,7 +91,7 @@ def _building(size: np.ndarray) -> int:
     """Return how many swings build up at the beginning."""
     if not len(size):
         return 0
-    count = int(np.argmax(size >= BELOW * np.median(size)))
+    count = int(np.argmax(size >= BELOW * median(size)))
     return count if count >= BUILDING else 0
 
 
@@ -196,7 +197,7 @@ def course(time: Floats, force: Floats) -> Course:
     """Return the course of a force of at least `PARTS` samples."""
     edges = np.linspace(0, len(time), PARTS + 1).astype(np.intp)[1:-1]
     parts = np.split(force, edges)
-    f = np.array([np.median(part) for part in parts])
+    f = np.array([median(part) for part in parts])
     t = np.array([part.mean() for part in np.split(time, edges)])
     scatter = np.sqrt(np.mean(np.concatenate([p - m for p, m in zip(parts, f, strict=True)]) ** 2))
     ups_and_downs = float(np.abs(np.diff(f)).sum())

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
+from stiction.analysis.signals.robust import median
 from stiction.arrays import Complex, Floats
 
 PERIODS = 16  # of a line that a record has at least
@@ -202,7 +203,7 @@ def beside(power: Floats) -> Floats:
         edges.append(edges[-1] + width)
     edges = [*edges[: max(len(edges) - 1, 1)], len(power)]
     size = np.diff(edges)
-    medians = np.array([np.median(block) for block in np.split(power, edges[1:-1])])
+    medians = np.array([median(block) for block in np.split(power, edges[1:-1])])
     around = np.maximum.reduce([medians, np.roll(medians, 1), np.roll(medians, -1)])
     return np.repeat(around, size)
 

@@ -77,16 +77,17 @@ def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
 
 def _from_left_to_right(legs: Sequence[int], below: float) -> tuple[list[int], list[int]]:
     """Return which points between legs remain without reversals, and the heights of these."""
-    points, left = [0], []
+    points: list[int] = [0]
+    left: list[int] = []
     heights = []
-    for point, leg in enumerate(legs, 1):
-        points.append(point)
-        left.append(leg)
-        while len(left) > 2 and left[-2] < left[-1] and left[-3] >= left[-2] < below:
-            first, inner, last = left[-3:]
+    for point, last in enumerate(legs, 1):
+        while len(left) > 1 and left[-2] >= (inner := left[-1]) < last and inner < below:
             heights.append(inner)
-            left[-3:] = [first - inner + last]
-            del points[-3:-1]
+            left.pop()
+            last += left.pop() - inner
+            del points[-2:]
+        points.append(point)
+        left.append(last)
     return points, heights
 
 

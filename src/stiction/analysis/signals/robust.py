@@ -26,6 +26,22 @@ class Mean(NamedTuple):
     error: float
 
 
+def median(values: NDArray[np.float64] | NDArray[np.int64]) -> float:
+    """Return the median of some values, NaN where one is: `numpy.median` in a seventh of the time.
+
+    Of few values that looks longer at their type than at them.
+
+    >>> median(np.array([3.0, 1.0, 2.0])), median(np.array([4, 1, 2, 3]))
+    (2.0, 2.5)
+    """
+    half, last = len(values) // 2, len(values) - 1
+    low = half - 1 + len(values) % 2
+    ordered = np.partition(values, (low, half, last))
+    if np.isnan(ordered[last]):
+        return np.nan
+    return 0.5 * (float(ordered[low]) + float(ordered[half]))
+
+
 def part_starts(size: int, parts: int) -> Indices:
     """Return where equal parts of so many samples begin: fewer parts, if some would be empty."""
     return np.linspace(0, size, min(parts, size), endpoint=False).astype(np.intp)
@@ -94,7 +110,7 @@ def _outliers(values: Floats) -> NDArray[np.bool_]:
     found, steps = np.zeros(len(values), bool), np.abs(np.diff(values))
     if not steps.any():
         return found
-    far = FAR * float(np.median(steps[steps > 0.0]))
+    far = FAR * median(steps[steps > 0.0])
     jumps = np.flatnonzero(steps > far)  # the last samples before them
     for width in range(1, LONGEST + 1):
         left = jumps[(jumps >= BESIDE) & (jumps + width + 1 + BESIDE < len(values))]

@@ -22,6 +22,7 @@ from stiction.analysis.signals.reversals import (
     standing_out,
     taken_out,
 )
+from stiction.analysis.signals.robust import median
 from stiction.arrays import Floats, Indices
 
 PER_OCTAVE = 4  # edges tried in each factor of two of height
@@ -264,7 +265,7 @@ def running_sums(counts: Counts) -> Iterator[Counts]:
 def typical_step(counts: Counts) -> float:
     """Return the median difference of two samples in succession that differ at all."""
     steps = np.abs(np.diff(counts))
-    return float(np.median(steps[steps > 0])) if steps.any() else 0.0
+    return median(steps[steps > 0]) if steps.any() else 0.0
 
 
 def noise_reach(counts: Counts, height: float) -> float:

@@ -276,7 +276,7 @@ def test_the_option_that_turns_the_sign_of_a_file_keeps_its_unit(tmp_path, unit)
     option = re.search(r'--force="(.*?)"', str(st.analyse(record)))
     assert option is not None
     turned = st.read_record(path, force=option[1])
-    assert turned.force == pytest.approx(-record.force, rel=1e-12)
+    np.testing.assert_allclose(turned.force, -record.force, rtol=1e-12)
 
 
 def test_a_force_that_rises_as_fast_as_stated_leaves_no_creep_to_be_seen() -> None:

@@ -28,6 +28,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
+from stiction.analysis.signals.robust import median
 from stiction.arrays import Floats
 
 ENOUGH = 8.0  # samples a cycle, which show its shape
@@ -69,7 +70,7 @@ class Shapes(NamedTuple):
     @property
     def typical(self) -> tuple[float, float, float]:
         """Medians of the three shares."""
-        rise, still, sticks = (float(np.median(each)) for each in self[:3])
+        rise, still, sticks = (median(each) for each in self[:3])
         return rise, still, sticks
 
     @property
