@@ -1,6 +1,7 @@
 """Runs whose drive and load follow a table, against analytic pieces, SciPy and closed forms."""
 
 from itertools import pairwise
+from math import sqrt
 
 import numpy as np
 import pytest
@@ -91,6 +92,14 @@ LOAD = 10 + 2 * np.sin(2 * np.pi * 13 * T + 0.4)
 DELTA = 1e-3
 
 
+def value(coefficients, x):
+    """Return the value of a polynomial, the highest power first."""
+    total = 0.0
+    for each in coefficients:
+        total = total * x + each
+    return total
+
+
 @DRIVEN
 @KINDS
 def test_smooth_friction_agrees_with_scipy(driven, kind):
@@ -107,24 +116,28 @@ def test_smooth_friction_agrees_with_scipy(driven, kind):
     )
     run = st.simulate(slider, sample_rate=100, rtol=1e-9, regularisation=DELTA)
     assert run.description.run.duration == pytest.approx(0.3)
-    k, c, e = np.array([1e3, 1e5]), np.array([3.0, 20.0]), np.array(slider.direction)
-    law, acceleration = slider.friction, rate.derivative()
+    law, (e_x, e_y) = slider.friction, slider.direction
 
-    def change(t, y):
-        u, s = y[:2], y[2:]
-        v = e * rate(t) - s
-        friction = law.coefficient(np.hypot(*s)) * load(t) * s / np.sqrt(s @ s + DELTA**2)
-        inertia = e * acceleration(t) if driven == "plate" else 0.0
-        return np.concatenate([v, (k * u + c * v - friction) / slider.mass + inertia])
+    def change(t, y, start, rate, acceleration, load):
+        (u_x, u_y, s_x, s_y), since = y.tolist(), t - start
+        X, change = value(rate, since), value(acceleration, since) if driven == "plate" else 0.0
+        v_x, v_y = e_x * X - s_x, e_y * X - s_y
+        size = s_x * s_x + s_y * s_y
+        friction = law.coefficient(sqrt(size)) * value(load, since) / sqrt(size + DELTA**2)
+        a_x = (1e3 * u_x + 3.0 * v_x - friction * s_x) / slider.mass + e_x * change
+        a_y = (1e5 * u_y + 20.0 * v_y - friction * s_y) / slider.mass + e_y * change
+        return [v_x, v_y, a_x, a_y]
 
     names = ("u_x", "u_y", "slip_x", "slip_y")
     found = np.array([run.data[name].values for name in names]).T
     y, times = found[0], run.data["time"].values
-    for start, end in pairwise(T):
+    cubics = [each.c.T.tolist() for each in (rate, rate.derivative(), load)]
+    for (start, end), *row in zip(pairwise(T), *cubics, strict=True):
         inside = np.flatnonzero((times > start + 1e-9) & (times < end - 1e-9))
         solution = solve_ivp(
-            change, (start, end), y, method="DOP853", rtol=1e-11, atol=1e-16, dense_output=True
-        )
+            change, (start, end), y, method="DOP853", rtol=1e-11, atol=1e-16, dense_output=True,
+            args=(start, *row),
+        )  # fmt: skip
         for i in inside:
             error = np.abs(found[i] - solution.sol(times[i])).max(axis=0)
             assert error < 1e-7 * np.abs(found).max(axis=0).max()
