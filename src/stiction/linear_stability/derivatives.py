@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from math import cos, hypot, log, sin
+from collections.abc import Callable, Sequence
+from math import cos, hypot, log, nan, sin
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -79,9 +79,11 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
     """Return the response of a law with internal state, by numerical differentiation."""
     law: Any = slider.law
 
-    def response(at: Floats) -> Floats:
-        where = (float(at[0]), float(at[1])), slider.normal_load, tuple(map(float, at[2:]))
-        return np.array([*law.force(*where), *law.change(*where)], dtype=np.float64)
+    load = slider.normal_load
+
+    def response(at: list[float]) -> Sequence[float]:
+        where = (at[0], at[1]), load, tuple(at[2:])
+        return *law.force(*where), *law.change(*where)
 
     at = np.concatenate([slip, state])
     speed = hypot(*slip)
@@ -93,11 +95,15 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
         least = size if size > SMALL else 1e-4
         columns.append(derivative(response, at, i, 0.5 * max(size, 1.0), 2.0**-13 * least))
     slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
-    return Response(response(at), slopes, error)
+    return Response(np.array(response(at.tolist()), dtype=np.float64), slopes, error)
 
 
 def derivative(
-    function: Callable[[Floats], Floats], at: Floats, i: int, widest: float, narrowest: float
+    function: Callable[[list[float]], Sequence[float] | Floats],
+    at: Floats,
+    i: int,
+    widest: float,
+    narrowest: float,
 ) -> tuple[Floats, Floats]:
     """Return the derivative of a vector function by variable `i`, and its estimated error.
 
@@ -106,17 +112,21 @@ def derivative(
     the extrapolation with the smallest error, which is estimated as a share of the last change plus
     rounding. Steps at which the function is undefined are skipped.
     """
-    unit = np.eye(len(at))[i]
+    others, here = at.tolist(), float(at[i])
+
+    def along(x: float) -> Sequence[float] | Floats:
+        return function([*others[:i], x, *others[i + 1 :]])
+
     steps = widest * RATIO ** -np.arange(np.ceil(log(widest / narrowest, RATIO)) + 1.0)
     values = [
-        (value_or_nan(function, at + h * unit), value_or_nan(function, at - h * unit))
-        for h in steps
+        (value_or_nan(along, here + h, len(at)), value_or_nan(along, here - h, len(at)))
+        for h in steps.tolist()
     ]
-    ahead, behind = np.array(values).transpose(1, 0, 2)
+    ahead, behind = np.array(values, dtype=np.float64).transpose(1, 0, 2)
     h = 0.5 * ((at[i] + steps) - (at[i] - steps))[:, None]  # as rounded
     table = (ahead - behind) / (2.0 * h)
     doubt = SMALL * (np.abs(ahead) + np.abs(behind)) / h
-    near = noise(lambda x: function(at + (x - at[i]) * unit), float(at[i]), narrowest)
+    near = noise(along, here, narrowest)
     doubt += 2.0 * near / h
     found, errors = [], []
     for column in range(1, COLUMNS):
@@ -141,9 +151,11 @@ def noise(function: Callable[[float], Any], at: float, scale: float) -> Any:
     return np.abs(np.diff(values, 2, axis=0)).max(axis=0)
 
 
-def value_or_nan(function: Callable[[Floats], Floats], at: Floats) -> Floats:
+def value_or_nan(
+    function: Callable[[float], Sequence[float] | Floats], x: float, size: int
+) -> Sequence[float] | Floats:
     """Return the value of a function; NaN where a user's law raises an error."""
     try:
-        return function(at)
+        return function(x)
     except (ArithmeticError, ValueError):
-        return np.full(len(at), np.nan)
+        return [nan] * size
