@@ -1,4 +1,4 @@
-"""One step of slip: the collocation equations and their solution by Newton's method.
+"""The collocation equations of one step of slip, and their Jacobian.
 
 The unknowns are p and w at the three stages (see `slip_frame`); in a step that ends in a landing,
 p is zero at the last stage, and the step size takes its place.
@@ -15,6 +15,15 @@ from stiction.solver.problem import Problem
 from stiction.solver.stepping.block_algebra import Factors, Triple, dot, eliminate
 from stiction.solver.stepping.radau import FIRST, SECOND, THIRD, A, C, D
 from stiction.solver.surface import Flow, flow, speed_ratio
+
+
+class SlipStep(NamedTuple):
+    """A step of slip: the oscillation under it, its size h (s), and p (m/s) and w at its stages."""
+
+    swing: Swing
+    h: float
+    p: Triple
+    w: Triple
 
 
 class Stage(NamedTuple):
@@ -34,17 +43,16 @@ class Stage(NamedTuple):
 
 
 @inlined
-def stage(
-    problem: Problem,
-    frame: Frame,
-    swing: Swing,
-    h: float,
-    i: int,
-    p: Triple,
-    w: Triple,
-    q: Triple,
-) -> Stage:
-    """Evaluate stage `i`, (M26) to (M29); q = p w."""
+def products(p: Triple, w: Triple) -> Triple:
+    """Return p w: the slip velocity across the step's axis."""
+    return p[0] * w[0], p[1] * w[1], p[2] * w[2]
+
+
+@inlined
+def stage(problem: Problem, frame: Frame, step: SlipStep, i: int) -> Stage:
+    """Evaluate stage `i`, (M26) to (M29)."""
+    swing, h, p, w = step
+    q = products(p, w)
     cubic_1, slid_2 = dot(A[i], p), dot(A[i], q)
     slid_1, by_h = cubic_1 + swing.slid[i], cubic_1 + swing.slid_by_h[i]
     b_1, b_2, db_1, db_2 = pull(problem, frame, C[i] * h)
@@ -67,9 +75,10 @@ def stage(
 
 @inlined
 def jacobian_rows(
-    frame: Frame, h: float, i: int, p: Triple, w: Triple, at_i: Stage
+    frame: Frame, step: SlipStep, i: int, at_i: Stage
 ) -> tuple[Triple, Triple, Triple, Triple]:
     """Return the derivatives of stage i's residuals (M31): p by p, p by w, w by p, w by w."""
+    _, h, p, w = step
     k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
     c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
     p_i, w_i, a, d, n = p[i], w[i], A[i], D[i], at_i.flow
@@ -117,21 +126,14 @@ def add_to_entry(row: Triple, i: int, x: float) -> Triple:
 
 @inlined
 def factors(
-    frame: Frame,
-    swing: Swing,
-    h: float,
-    landing: bool,
-    p: Triple,
-    w: Triple,
-    s0: Stage,
-    s1: Stage,
-    s2: Stage,
+    frame: Frame, step: SlipStep, landing: bool, s0: Stage, s1: Stage, s2: Stage
 ) -> Factors:
     """Return the eliminated Jacobian at the given stages."""
-    pp0, pw0, wp0, ww0 = jacobian_rows(frame, h, FIRST, p, w, s0)
-    pp1, pw1, wp1, ww1 = jacobian_rows(frame, h, SECOND, p, w, s1)
-    pp2, pw2, wp2, ww2 = jacobian_rows(frame, h, THIRD, p, w, s2)
+    pp0, pw0, wp0, ww0 = jacobian_rows(frame, step, FIRST, s0)
+    pp1, pw1, wp1, ww1 = jacobian_rows(frame, step, SECOND, s1)
+    pp2, pw2, wp2, ww2 = jacobian_rows(frame, step, THIRD, s2)
     if landing:  # the last unknown is the step size
+        swing, h, _, w = step
         pp0, wp0 = by_step_size(h, w[0], s0, swing.rest_by_h[0], pp0, wp0)
         pp1, wp1 = by_step_size(h, w[1], s1, swing.rest_by_h[1], pp1, wp1)
         pp2, wp2 = by_step_size(h, w[2], s2, swing.rest_by_h[2], pp2, wp2)

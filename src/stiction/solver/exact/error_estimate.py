@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import inf, sqrt
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.newton import products
+from stiction.solver.exact.collocation import SlipStep, products
 from stiction.solver.exact.oscillation import MOST, Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, friction, pull
 from stiction.solver.problem import Problem, in_principal_axes, rate, rate_change
@@ -55,10 +55,7 @@ def local_error(
     problem: Problem,
     frame: Frame,
     o: Oscillator,
-    s: Swing,
-    h: float,
-    p: Triple,
-    w: Triple,
+    step: SlipStep,
     accuracy: Accuracy,
     motion: float,
 ) -> float:
@@ -68,11 +65,12 @@ def local_error(
     longer than an oscillation, along the slip or across it, which the cubic cannot follow, the
     defect may vanish by chance: there two points are used.
     """
+    s, h = step.swing, step.h
     over = s.p_in, s.rest_in, s.slid_in
-    error = error_at(problem, frame, over, h, p, w, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
+    error = error_at(problem, frame, step, over, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
     if max(frame.k_11, frame.k_22) * h * h > MOST:
         over = superpose(o, s, h)
-        later = error_at(problem, frame, over, h, p, w, accuracy, motion, LATER, LATER_WEIGHT)
+        later = error_at(problem, frame, step, over, accuracy, motion, LATER, LATER_WEIGHT)
         error = max(error, later)
     return error
 
@@ -91,10 +89,8 @@ def superpose(o: Oscillator, s: Swing, h: float) -> Triple:
 def error_at(
     problem: Problem,
     frame: Frame,
+    step: SlipStep,
     over: Triple,
-    h: float,
-    p: Triple,
-    w: Triple,
     accuracy: Accuracy,
     motion: float,
     c: float,
@@ -108,6 +104,7 @@ def error_at(
     scale of w follows from it; that of each principal axis is the largest elongation rate possible
     there. No scale exceeds the motion about steady sliding (m/s; see `moving`): (M38), (M41).
     """
+    _, h, p, w = step
     r, dt, (p_over, rest_over, slid_over) = frame.r, c * h, over
     along, turn = (r, p[0], p[1], p[2]), (0.0, w[0], w[1], w[2])
     p_in, w_in = cubic(along, c) + p_over, cubic(turn, c)
@@ -142,7 +139,7 @@ def error_at(
 
 
 @inlined
-def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) -> bool:
+def dips(o: Oscillator, step: SlipStep, r: float, margin: float) -> bool:
     """Return whether the slip falls below a margin (m/s) inside the step and rises again.
 
     The search is for a zero of its rate of change, in the full slip: the oscillation plus the cubic
@@ -151,6 +148,7 @@ def dips(o: Oscillator, s: Swing, h: float, r: float, p: Triple, margin: float) 
     """
     if r == 0.0 or not o.v + o.drift < 0.0:  # at take-off, a fall is rounding
         return False
+    s, h, p, _ = step
     laid, (q0, q1, q2) = swings(o, h), less(p, s.p)
     rest = (0.0 if laid else r, q0, q1, q2)
     left, right = 0.0, 1.0

@@ -7,10 +7,9 @@ from math import isfinite, sqrt
 import numpy as np
 
 from stiction.solver.compilation.jit import compiled, inlined
-from stiction.solver.exact.newton import products
 from stiction.solver.exact.pursuit import land, pursuit
 from stiction.solver.exact.record import StepRecord, keep_step
-from stiction.solver.exact.sampling import sample_slip, sample_stick
+from stiction.solver.exact.sampling import end_of_step, sample_slip, sample_stick
 from stiction.solver.exact.slip_frame import (
     Frame,
     Outset,
@@ -51,9 +50,8 @@ from stiction.solver.state import (
     size_to_try,
     write_plan,
 )
-from stiction.solver.stepping.block_algebra import Triple, dot
+from stiction.solver.stepping.block_algebra import Triple
 from stiction.solver.stepping.control import ASKED, CALMEST, GROWTH, ease, step_factor, trend
-from stiction.solver.stepping.radau import A
 from stiction.solver.stick import holding, holds_on, margin, stick_duration, to_spare
 from stiction.solver.surface import takeoff
 
@@ -136,15 +134,16 @@ def slip(
     """Take one step of slip and plan the next."""
     motion, memory, counts = state
     t, r = motion.t, motion.r
-    done, landing, swing, h, p, w, error, limit, rejected, iterations = step(
+    done, landing, taken, error, limit, rejected, iterations = step(
         problem, frame, start, t_stop, memory, accuracy
     )
     counts = count_step(counts, rejected, iterations)
     if not done:
         return False, State(motion, memory, counts), k
-    k = sample_slip(problem, frame, start, swing, h, p, w, accuracy, times, samples, k)
-    keep_step(record, frame, start, swing, h, p, w)
-    slid_1, slid_2 = h * (dot(A[2], p) + swing.slid[2]), h * dot(A[2], products(p, w))
+    k = sample_slip(problem, frame, start, taken, accuracy, times, samples, k)
+    keep_step(record, frame, start, taken)
+    _, h, p, w = taken
+    slid_1, slid_2, _, _ = end_of_step(taken)
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
     e_x, e_y = turned_direction(frame, w[2])
     at_ease = ease(error)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.collocation import factors, stage
-from stiction.solver.exact.oscillation import Oscillator, Swing, swing
+from stiction.solver.exact.collocation import SlipStep, factors, stage
+from stiction.solver.exact.oscillation import Oscillator, swing
 from stiction.solver.exact.slip_frame import Frame
 from stiction.solver.problem import Problem
 from stiction.solver.state import Accuracy
-from stiction.solver.stepping.block_algebra import Triple, solve_blocks
+from stiction.solver.stepping.block_algebra import solve_blocks
 from stiction.solver.stepping.control import CONTRACTS, diverging, settled
 from stiction.solver.stepping.radau import FIRST, SECOND, THIRD
 
@@ -20,24 +20,21 @@ def solve(
     problem: Problem,
     frame: Frame,
     o: Oscillator,
-    s: Swing,
-    h: float,
+    step: SlipStep,
     landing: bool,
-    p: Triple,
-    w: Triple,
     accuracy: Accuracy,
     motion: float,
-) -> tuple[bool, Swing, Triple, Triple, float, int]:
+) -> tuple[bool, SlipStep, int]:
     """Solve the collocation equations of one step.
 
     Parameters
     ----------
-    problem, frame, o, s, h
-        The system, the step's axes, the oscillation along the slip, and the step's size (s).
+    problem, frame, o
+        The system, the step's axes, and the oscillation along the slip.
+    step : SlipStep
+        With a first guess of the stages.
     landing : bool
-        Whether the step ends at zero slip; its size is then an unknown, with `h` as first guess.
-    p, w : triple of float
-        First guess of the stages (m/s, 1).
+        Whether the step ends at zero slip; its size is then an unknown, too.
     accuracy : Accuracy
         Corrections are relative to the slip speed plus ``accuracy.speed``, and for w to 1.
     motion : float
@@ -45,7 +42,7 @@ def solve(
 
     Returns
     -------
-    converged, p, w, h, iterations
+    converged, step, iterations
 
     Notes
     -----
@@ -53,10 +50,11 @@ def solve(
     iteration contracts. One exact iteration squares the relative error; hence the test on the
     square of the first correction: (M32) and (M33).
     """
-    s0 = stage(problem, frame, s, h, FIRST, p, w, products(p, w))
-    s1 = stage(problem, frame, s, h, SECOND, p, w, products(p, w))
-    s2 = stage(problem, frame, s, h, THIRD, p, w, products(p, w))
-    m = factors(frame, s, h, landing, p, w, s0, s1, s2)
+    s, h, p, w = step
+    s0 = stage(problem, frame, step, FIRST)
+    s1 = stage(problem, frame, step, SECOND)
+    s2 = stage(problem, frame, step, THIRD)
+    m = factors(frame, step, landing, s0, s1, s2)
     speed = accuracy.speed
     enough = accuracy.newton * min(1.0, motion / (speed + frame.r))
     last = 1.0
@@ -77,23 +75,18 @@ def solve(
             size = abs(dp[2]) / (speed + abs(p[2]))
         size = max(size, abs(dp[0]) / (speed + abs(p[0])), abs(dp[1]) / (speed + abs(p[1])))
         size = max(size, abs(dw[0]), abs(dw[1]), abs(dw[2]))
+        step = SlipStep(s, h, p, w)
         if not size < 1e10 or h <= 0.0:
-            return False, s, p, w, h, iteration
+            return False, step, iteration
         rate = size if iteration == 1 else size / last
         if settled(size, rate, enough):
-            return True, s, p, w, h, iteration
+            return True, step, iteration
         if diverging(iteration, rate):
-            return False, s, p, w, h, iteration
-        s0 = stage(problem, frame, s, h, FIRST, p, w, products(p, w))
-        s1 = stage(problem, frame, s, h, SECOND, p, w, products(p, w))
-        s2 = stage(problem, frame, s, h, THIRD, p, w, products(p, w))
+            return False, step, iteration
+        s0 = stage(problem, frame, step, FIRST)
+        s1 = stage(problem, frame, step, SECOND)
+        s2 = stage(problem, frame, step, THIRD)
         if rate > CONTRACTS:
-            m = factors(frame, s, h, landing, p, w, s0, s1, s2)
+            m = factors(frame, step, landing, s0, s1, s2)
         last = size
-    return False, s, p, w, h, ITERATIONS
-
-
-@inlined
-def products(p: Triple, w: Triple) -> Triple:
-    """Return p w: the slip velocity across the step's axis."""
-    return p[0] * w[0], p[1] * w[1], p[2] * w[2]
+    return False, step, ITERATIONS

@@ -5,8 +5,7 @@ from __future__ import annotations
 from math import inf, sqrt
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.collocation import add_to_entry
-from stiction.solver.exact.newton import products
+from stiction.solver.exact.collocation import add_to_entry, products
 from stiction.solver.exact.oscillation import Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem

@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.newton import products
-from stiction.solver.exact.oscillation import Oscillator, Swing, after, oscillator, swings
+from stiction.solver.exact.collocation import SlipStep, products
+from stiction.solver.exact.oscillation import Oscillator, after, oscillator, swings
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.state import Motion
 from stiction.solver.stepping.block_algebra import Triple, less
@@ -36,18 +36,10 @@ def record_of(steps: int) -> StepRecord:
 
 
 @inlined
-def keep_step(
-    record: StepRecord,
-    frame: Frame,
-    start: Outset,
-    swing: Swing,
-    h: float,
-    p: Triple,
-    w: Triple,
-) -> None:
+def keep_step(record: StepRecord, frame: Frame, start: Outset, step: SlipStep) -> None:
     """Write a step of slip to the next row, if there is one."""
     if record.used[0] < len(record.rows):
-        write_step(record.rows[record.used[0]], frame, start, swing, h, p, w)
+        write_step(record.rows[record.used[0]], frame, start, step)
     record.used[0] += 1
 
 
@@ -71,10 +63,9 @@ def write_start(row: np.ndarray, frame: Frame, h: float, kind: float) -> None:
 
 
 @inlined
-def write_step(
-    row: np.ndarray, frame: Frame, start: Outset, swing: Swing, h: float, p: Triple, w: Triple
-) -> None:
+def write_step(row: np.ndarray, frame: Frame, start: Outset, step: SlipStep) -> None:
     """Write a step."""
+    swing, h, p, w = step
     o = oscillator(frame, start)
     write_start(row, frame, h, SWUNG if swings(o, h) else CUBIC)
     rest, across = less(p, swing.p), products(p, w)

@@ -16,17 +16,10 @@ from math import sqrt
 import numpy as np
 
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.collocation import SlipStep, products
 from stiction.solver.exact.error_estimate import moving
-from stiction.solver.exact.newton import products, solve
-from stiction.solver.exact.oscillation import (
-    NO_LANDING,
-    Swing,
-    after,
-    oscillator,
-    still,
-    swing,
-    swings,
-)
+from stiction.solver.exact.newton import solve
+from stiction.solver.exact.oscillation import NO_LANDING, after, oscillator, still, swing, swings
 from stiction.solver.exact.record import on_polynomial
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
@@ -44,10 +37,7 @@ def within(
     problem: Problem,
     frame: Frame,
     start: Outset,
-    laid: Swing,
-    h: float,
-    p: Triple,
-    w: Triple,
+    step: SlipStep,
     dt: float,
     accuracy: Accuracy,
     motion: float,
@@ -55,8 +45,9 @@ def within(
     """Return the distance slipped after `dt` along and across the step, and p and w then."""
     if dt <= 0.0:
         return 0.0, 0.0, frame.r, 0.0
+    laid, h, p, w = step
     if dt == h:
-        return end_of_step(h, laid, p, w)
+        return end_of_step(step)
     o, x, rest, across = oscillator(frame, start), dt / h, less(p, laid.p), products(p, w)
     if accuracy.inside >= accuracy.tolerance:
         return on_polynomial(frame.r, h, swings(o, h), o, rest, w, across, dt)
@@ -82,15 +73,17 @@ def within(
             on_cubic(frame.r, rest, x),
         )
     turn = cubic(way, C[0] * x), cubic(way, C[1] * x), cubic(way, x)
-    found, s, q, turn, _, _ = solve(problem, frame, o, s, dt, NO_LANDING, q, turn, accuracy, motion)
-    if found and min(q) >= 0.0:
-        return end_of_step(dt, s, q, turn)
+    shorter = SlipStep(s, dt, q, turn)
+    found, shorter, _ = solve(problem, frame, o, shorter, NO_LANDING, accuracy, motion)
+    if found and min(shorter.p) >= 0.0:
+        return end_of_step(shorter)
     return on_polynomial(frame.r, h, swings(o, h), o, rest, w, across, dt)
 
 
 @inlined
-def end_of_step(h: float, s: Swing, p: Triple, w: Triple) -> tuple[float, float, float, float]:
+def end_of_step(step: SlipStep) -> tuple[float, float, float, float]:
     """Return the distance slipped in a step along and across it, and p and w at its end."""
+    s, h, p, w = step
     return h * (dot(A[2], p) + s.slid[2]), h * dot(A[2], products(p, w)), p[2], w[2]
 
 
@@ -135,23 +128,20 @@ def sample_slip(
     problem: Problem,
     frame: Frame,
     start: Outset,
-    swing: Swing,
-    h: float,
-    p: Triple,
-    w: Triple,
+    step: SlipStep,
     accuracy: Accuracy,
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
 ) -> int:
     """Fill the samples of an accepted slip step; return the next index."""
+    h = step.h
     if k >= len(times) or times[k] > frame.t + h:
         return k
     motion, _ = moving(problem, frame, start, accuracy)
     while k < len(times) and times[k] <= frame.t + h:
         dt = min(times[k] - frame.t, h)
-        z_1, z_2, v, turn = within(problem, frame, start, swing, h, p, w, dt, accuracy, motion)
-        slip = z_1, z_2, v, turn
+        slip = within(problem, frame, start, step, dt, accuracy, motion)
         k = write_slip(problem, frame, frame.metric, times[k], dt, slip, samples, k)
     return k
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 from math import inf
 
 from stiction.solver.compilation.jit import inlined
+from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.exact.error_estimate import dips, local_error, moving
 from stiction.solver.exact.newton import solve
-from stiction.solver.exact.oscillation import NO_LANDING, Swing, oscillator, swing, within_reach
+from stiction.solver.exact.oscillation import Oscillator, oscillator, still, swing, within_reach
 from stiction.solver.exact.predictor import passes, predict, swung_to_rest, time_to_landing
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.problem import Problem, varies
 from stiction.solver.state import Accuracy, Limit, Memory, size_to_try
-from stiction.solver.stepping.block_algebra import Triple
 from stiction.solver.stepping.control import (
     ATTEMPTS,
     FAILED,
@@ -35,7 +35,7 @@ def step(
     t_stop: float,
     memory: Memory,
     accuracy: Accuracy,
-) -> tuple[bool, bool, Swing, float, Triple, Triple, float, Limit, int, int]:
+) -> tuple[bool, bool, SlipStep, float, Limit, int, int]:
     """Take one step of slip, as long as the tolerance and `t_stop` allow.
 
     Returns
@@ -44,10 +44,9 @@ def step(
         False if even the shortest step fails.
     landing : bool
         Whether the step ends at zero slip.
-    s : Swing
-        The oscillation on which the step is superposed.
-    h, p, w, error
-        Step size (s), stages, and error over tolerance.
+    taken : SlipStep
+    error : float
+        Over tolerance.
     limit
         Of steps about steady sliding.
     rejected, iterations : int
@@ -57,20 +56,12 @@ def step(
     at = Time(t, t_stop - t, varies(problem))
     limit = limit_there(memory.limit, size, at, apart, motion, frame.r, accuracy)
     h = within_reach(o, within_limit(size, limit), accuracy, motion)
-    until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
-    landing = False
-    if EVEN * until < h:
-        rest = swung_to_rest(o, until)
-        # land, unless two even steps are better than a long and a short one, or slip passes by zero
-        if h < DIRECT * until or passes(problem, frame, o, rest):
-            h = EVEN * until
-        else:
-            h, landing = rest, True
+    h, landing = size_before_landing(problem, frame, start, o, h)
     may_land = frame.r > 0.0
-    s = swing(o, 0.0, NO_LANDING)
     rejected = iterations = 0
     warm = False
     p = w = (0.0, 0.0, 0.0)
+    taken = SlipStep(still(), h, p, w)
     for _ in range(ATTEMPTS):
         if h >= t_stop - t and not warm:
             h, landing = t_stop - t, False
@@ -82,9 +73,9 @@ def step(
         if landing:
             p = (p[0], p[1], 0.0)
         tried, warm = h, False
-        converged, s, p, w, h, count = solve(
-            problem, frame, o, s, h, landing, p, w, accuracy, motion
-        )
+        taken = SlipStep(s, h, p, w)
+        converged, taken, count = solve(problem, frame, o, taken, landing, accuracy, motion)
+        _, h, p, w = taken
         iterations += count
         if converged and landing and t + h > t_stop + ROUNDING * abs(t_stop):
             h, landing, may_land = t_stop - t, False, False
@@ -95,16 +86,33 @@ def step(
             continue
         factor = FAILED
         if converged and min(p) >= 0.0:
-            relative = local_error(problem, frame, o, s, h, p, w, accuracy, motion)
+            relative = local_error(problem, frame, o, taken, accuracy, motion)
             error = relative / accuracy.tolerance
             # a slip as small as its error may have been zero
             least = 0.0 if landing else relative * min(accuracy.speed + frame.r, motion)
             if error > 1.0:
                 factor = step_factor(error, 1.0)
-            elif not dips(o, s, h, frame.r, p, least):
-                return True, landing, s, h, p, w, error, limit, rejected, iterations
+            elif not dips(o, taken, frame.r, least):
+                return True, landing, taken, error, limit, rejected, iterations
         rejected += 1
         if landing:  # try once: shorter steps approach a landing that is too far away
             may_land = False
         h, landing = min(h, tried) * factor if h > 0.0 else tried * factor, False
-    return False, False, s, h, p, w, inf, limit, rejected, iterations
+    return False, False, taken, inf, limit, rejected, iterations
+
+
+@inlined
+def size_before_landing(
+    problem: Problem, frame: Frame, start: Outset, o: Oscillator, h: float
+) -> tuple[float, bool]:
+    """Return the size of a step, `h` or up to where the slip may land, and whether it is to land.
+
+    It lands unless two even steps are better than a long and a short one, or slip passes by zero.
+    """
+    until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
+    if not EVEN * until < h:
+        return h, False
+    rest = swung_to_rest(o, until)
+    if h < DIRECT * until or passes(problem, frame, o, rest):
+        return EVEN * until, False
+    return rest, True

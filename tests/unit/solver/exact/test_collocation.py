@@ -7,6 +7,7 @@ from tests.entry import plain
 from tests.systems import MOTIONS, SLIDERS, Printed, motion_of, problem_of
 
 from stiction.solver.exact import collocation, newton, oscillation, slip_frame
+from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.stepping.radau import A, C, D
 
 STAGES = [(np.array(x[:3]), np.array(x[3:])) for x in inside(2, *[(0.5, 2.0)] * 3, *[(-1, 1)] * 3)]
@@ -26,11 +27,9 @@ def begin(name, drawn, part):
 
 
 def stages(problem, frame, o, h, p, w):
-    """Return the three stages, and what the step is laid over."""
-    swing, p, w = plain(oscillation.swing)(o, h, True), tuple(p), tuple(w)
-    q = plain(newton.products)(p, w)
-    evaluate = plain(collocation.stage)
-    return [evaluate(problem, frame, swing, h, i, p, w, q) for i in range(3)], swing
+    """Return the three stages, and the step."""
+    step = SlipStep(plain(oscillation.swing)(o, h, True), h, tuple(p), tuple(w))
+    return [plain(collocation.stage)(problem, frame, step, i) for i in range(3)], step
 
 
 def residuals(*arguments):
@@ -92,10 +91,8 @@ def test_the_jacobian_is_the_derivative_of_the_residuals(name, drawn, part, p, w
         columns[2] = columns[6]
     matrix, size = np.transpose(columns[:6]), scale[:6].copy()
     size[2] = h if landing else size[2]
-    found, swing = stages(problem, frame, o, h, x[:3], x[3:6])
-    factors = plain(collocation.factors)(
-        frame, swing, h, landing, tuple(x[:3]), tuple(x[3:6]), *found
-    )
+    found, step = stages(problem, frame, o, h, x[:3], x[3:6])
+    factors = plain(collocation.factors)(frame, step, landing, *found)
     wanted = np.array([0.3, -0.5, 0.7, 0.2, 0.9, -0.4])
     right = matrix @ wanted
     dp, dw = plain(newton.solve_blocks)(factors, tuple(right[:3]), tuple(right[3:]))

@@ -11,6 +11,7 @@ from tests.unit.solver.exact.test_collocation import A, C, begin
 from tests.unit.solver.exact.test_newton import SLIDES
 
 from stiction.solver.exact import error_estimate, oscillation, slip_frame
+from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.state import Accuracy
 
 NODES = np.array([0.0, *C])
@@ -84,16 +85,15 @@ def test_the_error_of_a_step(name, drawn, size, motion, accuracy, turned_by):
         turned = abs(off_w) * (sigma + np.hypot(*s)) / S
         found.append(gamma * max(abs(off_p) / S, turned, *np.abs(off / axes)))
     error = plain(error_estimate.local_error)
-    got = error(problem, frame, o, swing, h, tuple(p), tuple(w), accuracy, motion)
+    step = SlipStep(swing, h, tuple(p), tuple(w))
+    got = error(problem, frame, o, step, accuracy, motion)
     assert got == pytest.approx(max(found), rel=1e-6)
 
 
 def test_a_slip_below_zero_is_infinitely_wrong():
     problem, frame, o, _, h = begin("steady", SLIDES[0], "not")
-    swing = plain(oscillation.swing)(o, h, False)
-    stages = (-frame.r,) * 3, (0.0,) * 3
-    error = plain(error_estimate.local_error)
-    assert error(problem, frame, o, swing, h, *stages, ACCURACY, inf) == inf
+    step = SlipStep(plain(oscillation.swing)(o, h, False), h, (-frame.r,) * 3, (0.0,) * 3)
+    assert plain(error_estimate.local_error)(problem, frame, o, step, ACCURACY, inf) == inf
 
 
 def test_the_integral_of_the_unknown_products():

@@ -9,6 +9,7 @@ from tests.systems import SLIDERS, problem_of
 from tests.unit.solver.exact.test_collocation import begin, residuals
 
 from stiction.solver.exact import newton, oscillation, slip_frame
+from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.state import Accuracy
 
 SLIDES = [(1e-3, 1e-5, 3e-2, 1e-2), (-1e-3, 2e-5, 1e-2, 4e-2)]
@@ -25,15 +26,14 @@ def solve_step(name, drawn, tolerance, share=0.3, motion=1.0, guess=1.0):
     """Solve a step from a slip as at its start; return what `solve` does, and the step."""
     problem, frame, o, _, h = begin(name, drawn, "laid over the oscillation")
     h, p = share * h, (guess * frame.r,) * 3
-    s = plain(oscillation.swing)(o, h, False)
-    w, accuracy = (0.0, 0.0, 0.0), held_to(tolerance)
-    found = plain(newton.solve)(problem, frame, o, s, h, False, p, w, accuracy, motion)
+    step = SlipStep(plain(oscillation.swing)(o, h, False), h, p, (0.0, 0.0, 0.0))
+    found = plain(newton.solve)(problem, frame, o, step, False, held_to(tolerance), motion)
     return found, (problem, frame, o, h)
 
 
 @ALL
 def test_the_residuals_vanish(name, drawn):
-    (converged, _, p, w, h, count), step = solve_step(name, drawn, 1e-13)
+    (converged, (_, h, p, w), count), step = solve_step(name, drawn, 1e-13)
     assert converged
     assert h == step[-1]
     assert 1 < count <= newton.ITERATIONS
@@ -47,9 +47,9 @@ def test_it_stops_where_what_is_left_is_less_than_asked_for(name, drawn):
 
     With a tolerance of ten times the first correction, one iteration is enough.
     """
-    (_, _, p, w, _, most), (_, frame, _, _) = solve_step(name, drawn, 1e-13)
+    (_, (_, _, p, w), most), (_, frame, _, _) = solve_step(name, drawn, 1e-13)
     for tolerance in (1e-3, 1e-6, 1e-9):
-        (converged, _, rough, turn, _, count), _ = solve_step(name, drawn, tolerance)
+        (converged, (_, _, rough, turn), count), _ = solve_step(name, drawn, tolerance)
         assert converged
         off = np.subtract(rough, p) / (SPEED + np.abs(p))
         assert max(np.abs(off).max(), np.abs(np.subtract(turn, w)).max()) < 10 * tolerance
@@ -78,7 +78,8 @@ def test_each_correction_is_held_against_the_slip_at_its_own_stage(stage, monkey
         solve = plain(newton.solve)
         monkeypatch.setitem(solve.__globals__, "solve_blocks", solve_blocks)
         before = tuple(np.add(p, part * scale * np.eye(6)[stage][:3]))
-        found = solve(problem, frame, o, s, h, False, before, (0.0,) * 3, held_to(1e-6), 1.0)
+        step = SlipStep(s, h, before, (0.0,) * 3)
+        found = solve(problem, frame, o, step, False, held_to(1e-6), 1.0)
         assert (found[0], found[-1] == 1) == (True, converged)
 
 
@@ -101,10 +102,9 @@ def test_a_landing_is_a_step_of_unknown_size(name):
     for part in (0.8, 1.0, 1.2):
         h = part * guess
         p = (0.8 * frame.r, 0.3 * frame.r, 0.0)
-        s = plain(oscillation.swing)(o, h, True)
-        accuracy, w = held_to(1e-12), (0.0, 0.0, 0.0)
-        converged, s, p, w, h, _ = plain(newton.solve)(
-            problem, frame, o, s, h, True, p, w, accuracy, 1.0
+        step = SlipStep(plain(oscillation.swing)(o, h, True), h, p, (0.0, 0.0, 0.0))
+        converged, (s, h, p, w), _ = plain(newton.solve)(
+            problem, frame, o, step, True, held_to(1e-12), 1.0
         )
         assert converged
         assert p[2] == 0.0
@@ -123,12 +123,10 @@ def test_the_size_of_a_landing_counts_by_itself(part):
     guess, sizes = frame.r / (outset.f - outset.a_1), []
     for accuracy in (held_to(1e-12), held_to(1e-5)._replace(speed=1e9)):
         h, p = part * guess, (0.8 * frame.r, 0.3 * frame.r, 0.0)
-        s = plain(oscillation.swing)(o, h, True)
-        *found, _ = plain(newton.solve)(
-            problem, frame, o, s, h, True, p, (0.0,) * 3, accuracy, 1e12
-        )
-        assert found[0]
-        sizes.append(found[4])
+        step = SlipStep(plain(oscillation.swing)(o, h, True), h, p, (0.0,) * 3)
+        converged, step, _ = plain(newton.solve)(problem, frame, o, step, True, accuracy, 1e12)
+        assert converged
+        sizes.append(step.h)
     assert sizes[1] == pytest.approx(sizes[0], rel=1e-4)
 
 
@@ -144,5 +142,6 @@ def test_it_gives_up():
     rising = problem._replace(load=problem_of("steady").load._replace(force=1e-9))
     s, p = plain(oscillation.swing)(o, h, True), (frame.r, frame.r, 0.0)
     pulled = frame._replace(spring_1=1e3)  # it speeds up: there is no landing
-    found = plain(newton.solve)(rising, pulled, o, s, h, True, p, (0.0,) * 3, held_to(1e-12), 1.0)
-    assert not found[0] or found[4] < 0.0
+    step = SlipStep(s, h, p, (0.0,) * 3)
+    converged, step, _ = plain(newton.solve)(rising, pulled, o, step, True, held_to(1e-12), 1.0)
+    assert not converged or step.h < 0.0

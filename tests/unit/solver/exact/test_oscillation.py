@@ -10,6 +10,7 @@ from tests.unit.solver.exact.test_collocation import begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 
 import stiction as st
+from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.exact.error_estimate import dips
 from stiction.solver.exact.oscillation import (
     CALM,
@@ -43,7 +44,8 @@ def _after(o, t):
 
 
 def _dips(o, h, p, margin):
-    return plain(dips)(o, plain(swing)(o, h, False), h, o.level + o.x, p, margin)
+    step = SlipStep(plain(swing)(o, h, False), h, p, (0.0, 0.0, 0.0))
+    return plain(dips)(o, step, o.level + o.x, margin)
 
 
 def _swing(o, h):

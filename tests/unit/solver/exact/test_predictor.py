@@ -11,6 +11,7 @@ from tests.unit.solver.exact.test_collocation import begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 
 from stiction.solver.exact import newton, oscillation, predictor, slip_frame
+from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.state import NO_LIMIT, Memory
 from stiction.solver.stepping.radau import A, C, D
 from stiction.solver.stick import margin, stick_duration
@@ -135,9 +136,10 @@ def test_a_take_off_is_guessed_along_its_branch(static):
         s = plain(oscillation.swing)(o, h, False)
         p, w = plain(predictor.predict)(frame, start, o, s, h, COLD)
         accuracy = held_to(1e-12)._replace(speed=1e-30)
-        found = plain(newton.solve)(problem, frame, o, s, h, False, p, w, accuracy, 1.0)
-        assert found[0]
-        off.append([np.divide(p, found[2]) - 1.0, np.divide(w, found[3]) - 1.0])
+        guess = SlipStep(s, h, p, w)
+        converged, found, _ = plain(newton.solve)(problem, frame, o, guess, False, accuracy, 1.0)
+        assert converged
+        off.append([np.divide(p, found.p) - 1.0, np.divide(w, found.w) - 1.0])
     assert np.abs(off[0]).max() < 0.05
     assert np.abs(off[1]).max() < 0.15 * np.abs(off[0]).max()
 
@@ -150,8 +152,9 @@ def test_over_the_oscillation_the_guess_is_of_the_second_order(name, drawn):
     for part in (0.1, 0.03):
         s = plain(oscillation.swing)(o, part * h, False)
         p, w = plain(predictor.predict)(frame, start, o, s, part * h, COLD)
-        _, _, p_1, w_1, _, _ = plain(newton.solve)(
-            problem, frame, o, s, part * h, False, p, w, held_to(1e-13), 1.0
+        guess = SlipStep(s, part * h, p, w)
+        _, (_, _, p_1, w_1), _ = plain(newton.solve)(
+            problem, frame, o, guess, False, held_to(1e-13), 1.0
         )
         off.append([np.abs(np.subtract(p, p_1)).max() / frame.r, np.abs(np.subtract(w, w_1)).max()])
     assert np.max(off[0]) < 4e-3

@@ -17,18 +17,17 @@ from stiction.solver.state import NOTHING, Motion, State
 @pytest.mark.parametrize("size", [0.02, 0.5])
 def test_the_motion_inside_a_kept_step(name, drawn, size):
     """At its end exactly, inside it up to what the cubic misses, which falls with the size."""
-    problem, frame, _, _, h, (swing, p, w) = step_of(name, drawn, size)
+    problem, frame, _, _, step = step_of(name, drawn, size)
+    _, h, p, _ = step
     row, start = np.full(record.WIDTH, np.nan), plain(slip_frame.outset)(problem, frame)
-    plain(record.write_step)(row, frame, start, swing, h, p, w)
+    plain(record.write_step)(row, frame, start, step)
     assert not np.isnan(row).any()
     motion = Motion(frame.t, frame.u_x, frame.u_y, frame.r, frame.e_x, frame.e_y)
     assert plain(record.start_of)(row) == motion
     moving, _ = plain(error_estimate.moving)(problem, frame, start, EXACT)
     scale = np.array([h * max(p), h * max(p), max(p), 1.0])
     for part, rel in ((0.0, 1e-14), (0.3, 1e-2 * size**2), (0.8, 1e-2 * size**2), (1.0, 1e-12)):
-        exact = plain(sampling.within)(
-            problem, frame, start, swing, h, p, w, part * h, EXACT, moving
-        )
+        exact = plain(sampling.within)(problem, frame, start, step, part * h, EXACT, moving)
         found = np.array(plain(record.slip_within)(row, part * h))
         assert found / scale == pytest.approx(np.array(exact) / scale, abs=rel)
 
@@ -68,6 +67,6 @@ def test_the_loop_keeps_each_step():
 
 def test_steps_beyond_the_room_are_counted_only():
     room = record.record_of(0)
-    plain(record.keep_step)(room, None, None, None, 0.1, None, None)
+    plain(record.keep_step)(room, None, None, None)
     plain(record.keep_landing)(room, None, 0.1, 1.0, 2.0, 3.0)
     assert room.used[0] == 2

@@ -10,6 +10,7 @@ from tests.unit.solver.exact.test_collocation import A, begin
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 
 from stiction.solver.exact import error_estimate, newton, oscillation, record, sampling, slip_frame
+from stiction.solver.exact.collocation import SlipStep
 
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])
 EXACT = held_to(1e-13)._replace(speed=1e-6, square_x=1e-3, square_y=1e-3)
@@ -19,15 +20,15 @@ def step_of(name, drawn, size):
     """Return a step of slip, solved."""
     problem, frame, o, printed, h = begin(name, drawn, "not")
     h *= size / 0.02
-    return problem, frame, o, printed, h, solve(problem, frame, o, h)
+    return problem, frame, o, printed, solve(problem, frame, o, h)
 
 
 def solve(problem, frame, o, h):
-    """Return what a step is laid over, and its stages."""
-    s, flat = plain(oscillation.swing)(o, h, False), ((frame.r,) * 3, (0.0,) * 3)
-    found = plain(newton.solve)(problem, frame, o, s, h, False, *flat, EXACT, 1.0)
-    assert found[0]
-    return found[1:4]
+    """Return a step."""
+    guess = SlipStep(plain(oscillation.swing)(o, h, False), h, (frame.r,) * 3, (0.0,) * 3)
+    converged, found, _ = plain(newton.solve)(problem, frame, o, guess, False, EXACT, 1.0)
+    assert converged
+    return found
 
 
 @ALL
@@ -35,18 +36,19 @@ def solve(problem, frame, o, h):
 @pytest.mark.parametrize("part", [0.05, 0.6, 1.0])
 def test_a_value_inside_a_step_is_the_end_of_a_shorter_one(name, drawn, size, part):
     """Section 14 of the method, and (M30)."""
-    problem, frame, o, printed, h, (swing, p, w) = step_of(name, drawn, size)
+    problem, frame, o, printed, step = step_of(name, drawn, size)
+    h = step.h
     dt = h if part == 1.0 else part * h
-    shorter, q, turn = solve(problem, frame, o, dt)
+    shorter, _, q, turn = solve(problem, frame, o, dt)
     start = plain(slip_frame.outset)(problem, frame)
     motion, _ = plain(error_estimate.moving)(problem, frame, start, EXACT)
-    found = plain(sampling.within)(problem, frame, start, swing, h, p, w, dt, EXACT, motion)
+    found = plain(sampling.within)(problem, frame, start, step, dt, EXACT, motion)
     z_1 = dt * (A[2] @ q + shorter.slid[2])
     assert found == pytest.approx((z_1, dt * A[2] @ np.multiply(q, turn), q[2], turn[2]), rel=1e-9)
     # what the whole samples say
     times, samples = np.array([frame.t - 1.0, frame.t + dt, frame.t + 2 * h]), np.zeros((3, 7))
     sample = plain(sampling.sample_slip)
-    k = sample(problem, frame, start, swing, h, p, w, EXACT, times, samples, 1)
+    k = sample(problem, frame, start, step, EXACT, times, samples, 1)
     assert k == 2
     assert not samples[[0, 2]].any()
     u = plain(slip_frame.elongation)(problem, frame, dt, *found[:2])
@@ -56,16 +58,17 @@ def test_a_value_inside_a_step_is_the_end_of_a_shorter_one(name, drawn, size, pa
     f, _ = printed.friction(frame.t + dt, q[2] * np.hypot(*e))
     force = printed.m * f * N @ e / np.sqrt(e @ N @ e)
     assert samples[1] == pytest.approx([*u, *(q[2] * e), *force, 0.0], rel=1e-7)
-    assert sample(problem, frame, start, swing, h, p, w, EXACT, times, samples, 2) == 2
-    assert sample(problem, frame, start, swing, h, p, w, EXACT, times, samples, 3) == 3
+    assert sample(problem, frame, start, step, EXACT, times, samples, 2) == 2
+    assert sample(problem, frame, start, step, EXACT, times, samples, 3) == 3
 
 
 @ALL
 @pytest.mark.parametrize("size", [0.02, 0.035])
 def test_where_that_is_accurate_enough_the_polynomial_is_taken(name, drawn, size):
-    problem, frame, o, _, h, (swing, p, w) = step_of(name, drawn, size)
+    problem, frame, o, _, step = step_of(name, drawn, size)
+    swing, h, p, w = step
     start, coarse = plain(slip_frame.outset)(problem, frame), EXACT._replace(inside=1e-6)
-    arguments = problem, frame, start, swing, h, p, w
+    arguments = problem, frame, start, step
     for part in (0.2, 0.7):
         found = plain(sampling.within)(*arguments, part * h, coarse, 1.0)
         rest, across = np.subtract(p, swing.p), np.multiply(p, w)
@@ -86,41 +89,37 @@ def test_nothing_swings_in_a_part_of_a_step_longer_than_an_oscillation(name, dra
     problem, frame, o, _, _ = begin(name, drawn, "not")
     h = 1.4 * np.sqrt(oscillation.MOST / o.k)
     start, motion = plain(slip_frame.outset)(problem, frame), 1.0
-    still, flat = plain(oscillation.still)(), ((frame.r,) * 3, (0.0,) * 3)
+    step = SlipStep(plain(oscillation.still)(), h, (frame.r,) * 3, (0.0,) * 3)
     assert not plain(oscillation.swings)(o, h)
     for part in (0.3, 0.6):  # of a step whose stages are any
-        found = plain(newton.solve)(problem, frame, o, still, part * h, False, *flat, EXACT, motion)
-        if not (found[0] and min(found[2]) > 0.0):
+        shorter = step._replace(h=part * h)
+        converged, found, _ = plain(newton.solve)(problem, frame, o, shorter, False, EXACT, motion)
+        if not (converged and min(found.p) > 0.0):
             continue
-        value = plain(sampling.within)(
-            problem, frame, start, still, h, *flat, part * h, EXACT, motion
-        )
-        assert value[2:] == pytest.approx((found[2][2], found[3][2]), rel=1e-9)
+        value = plain(sampling.within)(problem, frame, start, step, part * h, EXACT, motion)
+        assert value[2:] == pytest.approx((found.p[2], found.w[2]), rel=1e-9)
 
 
 def test_where_a_shorter_step_is_not_found_the_cubic_is_taken():
     """And the slip is no less than zero."""
-    problem, frame, _, _, h, (swing, p, w) = step_of("steady", SLIDES[0], 0.02)
+    problem, frame, _, _, step = step_of("steady", SLIDES[0], 0.02)
+    h = step.h
     start, never = plain(slip_frame.outset)(problem, frame), EXACT._replace(newton=0.0)
     arguments = 0.5 * h, never, 1.0
     within = plain(sampling.within)
-    found = within(problem, frame, start, swing, h, p, w, *arguments)
-    exact = within(problem, frame, start, swing, h, p, w, 0.5 * h, EXACT, 1.0)
+    found = within(problem, frame, start, step, *arguments)
+    exact = within(problem, frame, start, step, 0.5 * h, EXACT, 1.0)
     assert found == pytest.approx(exact, rel=1e-3)
     assert found != exact
-    falling = tuple(-each for each in p)
-    assert within(problem, frame, start, swing, h, falling, w, *arguments)[2] == 0.0
-    assert within(problem, frame, start, swing, h, p, w, 0.0, EXACT, 1.0) == (
-        0.0,
-        0.0,
-        frame.r,
-        0.0,
-    )
-    problem, frame, _, _, h, (swing, p, w) = step_of("steady", SLIDES[0], 0.5)
+    falling = step._replace(p=tuple(-each for each in step.p))
+    assert within(problem, frame, start, falling, *arguments)[2] == 0.0
+    assert within(problem, frame, start, step, 0.0, EXACT, 1.0) == (0.0, 0.0, frame.r, 0.0)
+    problem, frame, _, _, step = step_of("steady", SLIDES[0], 0.5)
+    h = step.h
     start = plain(slip_frame.outset)(problem, frame)
     for dt in (0.5 * h, 0.05 * h):  # both over the oscillation, or the shorter one is not
-        found = within(problem, frame, start, swing, h, p, w, dt, never, 1.0)
-        exact = within(problem, frame, start, swing, h, p, w, dt, EXACT, 1.0)
+        found = within(problem, frame, start, step, dt, never, 1.0)
+        exact = within(problem, frame, start, step, dt, EXACT, 1.0)
         scale = exact[0], exact[0], exact[2], 1.0
         assert np.divide(found, scale) == pytest.approx(np.divide(exact, scale), abs=2e-2)
 
