@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from math import copysign, inf, isfinite, nan, radians, sqrt
 from typing import Any, NamedTuple
 
 from stiction.auditing.chain import softest_path
 from stiction.auditing.prediction import predict
+from stiction.auditing.progress import Progress, part, silent
 from stiction.auditing.simulated_test import (
     LEAST_WORK,
     SLIDES,
-    Progress,
     SimulatedTest,
     coarse_rate,
     simulate_test,
@@ -79,29 +79,25 @@ class Remedy(NamedTuple):
         return slides and self.growth < 0.0
 
 
-def advise(slider: Slider, stable: bool, work: int, progress: Progress = None) -> Iterator[Remedy]:
+def advise(
+    slider: Slider, stable: bool, work: int, progress: Progress = silent
+) -> Iterator[Remedy]:
     """Yield, for each parameter, the nearest value with steady sliding, tried from rest.
 
     If steady sliding is already `stable`, only not reached from rest, ever larger values are tried.
     `work` limits all simulations together, see `SimulatedTest.work`; each parameter passes the rest
     of its share on to the next. `progress` receives the fraction of parameters done.
     """
-    told = progress or (lambda fraction: None)
     paths = [softest_path(slider) if path == "k_x" else path for path in LEVERS]
     for number, path in enumerate(paths):
-
-        def report(fraction: float, before: int = number) -> None:
-            told((before + fraction) / len(LEVERS))
-
+        report = part(progress, number, len(LEVERS))
         advice = advise_one(slider, path, stable, work // (len(LEVERS) - number), report)
         work -= advice.work
         report(1.0)
         yield advice
 
 
-def advise_one(
-    slider: Slider, path: str, stable: bool, work: int, progress: Callable[[float], None]
-) -> Remedy:
+def advise_one(slider: Slider, path: str, stable: bool, work: int, progress: Progress) -> Remedy:
     """Return the nearest value of one parameter with steady sliding, tried from rest."""
     if stable:
         advice = Remedy(path, unit(slider, path), read(slider, path), None, *NOT_TRIED)
@@ -112,18 +108,13 @@ def advise_one(
         advice = Remedy(path, found.unit, now, found, *NOT_TRIED)
         ways = [nearest(found, now, beyond) for beyond in BEYOND]
     for number, then in enumerate(ways):
-
-        def report(fraction: float, before: int = number) -> None:
-            progress((before + fraction) / len(ways))
-
         if not isfinite(then) or then == advice.then:  # nowhere, or the middle again
             break
         left = work - advice.work
         if left < LEAST_WORK:
             return advice._replace(cut=True)
-        seen = try_change(
-            change_parameter(slider, path, quantity(slider, path, then)), left, report
-        )
+        changed = change_parameter(slider, path, quantity(slider, path, then))
+        seen = try_change(changed, left, part(progress, number, len(ways)))
         spent = advice.work + (seen["tried"].work if seen["tried"] else 0)
         advice = advice._replace(then=then, work=spent, **seen)
         if advice.tried is None or advice.works:

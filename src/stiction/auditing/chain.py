@@ -10,9 +10,9 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.progress import Progress, part, silent
 from stiction.auditing.simulated_test import (
     LEAST_WORK,
-    Progress,
     SimulatedTest,
     coarse_rate,
     simulate_test,
@@ -77,7 +77,7 @@ class Chain(NamedTuple):
     replacements: tuple[Replacement, ...]
 
 
-def examine(slider: Slider, work: int, progress: Progress = None) -> Chain:
+def examine(slider: Slider, work: int, progress: Progress = silent) -> Chain:
     """Return the springs in series of a slider, and each replaced; `work` limits simulations."""
     return Chain(parts(slider), tuple(replace_each(slider, work, progress)))
 
@@ -138,19 +138,15 @@ def softest_path(slider: Slider) -> str:
     return f"springs.{spring.slug}.{c if getattr(spring, k) is None else k}"
 
 
-def replace_each(slider: Slider, work: int, progress: Progress = None) -> Iterator[Replacement]:
+def replace_each(slider: Slider, work: int, progress: Progress = silent) -> Iterator[Replacement]:
     """Yield each part replaced by one twice as stiff, then by a rigid one, tried from rest."""
     count = len(slider.springs) * len(FACTORS)
-    report = progress or (lambda fraction: None)
     for number in range(count):
         place, which = divmod(number, len(FACTORS))
-
-        def part_of(fraction: float, before: int = number) -> None:
-            report((before + fraction) / count)
-
-        found = replace_one(slider, place, FACTORS[which], work // (count - number), part_of)
+        report = part(progress, number, count)
+        found = replace_one(slider, place, FACTORS[which], work // (count - number), report)
         work -= found.tried.work if found.tried else 0
-        part_of(1.0)
+        report(1.0)
         yield found
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from stiction.analysis.record import Record
 from stiction.analysis.report import analyse
+from stiction.auditing.progress import silent
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
@@ -98,7 +99,7 @@ def compare(
         If nothing of the rig is uncertain, or it is not of a kind that can be fitted.
     """
     check(rig)
-    report = progress or (lambda fraction: None)
+    report = progress or silent
     try:
         seen = observe(record, rig.slider)
         found = fit(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -12,6 +13,7 @@ from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
 from stiction.auditing.chain_words import chain_sections
 from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.progress import Progress, part, silent
 from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
@@ -186,7 +188,7 @@ def audit(
     <Audit: settling; steady sliding is stable>
     """
     rig = rig_of(slider)
-    told = progress or (lambda fraction: None)
+    told = progress or silent
     before = FITTING if record is not None else 0.0
     measured = None
     if record is not None:
@@ -200,31 +202,26 @@ def audit(
     return _examine(rig, measured, lambda fraction: told(before + (1.0 - before) * fraction))
 
 
-def _examine(rig: Rig, measured: RecordComparison | None, report: Callable[[float], None]) -> Audit:
+def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) -> Audit:
     """Return the audit of a rig, whose record was compared with it before."""
     system = rig.slider
-    parts = PARTS + (MORE if "phi" in rig.priors else 0)
-
-    def part(number: int, of: int = 1) -> Callable[[float], None]:
-        """Return the progress callback of some parts."""
-        return lambda fraction: report((number + of * fraction) / parts)
-
+    report = partial(part, progress, count=PARTS + (MORE if "phi" in rig.priors else 0))
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
     rate = max(prediction.sample_rate, coarse_rate(prediction))
-    observation = simulate_test(system, prediction, growth, sample_rate=rate, progress=part(0))
-    sliding_on = from_sliding(sliding, prediction, part(1))
+    observation = simulate_test(system, prediction, growth, sample_rate=rate, progress=report(0))
+    sliding_on = from_sliding(sliding, prediction, report(1))
     work = MOST_WORK - observation.work - sliding_on.work
     springs = None
     if system.springs:
-        springs = chain.examine(system, work // 2, part(2))
+        springs = chain.examine(system, work // 2, report(2))
         work -= sum(each.tried.work for each in springs.replacements if each.tried)
     advices: tuple[Remedy, ...] = ()
     if not sliding.stable or observation.comes_to != SLIDES:
-        advices = tuple(advise(system, sliding.stable, work, part(3, len(LEVERS))))
+        advices = tuple(advise(system, sliding.stable, work, report(3, of=len(LEVERS))))
     misalignment = critical(system, "phi")
-    tolerance = budget(rig, part(PARTS, MORE)) if "phi" in rig.priors else None
-    report(1.0)
+    tolerance = budget(rig, report(PARTS, of=MORE)) if "phi" in rig.priors else None
+    progress(1.0)
     both = observation, sliding_on
     return Audit(
         system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured

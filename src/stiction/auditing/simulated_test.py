@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite, nan
@@ -21,6 +20,7 @@ from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, record_of
 from stiction.arrays import xr
 from stiction.auditing.prediction import SEEN, Prediction
+from stiction.auditing.progress import Progress, silent
 from stiction.linear_stability import Linearisation
 from stiction.simulation import simulate
 from stiction.system.initial import Initial
@@ -39,8 +39,6 @@ LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
 SHARE = 0.35  # of that for each of the tests from rest and from sliding
 FINE = 1000.0  # samples from the one before the first slip to the one after it
 MANY = 50_000  # transverse periods above which fewer cycles are simulated
-
-Progress = Callable[[float], None] | None
 
 SMALL = "an oscillation too small for the load cell to tell"
 # final states of a run
@@ -142,7 +140,7 @@ def simulate_test(
     start: Initial | None = None,
     multiscale: bool | Literal["auto"] | None = None,
     most_steps: int = int(SHARE * MOST_WORK),
-    progress: Progress = None,
+    progress: Progress = silent,
 ) -> SimulatedTest:
     """Simulate a friction test.
 
@@ -188,7 +186,7 @@ def simulate_test(
 
 
 def from_sliding(
-    linear: Linearisation, prediction: Prediction, progress: Progress = None
+    linear: Linearisation, prediction: Prediction, progress: Progress = silent
 ) -> SimulatedTest:
     """Simulate the test from steady sliding, disturbed by a hundredth of the speed."""
     return simulate_test(

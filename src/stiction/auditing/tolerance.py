@@ -13,6 +13,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.auditing.prediction import predict
+from stiction.auditing.progress import Progress, silent
 from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, simulate_test
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
@@ -24,8 +25,6 @@ from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
-
-Progress = Callable[[float], None]
 
 ALLOWED = 0.02  # error of the static coefficient
 DRAWS = 64  # of the priors, a power of 2 for Sobol's sequence
@@ -187,7 +186,7 @@ def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
 
     def errors(angles: Floats) -> Floats:
         sides = np.copysign(angles, slider.misalignment).tolist()
-        found = read_all([turn_to(slider, side) for side in sides], lambda fraction: None)
+        found = read_all([turn_to(slider, side) for side in sides], silent)
         return np.asarray(abs(found[:, 0] / aligned - 1.0))
 
     last = min(max(farthest, radians(0.5 * FARTHEST)), radians(FARTHEST))
