@@ -22,7 +22,7 @@ from benchmarks.explore.systems.set_valued import System
 from benchmarks.section import Section, Table
 from stiction.friction import has_state
 from stiction.plotting.page.style import BLUE, PAGE, RED, new_figure, panel_letter, style
-from stiction.solver.integrate import FACTOR
+from stiction.solver.accuracy import FACTOR
 
 TOLERANCES = tuple(10.0**-n for n in range(3, 10))
 LASTS = 3.0  # s

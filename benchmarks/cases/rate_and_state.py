@@ -11,7 +11,7 @@ import stiction as st
 from benchmarks.cases.case import Case, growth
 from stiction.presets import Number
 from stiction.presets.preset import on_a_line
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 A, B, D_C, V, SIGMA, MASS = 0.01, 0.015, 1e-5, 1e-2, 5e6, 1e3  # all per unit area
 

@@ -11,7 +11,7 @@ from scipy.optimize import brentq
 import stiction as st
 from benchmarks.cases.case import Case, growth
 from stiction.presets import Number
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 LOW, HIGH = 8.0, 9.3  # deg
 RATE = 1e3  # samples a second: some hundred in a period of the slow oscillation

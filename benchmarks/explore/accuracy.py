@@ -20,7 +20,7 @@ from benchmarks.explore.systems.set_valued import system
 from benchmarks.explore.systems.unsteady import unsteady_system
 from benchmarks.explore.systems.with_state import state_system
 from benchmarks.section import Section, Table
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 from stiction.solver.multiscale.return_map import STEP_SHARE
 
 IN_STEPS = 30.0  # the bound of the error over the response

@@ -20,7 +20,7 @@ from scipy.linalg import expm
 import stiction as st
 from benchmarks.explore.draw import Draw
 from benchmarks.explore.systems.set_valued import System, system
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 SAMPLES = 5  # of a run
 PERIODS = 12.0  # of the faster oscillation, after the first stick

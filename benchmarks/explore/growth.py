@@ -21,7 +21,7 @@ from benchmarks.explore.accuracy import DRAWN
 from benchmarks.explore.systems.set_valued import System
 from stiction.errors import StictionError
 from stiction.linear_stability import Linearisation, steady_sliding
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 SIZES = (1e-4, 1e-7, 1e-10)  # of the drive's speed, or of a state
 RTOLS = (1e-3, 1e-6, 1e-9)

@@ -15,8 +15,9 @@ from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status, echo
 from stiction.friction import has_state, states
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
+from stiction.solver.accuracy import tolerance
 from stiction.solver.compilation.refusal import reasons
-from stiction.solver.integrate import Solution, integrate, tolerance
+from stiction.solver.integrate import Solution, integrate
 from stiction.storage.version import own_version
 from stiction.system.description import Description, Settings, description_of
 from stiction.system.initial import Initial

@@ -13,7 +13,7 @@ from benchmarks.explore.systems.set_valued import System
 
 import stiction as st
 from stiction.presets.preset import on_a_line
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 SEED = 1
 ANY = (0, 1, 3, 4, 5, 7, 10, 12, 14, 16, 18, 21, 22, 27, 28, 29, 32, 36, 41, 42, 45, 47, 55, 58)

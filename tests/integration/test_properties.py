@@ -8,7 +8,7 @@ from benchmarks.explore.draw import Draw
 from tests.drawn import SEED
 
 import stiction as st
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 
 def slider_of(draw: Draw, damped: bool = True) -> st.Slider:

@@ -10,7 +10,7 @@ import numpy as np
 import stiction as st
 from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
 from benchmarks.explore.rigs.drawing import rig
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 from stiction.solver.reference import twin
 from stiction.system.tensors import mass_tensor
 

@@ -13,7 +13,7 @@ from stiction.arrays import Floats, xr
 from stiction.drive import drive_stretches, jump
 from stiction.drive.program import pick
 from stiction.errors import ResultError, echo
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mass_tensor
 from stiction.trajectory import Trajectory

@@ -2,29 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
-from functools import lru_cache
-from math import hypot, inf, pi, sqrt
+from collections.abc import Callable
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 
 from stiction.arrays import Floats
 from stiction.drive import jump
-from stiction.drive.bounds import load_bounds
 from stiction.friction import has_state
+from stiction.solver.accuracy import Accuracy, accuracy, scales_of
 from stiction.solver.exact.method import Exact
 from stiction.solver.multiscale.automatic import Automatic
 from stiction.solver.multiscale.method import Multiscale
 from stiction.solver.problem import Problem, varies
 from stiction.solver.segments import (
     Stretch,
-    begin,
-    fastest_swing,
     rig_of,
-    speeds,
     stretches,
-    system_of,
 )
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import (
@@ -33,21 +27,15 @@ from stiction.solver.state import (
     CONTACT_LOST,
     RUNNING,
     TOO_MANY_STEPS,
-    Accuracy,
     Counts,
     Output,
 )
 from stiction.solver.stepping.amplification import longest_step
-from stiction.solver.stepping.control import Time, known_up_to
+from stiction.solver.stepping.limit import Time, known_up_to
 from stiction.system.description import Description
-from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.tensors import solver_axes
 
-LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
-LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
-TINY = float(np.finfo(np.float64).tiny)
-FACTOR = 0.8  # of (M39): measured by python -m benchmarks --only calibration
 BUDGET = 100_000  # turns of the loop between two progress reports: some 30 ms
 BLOCK = 5_000  # turns between two blocks of samples that are not kept: some MB at 60 a turn
 
@@ -64,97 +52,6 @@ class Solution(NamedTuple):
     samples: np.ndarray
     sticks: np.ndarray
     counts: Counts
-
-
-def tolerance(rtol: float) -> float:
-    """Return the local tolerance for a desired relative error of the result (M39).
-
-    The estimate of the local error falls with h^4 (the cubic inside a step), the error of
-    the result with h^5 (the order of the method), hence the power 4/5: the result's error is
-    then proportional to rtol. The factor is measured on 18 systems, by ``python -m benchmarks
-    --only calibration``: the error, told as a change of mass or load, is rtol in their middle.
-    """
-    return FACTOR * float(rtol**0.8)
-
-
-class Scales(NamedTuple):
-    """A run's friction coefficient, and the speed of mass and springs at its start (m/s)."""
-
-    mu: float
-    elastic: float
-
-
-def scales_of(slider: Slider, initial: Initial) -> Scales:
-    """Return the numbers of a run from which its tolerances follow."""
-    system, ((u_x, u_y), slip) = system_of(slider), begin(slider, initial)
-    swing = u_x / sqrt(system.mass / system.k_x), u_y / sqrt(system.mass / system.k_y)
-    return Scales(slider.F_0 / slider.normal_load, hypot(*slip, *swing))
-
-
-def accuracy(
-    slider: Slider,
-    scales: Scales,
-    stretch: Stretch,
-    start: float,
-    rtol: float,
-    inside: float = 0.0,
-) -> Accuracy:
-    """Return the tolerances of the steps in a stretch.
-
-    Its speed (M40) is V sin(phi), at which the transverse motion slips; without misalignment V;
-    without a drive a millionth of the speed that friction can give the mass on its spring, which is
-    also the upper limit; without either a tiny share of the initial speeds. Friction that weakens
-    at the rate g = -F'(0)/m per second lets slip grow from k V/(m g^2), which must then be
-    resolved; k is the acting stiffness, and g the steepest rate up to some V.
-    """
-    along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
-    law: Any = slider.law
-    load = load_bounds(stretch.problem.load, start, stretch.end)[0]
-    mu, elastic = scales
-    surface = stretch.problem.surface
-    system = stretch.problem.system
-    free_x = mu * load * sqrt(surface.xx / (system.mass * system.k_x))
-    free_y = mu * load * sqrt(surface.yy / (system.mass * system.k_y))
-    free = min(free_x, free_y)
-    square_x, square_y = system.mass / system.k_x, system.mass / system.k_y
-    speed, k = (across, system.k_y) if across > 0.0 else (along or 1e-6 * free, system.k_x)
-    if free > 0.0:
-        speed = min(speed, free)
-    weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
-    speed = max(speed / (1.0 + weakening**2 / (k * system.mass)), LEAST_SPEED * elastic, TINY)
-    local = tolerance(rtol)
-    # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
-    newton = min(0.2, 100.0 * sqrt(local)) * local
-    rate = fastest_swing(stretch.problem)
-    longest = 0.5 * pi / rate if rate > 0.0 else inf
-    drive = along or across or inf
-    touch = local * speed
-    least = LEAST_MOTION * (along + across + free_x + free_y) / local
-    return Accuracy(
-        local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, inside,
-        least,
-    )  # fmt: skip
-
-
-@lru_cache(maxsize=256, typed=True)  # laws of different classes may be equal as tuples
-def steepest_weakening(law: Hashable, speed: float) -> float:
-    """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m.
-
-    It is sought at ten speeds per decade, and again around the steepest.
-    """
-    known: Any = law
-
-    def weakening(v: float) -> float:
-        try:
-            return -float(known.slope(v))
-        except ArithmeticError:  # compiled code tells inf there, or zero over it
-            return 0.0
-
-    tenths = range(-90, 11)
-    slopes = [weakening(speed * 10.0 ** (i / 10)) for i in tenths]
-    steepest = tenths[slopes.index(max(slopes))]
-    beside = (speed * 10.0 ** (min(steepest + i / 4, 10.0) / 10) for i in range(-3, 4))
-    return max(0.0, weakening(0.0), *slopes, *map(weakening, beside))
 
 
 Report = Callable[[float], None]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -13,6 +13,7 @@ from stiction.machine import shortage
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.compilation.stand_in import called_from_both
 from stiction.solver.problem import System
+from stiction.solver.stepping.limit import NO_LIMIT, Limit, elsewhere
 
 STICK = 80.0  # bytes of memory per stick interval, for all tables and intermediate arrays
 # how the loop ended; it runs on, or asks how long a step about steady sliding may be
@@ -50,35 +51,6 @@ class Output:
         self.sticks = np.concatenate([self.sticks, np.empty_like(self.sticks)])
 
 
-class Accuracy(NamedTuple):
-    """The tolerances of a step.
-
-    tolerance : relative error of the slip velocity and of the friction's direction in a step;
-    newton : relative size of negligible Newton corrections;
-    speed : slip speed below which these are absolute, m/s; free_x, free_y : elongation rates that
-    friction alone can cause, mu_0 W/sqrt(m k), m/s: limits of the scale of a fast slip, so that the
-    springs' own motion is resolved; longest : step size that still resolves drive and load, s;
-    drive : its speed along x, or along y if it has none there, m/s, upper limit of a slip's scale;
-    square_x, square_y : m/k, the square of the time in which each spring swings by a radian, s^2;
-    touch : least spare friction of a true stick, m/s; inside : relative error that samples inside
-    a step may have: below the tolerance they are solved for; least : smallest motion about steady
-    sliding above rounding, m/s.
-    """
-
-    tolerance: float
-    newton: float
-    speed: float
-    free_x: float
-    free_y: float
-    longest: float
-    drive: float
-    square_x: float
-    square_y: float
-    touch: float
-    inside: float
-    least: float
-
-
 class Motion(NamedTuple):
     """Time (s), elongation (m), slip speed (m/s; zero while sticking) and its direction."""
 
@@ -93,13 +65,6 @@ class Motion(NamedTuple):
 CUT = 0.25  # of the size to try: a step so much shorter ends at a row of a table
 Plan = tuple[float, float, float, float, float, float, float, float]
 PLANNED = 8
-
-
-# The longest step that shows how disturbances of steady sliding grow (M43a), s; and the size of
-# steps, or where drive or load vary the time, up to which it need not be asked for again
-Limit = tuple[float, float]
-NO_LIMIT: Limit = (inf, -inf)
-NEVER_ASKED: Limit = (inf, inf)  # of what lands again at a known time
 
 
 class Memory(NamedTuple):
@@ -206,12 +171,6 @@ def with_limit(memory: Memory, limit: Limit) -> Memory:
     """Return the memory with another limit of steps about steady sliding."""
     h, plan, place, h_last, ease, warm, p, w, _ = memory
     return Memory(h, plan, place, h_last, ease, warm, p, w, limit)
-
-
-@inlined
-def elsewhere(limit: Limit) -> Limit:
-    """Return the limit away from steady sliding: none, to be asked for where it is near again."""
-    return limit if limit[1] == inf else NO_LIMIT
 
 
 @inlined

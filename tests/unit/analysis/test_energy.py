@@ -11,7 +11,7 @@ import stiction as st
 from stiction.analysis.quadrature import GAUSS, KRONROD, NODES, integrals, panels
 from stiction.plotting.analysis.energy import PARTS, plot_energy
 from stiction.plotting.page.canvas import figure_of
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 PROGRAM = st.protocols.DriveProgram(
     velocity=1e-3,

@@ -13,7 +13,7 @@ from tests.drawn import inside
 
 import stiction as st
 from stiction.drive.signal import Signal
-from stiction.solver.integrate import tolerance
+from stiction.solver.accuracy import tolerance
 
 RTOL = 1e-10
 EVERY_PIECE = [

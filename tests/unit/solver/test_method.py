@@ -22,12 +22,12 @@ from tests.rebuilt.step import PI, A, C, D, Step, gamma
 
 import stiction as st
 import stiction.solver
+from stiction.solver.accuracy import accuracy, scales_of, tolerance
 from stiction.solver.compilation.jit import call_compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.method import Exact
 from stiction.solver.exact.pursuit import slip_before_landing
 from stiction.solver.exact.record import record_of
-from stiction.solver.integrate import accuracy, scales_of, tolerance
 from stiction.solver.problem import Elliptic, Isotropic, kinds_of
 from stiction.solver.regularised import (
     Smoothed,

@@ -15,8 +15,8 @@ from tests.entry import plain
 
 import stiction as st
 from stiction.solver import reference
+from stiction.solver.accuracy import tolerance
 from stiction.solver.exact.pursuit import landing_slip, landing_time
-from stiction.solver.integrate import tolerance
 from stiction.solver.reference import twin
 from stiction.solver.segments import stretches
 from stiction.solver.stepping.radau import (

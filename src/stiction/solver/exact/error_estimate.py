@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep, products
 from stiction.solver.exact.oscillation import MOST, Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, friction, pull
 from stiction.solver.problem import Problem, in_principal_axes, rate, rate_change
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import Triple, less
 from stiction.solver.stepping.control import motion_of
 from stiction.solver.stepping.radau import (

@@ -6,6 +6,7 @@ from math import isfinite, sqrt
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.exact.pursuit import land, pursuit
 from stiction.solver.exact.record import StepRecord, keep_step
@@ -36,7 +37,6 @@ from stiction.solver.state import (
     PLANNED,
     RUNNING,
     STEP_UNDERFLOW,
-    Accuracy,
     Counts,
     Memory,
     Motion,
@@ -45,13 +45,13 @@ from stiction.solver.state import (
     after_cut,
     at_takeoff,
     count_step,
-    elsewhere,
     plain,
     size_to_try,
     write_plan,
 )
 from stiction.solver.stepping.block_algebra import Triple
-from stiction.solver.stepping.control import ASKED, CALMEST, GROWTH, ease, step_factor, trend
+from stiction.solver.stepping.control import CALMEST, GROWTH, ease, step_factor, trend
+from stiction.solver.stepping.limit import ASKED, elsewhere
 from stiction.solver.stick import holding, holds_on, margin, stick_duration, to_spare
 from stiction.solver.surface import takeoff
 

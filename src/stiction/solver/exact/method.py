@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled
 from stiction.solver.exact.loop import steps
 from stiction.solver.exact.record import record_of
@@ -18,15 +19,7 @@ from stiction.solver.problem import Problem, at, call_for, is_aligned, isotropic
 from stiction.solver.regularised import Smoothed, gradient_in_axes
 from stiction.solver.rig import as_general
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
-from stiction.solver.state import (
-    Accuracy,
-    Motion,
-    Output,
-    State,
-    drop_memory,
-    start,
-    state_from_plain,
-)
+from stiction.solver.state import Motion, Output, State, drop_memory, start, state_from_plain
 from stiction.solver.stepping.amplification import write_rates
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along, metric_into, speed_ratio

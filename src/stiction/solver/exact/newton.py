@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep, factors, stage
 from stiction.solver.exact.oscillation import Oscillator, swing
 from stiction.solver.exact.slip_frame import Frame
 from stiction.solver.problem import Problem
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import solve_blocks
 from stiction.solver.stepping.control import CONTRACTS, diverging, settled
 from stiction.solver.stepping.radau import FIRST, SECOND, THIRD

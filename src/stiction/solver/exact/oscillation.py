@@ -18,9 +18,9 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined, switch
 from stiction.solver.exact.slip_frame import Frame, Outset
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import Triple, dot
 from stiction.solver.stepping.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
 

@@ -18,12 +18,13 @@ from math import atan2, cos, inf, sin, sqrt, tan
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.record import StepRecord, keep_landing
 from stiction.solver.exact.sampling import fill
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
-from stiction.solver.state import Accuracy, Motion, State, at_takeoff
+from stiction.solver.state import Motion, State, at_takeoff
 
 INSTANT = 1e-13  # of the time so far, and of a spring's time for a radian
 

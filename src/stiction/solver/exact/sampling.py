@@ -15,6 +15,7 @@ from math import sqrt
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep, products
 from stiction.solver.exact.error_estimate import moving
@@ -23,7 +24,7 @@ from stiction.solver.exact.oscillation import NO_LANDING, after, oscillator, sti
 from stiction.solver.exact.record import on_polynomial
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
 from stiction.solver.problem import Problem, in_principal_axes, travel
-from stiction.solver.state import Accuracy, Motion
+from stiction.solver.state import Motion
 from stiction.solver.stepping.block_algebra import Triple, dot, less
 from stiction.solver.stepping.radau import A, C, cubic
 from stiction.solver.stick import holding

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.exact.error_estimate import dips, local_error, moving
@@ -12,16 +13,9 @@ from stiction.solver.exact.oscillation import Oscillator, oscillator, still, swi
 from stiction.solver.exact.predictor import passes, predict, swung_to_rest, time_to_landing
 from stiction.solver.exact.slip_frame import Frame, Outset
 from stiction.solver.problem import Problem, varies
-from stiction.solver.state import Accuracy, Limit, Memory, size_to_try
-from stiction.solver.stepping.control import (
-    ATTEMPTS,
-    FAILED,
-    RESOLUTION,
-    Time,
-    limit_there,
-    step_factor,
-    within_limit,
-)
+from stiction.solver.state import Memory, size_to_try
+from stiction.solver.stepping.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
+from stiction.solver.stepping.limit import Limit, Time, limit_there, within_limit
 
 ROUNDING = 1e-15  # of the time: a landing so close to the end of the stretch is at its end
 DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps

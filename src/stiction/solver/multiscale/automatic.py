@@ -13,10 +13,11 @@ from __future__ import annotations
 from math import floor, nan
 from typing import NamedTuple
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact.method import Exact
 from stiction.solver.multiscale.method import Multiscale
 from stiction.solver.problem import Problem, varies
-from stiction.solver.state import RUNNING, Accuracy, Output, State
+from stiction.solver.state import RUNNING, Output, State
 from stiction.system.slider import Slider
 
 LOOK = 512  # turns of the first leg, (M59c); each next one is twice as long

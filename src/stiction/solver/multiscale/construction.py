@@ -6,6 +6,7 @@ from math import inf, nan, sqrt
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined, number
 from stiction.solver.multiscale.inside import (
     Window,
@@ -24,11 +25,8 @@ from stiction.solver.multiscale.section import angle, elongation_held, lead, wra
 from stiction.solver.multiscale.steps import advance
 from stiction.solver.problem import Problem, in_principal_axes, rate
 from stiction.solver.state import (
-    NEVER_ASKED,
-    NO_LIMIT,
     NOTHING,
     RUNNING,
-    Accuracy,
     Counts,
     Memory,
     Motion,
@@ -36,6 +34,7 @@ from stiction.solver.state import (
     at_takeoff,
     with_limit,
 )
+from stiction.solver.stepping.limit import NEVER_ASKED, NO_LIMIT
 from stiction.solver.stick import stick_duration
 
 TRIES = 3  # with twice the pieces each

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined, piece
 from stiction.solver.exact.pursuit import landing_slip, write_landing
 from stiction.solver.exact.record import (
@@ -36,7 +37,6 @@ from stiction.solver.multiscale.return_map import (
     Returns,
 )
 from stiction.solver.problem import Problem, at, static
-from stiction.solver.state import Accuracy
 from stiction.solver.surface import metric_into
 
 BLOCK = PHASES * COLUMNS

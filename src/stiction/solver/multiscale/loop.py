@@ -6,6 +6,7 @@ from math import inf
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.exact.loop import at_rest
 from stiction.solver.multiscale.construction import chart
@@ -23,15 +24,7 @@ from stiction.solver.multiscale.section import wrap_angle
 from stiction.solver.multiscale.steps import advance
 from stiction.solver.multiscale.walk import follow_patches
 from stiction.solver.problem import Problem
-from stiction.solver.state import (
-    COMPLETED,
-    RUNNING,
-    Accuracy,
-    Counts,
-    Plain,
-    State,
-    plain,
-)
+from stiction.solver.state import COMPLETED, RUNNING, Counts, Plain, State, plain
 
 PAYS = 8.0  # cycles that a patch must replace to pay
 VAIN = 30  # wasted nodes allowed at first, plus one for each so many solved cycles

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.ahead import compile_beside, is_compiled
 from stiction.solver.compilation.jit import INTERPRETED
 from stiction.solver.compilation.pointer import typeof
@@ -17,7 +18,7 @@ from stiction.solver.multiscale.loop import stride
 from stiction.solver.multiscale.return_map import STEP_SHARE, Returns, empty_map
 from stiction.solver.multiscale.steps import address_of_steps, kinds_of_steps
 from stiction.solver.problem import Problem, kinds_of, varies
-from stiction.solver.state import Accuracy, Output, State
+from stiction.solver.state import Output, State
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 

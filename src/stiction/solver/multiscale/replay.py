@@ -6,6 +6,7 @@ from math import inf, nan
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined, number, piece
 from stiction.solver.multiscale.construction import add_counts
 from stiction.solver.multiscale.inside import following_step, write_kept
@@ -14,17 +15,8 @@ from stiction.solver.multiscale.section import angle
 from stiction.solver.multiscale.steps import advance
 from stiction.solver.multiscale.walk import elongation_at_landing, sample_known_stick
 from stiction.solver.problem import Problem, in_principal_axes, rate
-from stiction.solver.state import (
-    COMPLETED,
-    NEVER_ASKED,
-    NOTHING,
-    RUNNING,
-    Accuracy,
-    Motion,
-    State,
-    at_takeoff,
-    with_limit,
-)
+from stiction.solver.state import COMPLETED, NOTHING, RUNNING, Motion, State, at_takeoff, with_limit
+from stiction.solver.stepping.limit import NEVER_ASKED
 from stiction.solver.stick import stick_duration
 
 SLIP_STEPS = number(1_000_000_000)

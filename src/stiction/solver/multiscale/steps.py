@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED, inlined
 from stiction.solver.compilation.pointer import address_of, caller_of, typeof, types
@@ -16,7 +17,7 @@ from stiction.solver.exact.loop import steps
 from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale.return_map import Returns
 from stiction.solver.problem import Problem, System, kinds_of
-from stiction.solver.state import Accuracy, State, start, state_from_plain
+from stiction.solver.state import State, start, state_from_plain
 
 _state = start(System(*[1.0] * len(System._fields)), 0.0, (0.0, 0.0), (0.0, 0.0))
 _row, _table = np.empty(0), np.empty((0, 0))

@@ -13,6 +13,7 @@ from typing import NamedTuple
 from numpy.polynomial import Polynomial
 
 from stiction.friction.law import Vector
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import coordinate, slip_at
@@ -26,7 +27,6 @@ from stiction.solver.smooth.right_hand_side import (
     slowest,
 )
 from stiction.solver.smooth.workspace import INSIDE, START, WANTED, Workspace
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.radau import (
     DEFECT_WEIGHT,
     INTERIOR,

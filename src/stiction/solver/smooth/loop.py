@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled, inlined, piece
 from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel, varies
 from stiction.solver.smooth.coordinate import coordinate
@@ -37,24 +38,12 @@ from stiction.solver.state import (
     NON_FINITE,
     RUNNING,
     STEP_UNDERFLOW,
-    Accuracy,
     count_step,
 )
 from stiction.solver.stepping.amplification import grows, write_rates
 from stiction.solver.stepping.block_algebra import dot
-from stiction.solver.stepping.control import (
-    ASKED,
-    CALMEST,
-    GROWTH,
-    NEAR,
-    Time,
-    ease,
-    known_up_to,
-    limit_there,
-    step_factor,
-    trend,
-    within_limit,
-)
+from stiction.solver.stepping.control import CALMEST, GROWTH, ease, step_factor, trend
+from stiction.solver.stepping.limit import ASKED, NEAR, Time, known_up_to, limit_there, within_limit
 from stiction.solver.stepping.radau import A
 
 EAGER = 0.1  # of the growth that the error allows: the first size tried knows nothing of friction

@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.friction import states
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import Isotropic, Problem, at, call_for, force, is_aligned
 from stiction.solver.regularised import SMOOTHED
@@ -24,7 +25,8 @@ from stiction.solver.smooth.state import (
     with_numbers,
 )
 from stiction.solver.smooth.workspace import workspace
-from stiction.solver.state import NO_LIMIT, NOTHING, Accuracy, Output, first_step
+from stiction.solver.state import NOTHING, Output, first_step
+from stiction.solver.stepping.limit import NO_LIMIT
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import inf, sqrt
 from typing import NamedTuple
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import damped_rise, slip_at
@@ -25,7 +26,6 @@ from stiction.solver.smooth.right_hand_side import (
     slowest,
 )
 from stiction.solver.smooth.workspace import FIRST, LAST, SECOND, START, WANTED, Workspace
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import (
     Factors,
     Matrix,

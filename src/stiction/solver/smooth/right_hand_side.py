@@ -6,6 +6,7 @@ from math import sqrt
 from typing import NamedTuple
 
 from stiction.friction.law import Vector
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import (
     Problem,
@@ -23,7 +24,6 @@ from stiction.solver.regularised import Friction
 from stiction.solver.smooth.coordinate import slip_and_slope
 from stiction.solver.smooth.dispatch import flow
 from stiction.solver.smooth.workspace import START, Workspace
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import Triple
 from stiction.solver.stepping.control import motion_of
 from stiction.solver.stick import holding

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.friction.law import Vector
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import Problem, at, cross_damping, in_principal_axes, travel
@@ -17,7 +18,6 @@ from stiction.solver.smooth.error_estimate import balance, less_error, within
 from stiction.solver.smooth.newton import solve
 from stiction.solver.smooth.right_hand_side import SmoothOutset, acting
 from stiction.solver.smooth.workspace import INSIDE, LAST, START, UNWANTED, Workspace
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import dot
 from stiction.solver.stepping.radau import A, C, cubic
 

@@ -7,7 +7,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.solver.compilation.stand_in import called_from_both
-from stiction.solver.state import Counts, Limit
+from stiction.solver.state import Counts
+from stiction.solver.stepping.limit import Limit
 
 
 class SmoothMotion(NamedTuple):

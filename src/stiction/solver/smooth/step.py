@@ -6,6 +6,7 @@ from math import inf, sqrt
 
 import numpy as np
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import coordinate
@@ -13,7 +14,6 @@ from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.newton import solve
 from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import LAST, START, Workspace
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.block_algebra import Triple
 from stiction.solver.stepping.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.stepping.radau import C, cubic

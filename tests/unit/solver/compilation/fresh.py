@@ -9,6 +9,7 @@ import numpy as np
 from tests.drawn import inside
 
 import stiction as st
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation import jit
 from stiction.solver.compilation.machine_code import Shelf
 from stiction.solver.problem import Isotropic
@@ -17,7 +18,6 @@ from stiction.solver.smooth.dispatch import point_to_flow
 from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import Workspace
-from stiction.solver.state import Accuracy
 
 SIZES = [
     (6, 4),

@@ -10,9 +10,9 @@ from tests.systems import SLIDERS
 from tests.unit.solver.exact.test_collocation import A, C, begin
 from tests.unit.solver.exact.test_newton import SLIDES
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact import error_estimate, oscillation, slip_frame
 from stiction.solver.exact.collocation import SlipStep
-from stiction.solver.state import Accuracy
 
 NODES = np.array([0.0, *C])
 LAGRANGE = [Polynomial.fromroots(np.delete(C, j)) for j in range(3)]

@@ -8,9 +8,9 @@ from tests.entry import plain
 from tests.systems import SLIDERS, problem_of
 from tests.unit.solver.exact.test_collocation import begin, residuals
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact import newton, oscillation, slip_frame
 from stiction.solver.exact.collocation import SlipStep
-from stiction.solver.state import Accuracy
 
 SLIDES = [(1e-3, 1e-5, 3e-2, 1e-2), (-1e-3, 2e-5, 1e-2, 4e-2)]
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])

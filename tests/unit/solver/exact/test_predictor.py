@@ -12,7 +12,8 @@ from tests.unit.solver.exact.test_newton import SLIDES, held_to
 
 from stiction.solver.exact import newton, oscillation, predictor, slip_frame
 from stiction.solver.exact.collocation import SlipStep
-from stiction.solver.state import NO_LIMIT, Memory
+from stiction.solver.state import Memory
+from stiction.solver.stepping.limit import NO_LIMIT
 from stiction.solver.stepping.radau import A, C, D
 from stiction.solver.stick import margin, stick_duration
 

@@ -9,8 +9,8 @@ from tests.entry import plain
 from tests.systems import SLIDERS, motion_of, problem_of
 
 import stiction as st
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact import pursuit, slip_frame
-from stiction.solver.state import Accuracy
 
 F = 8.0
 CASES = [(2e-3, 3.0, 1.0), (2e-3, -3.0, -4.0), (5.0, 0.5, 7.0), (2e-3, -5.0, 0.0), (1.0, 0.0, 0.0)]

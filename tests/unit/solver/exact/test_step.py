@@ -10,9 +10,9 @@ from tests.unit.solver.exact.test_collocation import begin, residuals
 from tests.unit.solver.exact.test_newton import SLIDES
 from tests.unit.solver.exact.test_predictor import COLD
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact import error_estimate, newton, oscillation, predictor, slip_frame
 from stiction.solver.exact.step import step
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.control import RESOLUTION, step_factor
 
 ALL = pytest.mark.parametrize(("name", "drawn"), [(n, d) for n in SLIDERS for d in SLIDES])

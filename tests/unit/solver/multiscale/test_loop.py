@@ -8,6 +8,7 @@ from tests.unit.solver.exact.test_step import held_to
 from tests.unit.solver.multiscale.test_construction import problem_of as soft
 from tests.unit.solver.multiscale.test_construction import taking_off
 
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact import loop as exact_loop
 from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale import construction, loop, replay
@@ -22,15 +23,14 @@ from stiction.solver.multiscale.return_map import (
 from stiction.solver.multiscale.section import elongation_held
 from stiction.solver.state import (
     COMPLETED,
-    NO_LIMIT,
     RUNNING,
-    Accuracy,
     Counts,
     Memory,
     Motion,
     State,
     state_from_plain,
 )
+from stiction.solver.stepping.limit import NO_LIMIT
 
 CYCLE, STICK = Cycle(0.01, 1.0, 0.4), Stick(0.5, 1.0, 0.3)
 

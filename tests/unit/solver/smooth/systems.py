@@ -10,13 +10,13 @@ from tests.systems import Printed, motion_of, problem_of
 
 import stiction as st
 from stiction.friction.law import Internal, states
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.problem import Elliptic, Isotropic
 from stiction.solver.regularised import Smoothed
 from stiction.solver.smooth import dispatch, loop
 from stiction.solver.smooth.dispatch import PointedFlow
 from stiction.solver.smooth.state import SmoothMotion
 from stiction.solver.smooth.workspace import workspace
-from stiction.solver.state import Accuracy
 from stiction.solver.stepping.radau import A, C, D
 
 A, C, D = np.array(A), np.array(C), np.array(D)

@@ -36,16 +36,9 @@ from stiction.solver.smooth.state import (
     with_numbers,
 )
 from stiction.solver.smooth.workspace import START, workspace
-from stiction.solver.state import (
-    COMPLETED,
-    NO_LIMIT,
-    NON_FINITE,
-    NOTHING,
-    RUNNING,
-    STEP_UNDERFLOW,
-    Output,
-)
+from stiction.solver.state import COMPLETED, NON_FINITE, NOTHING, RUNNING, STEP_UNDERFLOW, Output
 from stiction.solver.stepping.control import GROWTH, step_factor
+from stiction.solver.stepping.limit import NO_LIMIT
 
 HELD = EXACT._replace(tolerance=1e-7, newton=1e-9)
 NO_TIMES = np.zeros(0)

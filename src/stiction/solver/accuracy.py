@@ -1,0 +1,141 @@
+"""The accuracy of a run's steps: tolerances, and the scales that they are relative to."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from functools import lru_cache
+from math import hypot, inf, pi, sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from stiction.drive.bounds import load_bounds
+from stiction.friction import has_state
+from stiction.solver.segments import Stretch, begin, fastest_swing, speeds, system_of
+from stiction.system.initial import Initial
+from stiction.system.slider import Slider
+
+LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
+LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
+TINY = float(np.finfo(np.float64).tiny)
+FACTOR = 0.8  # of (M39): measured by python -m benchmarks --only calibration
+
+
+class Accuracy(NamedTuple):
+    """The tolerances of a step.
+
+    tolerance : relative error of the slip velocity and of the friction's direction in a step;
+    newton : relative size of negligible Newton corrections;
+    speed : slip speed below which these are absolute, m/s; free_x, free_y : elongation rates that
+    friction alone can cause, mu_0 W/sqrt(m k), m/s: limits of the scale of a fast slip, so that the
+    springs' own motion is resolved; longest : step size that still resolves drive and load, s;
+    drive : its speed along x, or along y if it has none there, m/s, upper limit of a slip's scale;
+    square_x, square_y : m/k, the square of the time in which each spring swings by a radian, s^2;
+    touch : least spare friction of a true stick, m/s; inside : relative error that samples inside
+    a step may have: below the tolerance they are solved for; least : smallest motion about steady
+    sliding above rounding, m/s.
+    """
+
+    tolerance: float
+    newton: float
+    speed: float
+    free_x: float
+    free_y: float
+    longest: float
+    drive: float
+    square_x: float
+    square_y: float
+    touch: float
+    inside: float
+    least: float
+
+
+def tolerance(rtol: float) -> float:
+    """Return the local tolerance for a desired relative error of the result (M39).
+
+    The estimate of the local error falls with h^4 (the cubic inside a step), the error of
+    the result with h^5 (the order of the method), hence the power 4/5: the result's error is
+    then proportional to rtol. The factor is measured on 18 systems, by ``python -m benchmarks
+    --only calibration``: the error, told as a change of mass or load, is rtol in their middle.
+    """
+    return FACTOR * float(rtol**0.8)
+
+
+class Scales(NamedTuple):
+    """A run's friction coefficient, and the speed of mass and springs at its start (m/s)."""
+
+    mu: float
+    elastic: float
+
+
+def scales_of(slider: Slider, initial: Initial) -> Scales:
+    """Return the numbers of a run from which its tolerances follow."""
+    system, ((u_x, u_y), slip) = system_of(slider), begin(slider, initial)
+    swing = u_x / sqrt(system.mass / system.k_x), u_y / sqrt(system.mass / system.k_y)
+    return Scales(slider.F_0 / slider.normal_load, hypot(*slip, *swing))
+
+
+def accuracy(
+    slider: Slider,
+    scales: Scales,
+    stretch: Stretch,
+    start: float,
+    rtol: float,
+    inside: float = 0.0,
+) -> Accuracy:
+    """Return the tolerances of the steps in a stretch.
+
+    Its speed (M40) is V sin(phi), at which the transverse motion slips; without misalignment V;
+    without a drive a millionth of the speed that friction can give the mass on its spring, which is
+    also the upper limit; without either a tiny share of the initial speeds. Friction that weakens
+    at the rate g = -F'(0)/m per second lets slip grow from k V/(m g^2), which must then be
+    resolved; k is the acting stiffness, and g the steepest rate up to some V.
+    """
+    along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
+    law: Any = slider.law
+    load = load_bounds(stretch.problem.load, start, stretch.end)[0]
+    mu, elastic = scales
+    surface = stretch.problem.surface
+    system = stretch.problem.system
+    free_x = mu * load * sqrt(surface.xx / (system.mass * system.k_x))
+    free_y = mu * load * sqrt(surface.yy / (system.mass * system.k_y))
+    free = min(free_x, free_y)
+    square_x, square_y = system.mass / system.k_x, system.mass / system.k_y
+    speed, k = (across, system.k_y) if across > 0.0 else (along or 1e-6 * free, system.k_x)
+    if free > 0.0:
+        speed = min(speed, free)
+    weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
+    speed = max(speed / (1.0 + weakening**2 / (k * system.mass)), LEAST_SPEED * elastic, TINY)
+    local = tolerance(rtol)
+    # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
+    newton = min(0.2, 100.0 * sqrt(local)) * local
+    rate = fastest_swing(stretch.problem)
+    longest = 0.5 * pi / rate if rate > 0.0 else inf
+    drive = along or across or inf
+    touch = local * speed
+    least = LEAST_MOTION * (along + across + free_x + free_y) / local
+    return Accuracy(
+        local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, inside,
+        least,
+    )  # fmt: skip
+
+
+@lru_cache(maxsize=256, typed=True)  # laws of different classes may be equal as tuples
+def steepest_weakening(law: Hashable, speed: float) -> float:
+    """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m.
+
+    It is sought at ten speeds per decade, and again around the steepest.
+    """
+    known: Any = law
+
+    def weakening(v: float) -> float:
+        try:
+            return -float(known.slope(v))
+        except ArithmeticError:  # compiled code tells inf there, or zero over it
+            return 0.0
+
+    tenths = range(-90, 11)
+    slopes = [weakening(speed * 10.0 ** (i / 10)) for i in tenths]
+    steepest = tenths[slopes.index(max(slopes))]
+    beside = (speed * 10.0 ** (min(steepest + i / 4, 10.0) / 10) for i in range(-3, 4))
+    return max(0.0, weakening(0.0), *slopes, *map(weakening, beside))
