@@ -56,6 +56,17 @@ def number(value: Any, unit: str) -> float:
     return to_si(value, Kind("such a quantity", unit, f"1 {unit}".rstrip()))
 
 
+def values_at(
+    known: Mapping[str, Coordinate], at: Mapping[str, int]
+) -> dict[str, tuple[float, str]]:
+    """Return the values of parameters, with their units, at an index along some dimensions."""
+    return {
+        path: (float(values[at[dim]]), its)
+        for path, (dim, values, its) in known.items()
+        if dim in at
+    }
+
+
 def vary(base: Description, changes: Mapping[str, tuple[float, str]]) -> Description:
     """Return a description with other values of some parameters, all of it validated.
 

@@ -20,6 +20,7 @@ from stiction.study.plan.coordinates import (
     Coordinate,
     coordinate_faults,
     coordinates,
+    values_at,
     vary,
     zip_faults,
 )
@@ -147,11 +148,7 @@ class Study(Described):
             If the base cannot have this combination of values.
         """
         at = dict(zip(self.layout.dims, index, strict=True))
-        changes = {
-            path: (float(values[at[dim]]), its)
-            for path, (dim, values, its) in self.coordinates.items()
-        }
-        return vary(self.base, changes)
+        return vary(self.base, values_at(self.coordinates, at))
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

@@ -13,7 +13,7 @@ from stiction import theory
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
-from stiction.study.plan.coordinates import vary
+from stiction.study.plan.coordinates import values_at, vary
 from stiction.study.plan.study import Study
 from stiction.system.slider import Slider
 
@@ -50,11 +50,7 @@ def plane(study: Study, x: str, y: str, at: Mapping[str, int]) -> Plane:
     sides = {dim: along(study, dim) for dim in (x, y)}
     size = tuple(len(next(iter(sides[dim].values()))) for dim in (x, y))
     fields = {PHI_C: np.full(size, nan), ZETA: np.full(size, nan)}
-    held = {
-        path: (float(each.values[at[each.dim]]), each.unit)
-        for path, each in study.coordinates.items()
-        if each.dim in at
-    }
+    held = values_at(study.coordinates, at)
     for place in np.ndindex(size):
         changes = dict(held)
         for dim, i in zip((x, y), place, strict=True):

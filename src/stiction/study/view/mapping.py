@@ -27,6 +27,7 @@ from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
 from stiction.plotting.page.save import picture
 from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
+from stiction.study.plan.coordinates import values_at
 from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, plane
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
@@ -176,11 +177,7 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
 
 def cut(view: View) -> str:
     """Return the values at which a study is cut, for a title: the nearest ones that it has."""
-    known = {
-        name: (float(each.values[view.at[each.dim]]), each.unit)
-        for name, each in view.study.coordinates.items()
-        if each.dim in view.at
-    }
+    known = values_at(view.study.coordinates, view.at)
     values = (f"{parameter_symbol(name)} = {value_in_words(*its)}" for name, its in known.items())
     return f"at {', '.join(values)}"
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiction.study.plan.coordinates import values_at
 from stiction.study.plan.study import Study
 from stiction.study.store.store import COMPLETED, ENDS, PENDING, Store
 from stiction.text.sections import Section, as_html, as_text
@@ -92,6 +93,5 @@ def summary(study: Study, store: Store) -> Summary:
         flat = int(np.argmax(status.ravel() > COMPLETED))
         index = tuple(int(i) for i in np.unravel_index(flat, status.shape))
         at = dict(zip(store.layout.dims, index, strict=True))
-        where = {p: (float(c.values[at[c.dim]]), c.unit) for p, c in study.coordinates.items()}
-        first = Failure(where, ENDS[status[index]], store.message(index))
+        first = Failure(values_at(study.coordinates, at), ENDS[status[index]], store.message(index))
     return Summary(status.size, pending, failed, first, store.path)
