@@ -104,7 +104,7 @@ def faults(
     except TypeError:  # too many, or too few: Python's message says so
         return []
     return [
-        Fault(name, f"must be {in_words(hint)}, is {echo(value)}; see help({title})")
+        Fault(name, f"must be {types_in_words(hint)}, is {echo(value)}; see help({title})")
         for name, hint, value in pairs(shape, given)
         if not accepts(hint, value, scope)
     ]
@@ -134,7 +134,7 @@ def name_of(hint: ast.expr) -> str:
     return re.split(r"[. ]", ast.unparse(inner))[-1]
 
 
-def in_words(hint: ast.expr) -> str:
+def types_in_words(hint: ast.expr) -> str:
     """Return the types that an annotation allows, for a reader."""
     names = dict.fromkeys(name_of(each) for each in members(hint))
     texts = [IN_WORDS.get(name) or _with_article(name) for name in names if name != "None"]

@@ -14,7 +14,7 @@ import cyclopts
 from rich.console import Console
 
 import stiction
-from stiction.cli.refusals import command_of, in_words, show_notices
+from stiction.cli.refusals import command_of, message_of, show_notices
 from stiction.cli.terminal import give_up, spell_out
 from stiction.errors import LONGEST, LONGEST_PATH, StictionError, one_line, visible, without_middle
 
@@ -79,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
         if sys.stdout is not None:
             sys.stdout.flush()
     except cyclopts.CycloptsError as error:
-        refuse(errors, "command line", f"{in_words(error)}\nsee {command_of(error)} --help")
+        refuse(errors, "command line", f"{message_of(error)}\nsee {command_of(error)} --help")
     except StictionError as error:
         refuse(errors, type(error).__name__.removesuffix("Error").lower(), str(error))
     except KeyboardInterrupt:

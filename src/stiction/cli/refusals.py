@@ -16,7 +16,7 @@ EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help
 SHOWN = re.compile(r"^ +(stiction .+)$", re.M)  # in the help of a command
 
 
-def in_words(error: CycloptsError) -> str:
+def message_of(error: CycloptsError) -> str:
     """Return the message of an error; where this package has no words for it, the library's."""
     match error:
         case MissingArgumentError():

@@ -211,7 +211,7 @@ def study_map(opened: Opened) -> Reply:
         measure_shades,
         present_kinds,
     )
-    from stiction.study.view.mapping import in_words
+    from stiction.study.view.mapping import measure_in_unit
     from stiction.study.view.view import REGIME, choose_measures, kinds
 
     view = opened.study
@@ -224,7 +224,7 @@ def study_map(opened: Opened) -> Reply:
         head |= {"measure": name, "missing": NO_RESULT}
         head["kinds"] = [(each, COLORS[each]) for each in present_kinds(named)]
     else:
-        values, words = in_words(view.data, name)
+        values, words = measure_in_unit(view.data, name)
         shades = measure_shades(values)
         head |= {"measure": words, "missing": NO_VALUE}
         head["bar"] = {"limits": shades.limits, "log": shades.log}

@@ -177,7 +177,7 @@ def draw(
         for number, time in enumerate(shown["time"]):
             canvas.restore_region(still)
             state = {name: float(shown[name][number]) for name in NAMES}
-            scene.show(state, f"t = {clock(time, times[-1] - times[0])}, {slowness(slow)}")
+            scene.show(state, f"t = {time_in_digits(time, times[-1] - times[0])}, {slowness(slow)}")
             for line in cursor:
                 line.set_xdata([time, time])
             here = int(number / max(len(times) - 1, 1) * (len(places) - 1))
@@ -275,7 +275,7 @@ def microscope(figure: Figure, fine: ColumnTable, length: float) -> Line2D:
     middle = 0.5 * (fine["time"][-1] + fine["time"][0])
     label_axes(
         ax,
-        f"time from {clock(middle, span)} ({small}s)",
+        f"time from {time_in_digits(middle, span)} ({small}s)",
         f"slip speed ({prefix}m/s), grey: at rest",
     )
     words = f"Microscope: {in_words(span, 's', 3)}, {slowness(length / span)}"
@@ -290,12 +290,12 @@ def micro_times(fine: ColumnTable) -> tuple[Floats, str]:
     return factor * times, prefix
 
 
-def clock(time: float, window: float) -> str:
+def time_in_digits(time: float, window: float) -> str:
     """Return a time (s) with the digits that a window of it shows.
 
     Examples
     --------
-    >>> clock(1.25, 5.0), clock(0.0674213, 12e-6)
+    >>> time_in_digits(1.25, 5.0), time_in_digits(0.0674213, 12e-6)
     ('1.250 s', '0.0674213 s')
     """
     return f"{time:.{max(3, ceil(-log10(window)) + 2)}f} s"

@@ -31,8 +31,7 @@ from stiction.study.plan.coordinates import values_at
 from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, plane
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
-from stiction.text.units import Quantity
-from stiction.text.units import in_words as value_in_words
+from stiction.text.units import Quantity, in_words
 from stiction.theory import damping_number_of
 
 if TYPE_CHECKING:
@@ -178,7 +177,7 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
 def cut(view: View) -> str:
     """Return the values at which a study is cut, for a title: the nearest ones that it has."""
     known = values_at(view.study.coordinates, view.at)
-    values = (f"{parameter_symbol(name)} = {value_in_words(*its)}" for name, its in known.items())
+    values = (f"{parameter_symbol(name)} = {in_words(*its)}" for name, its in known.items())
     return f"at {', '.join(values)}"
 
 
@@ -221,7 +220,7 @@ def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     return list(panels[: len(measures)])
 
 
-def in_words(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
+def measure_in_unit(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
     """Return a measure in a unit that suits its largest value, and its name with that unit."""
     values = data[name].values
     known = np.abs(values[np.isfinite(values)])
@@ -237,7 +236,7 @@ def _map(ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
     if name == REGIME:
         handles += draw_regimes(ax, x, y, kinds(view.data))
     else:
-        handles += draw_measure(ax, x, y, *in_words(view.data, name))[1]
+        handles += draw_measure(ax, x, y, *measure_in_unit(view.data, name))[1]
     x_dim, y_dim = (str(dim) for dim in view.data[name].dims)
     fine = side(view, x_dim, theory.x), side(view, y_dim, theory.y)
     for found in view.changes:
@@ -254,7 +253,7 @@ def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
         if name == REGIME:
             draw_kinds(ax, side(view, str(dim)), list(kinds(view.data)))
         else:
-            draw_slice(ax, side(view, str(dim)), *in_words(view.data, name))
+            draw_slice(ax, side(view, str(dim)), *measure_in_unit(view.data, name))
         if ax is not panels[-1]:
             ax.set_xlabel("")
     return list(panels)
