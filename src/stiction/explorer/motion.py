@@ -79,11 +79,13 @@ def run(description: Description, columns: int, check: Check) -> Iterator[Reply]
     first, *more = pictures(whole, window, columns)
     solution, table = simulate(description, first, check)
     within = slip_times(solution.sticks, first)
-    moving = np.union1d(first, within) if len(within) else first
-    parts = [np.union1d(each, moving) for each in more or [first] * bool(len(within))]
-    for times in [first, *parts]:
-        quick = times is first and bool(parts)
-        if times is not first:
+    moving = np.union1d(first, within)  # times at which the apparatus is animated
+    later = [np.union1d(each, moving) for each in more]
+    if len(within) and not later:
+        later = [moving]
+    for number, times in enumerate([first, *later]):
+        quick = number < len(later)
+        if number > 0:
             solution, table = simulate(description, times, check)
         head = {
             **about(description, solution, table),
@@ -92,7 +94,7 @@ def run(description: Description, columns: int, check: Check) -> Iterator[Reply]
             "quick": quick,
         }
         drawn = curves(table, solution.sticks, window, columns)
-        if times is first or len(within):
+        if number == 0 or len(within):  # else the page animates what it has
             drawn |= track(table, np.isin(table["time"], moving))
         yield head, drawn
 
