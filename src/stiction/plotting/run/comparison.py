@@ -33,7 +33,6 @@ from stiction.plotting.run.curves import (
     mark_early_end,
 )
 from stiction.plotting.run.time_series import (
-    DEEPEST,
     fastest_drive,
     say_only,
     set_speed_limits,
@@ -179,8 +178,7 @@ def draw_speeds(ax: Axes, curves: Sequence[RunCurve]) -> None:
     ax.set_yscale("log", nonpositive="mask")
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
     for curve in curves:
-        slip = curve.slip
-        mean = np.where(slip.mean > DEEPEST * fastest_drive(curve.run), slip.mean, np.nan)
+        slip, mean = curve.slip, curve.speed
         ax.fill_between(slip.time, mean, slip.high, color=curve.color, alpha=0.18, linewidth=0)
         draw_curve(ax, curve, slip.time, mean)
         mark_early_end(ax, curve, slip.time[-1], mean[-1])
@@ -201,8 +199,7 @@ def draw_portrait(ax: Axes, curves: Sequence[RunCurve]) -> None:
     ax.set_yscale("log", nonpositive="mask")
     factor, _ = common(cell_force(curve.run) for curve in curves)
     for curve in curves:
-        slip = curve.slip
-        mean = np.where(slip.mean > DEEPEST * fastest_drive(curve.run), slip.mean, np.nan)
+        slip, mean = curve.slip, curve.speed
         seen = slip.time >= _portrayed_from(curve.run)
         ax.plot(slip.force[seen] * factor, mean[seen], **curve.look)
         mark_early_end(ax, curve, slip.force[-1] * factor, mean[-1])

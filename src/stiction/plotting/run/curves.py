@@ -12,7 +12,14 @@ from numpy.typing import ArrayLike
 from stiction.analysis.slip import Slip, cell_force, cell_symbol
 from stiction.arrays import Floats
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
-from stiction.plotting.run.time_series import average_slip, draw_line, say_only, stays
+from stiction.plotting.run.time_series import (
+    DEEPEST,
+    average_slip,
+    draw_line,
+    fastest_drive,
+    say_only,
+    stays,
+)
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
@@ -35,6 +42,12 @@ class RunCurve(NamedTuple):
     def color(self) -> str:
         """The colour of its lines."""
         return str(self.look["color"])
+
+    @property
+    def speed(self) -> Floats:
+        """Its mean slip speed (m/s), NaN where the mass rests: for a logarithmic axis."""
+        slides = self.slip.mean > DEEPEST * fastest_drive(self.run)
+        return np.where(slides, self.slip.mean, np.nan)
 
 
 def curves_of(runs: Mapping[str, Trajectory]) -> list[RunCurve]:
