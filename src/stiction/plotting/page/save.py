@@ -72,7 +72,6 @@ def laid_out(fig: Figure, dpi: float) -> Iterator[None]:
     try:
         fig.dpi = dpi
         lay_out(fig)
-        fig.dpi = own
         fig.set_layout_engine(None)
         yield
     finally:
