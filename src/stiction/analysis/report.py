@@ -16,7 +16,7 @@ from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_columns import summary
 from stiction.analysis.motion.cycles import Swings, swings
-from stiction.analysis.motion.doubts import taken_off, turns_round, unsteady, warnings
+from stiction.analysis.motion.doubts import subtracted_lines, turns_round, unsteady, warnings
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import LOADING_RATE, StatedQuantity, compare_metadata
 from stiction.analysis.motion.regime.classify import regime_of
@@ -173,7 +173,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     stated = compare_metadata(record, regime.kind, cycles) if run is None else ()
     doubts = (
         warnings(record, regime.kind, cycles, friction, stated) if run is None else unsteady(run)
-    ) + taken_off(found.lines)
+    ) + subtracted_lines(found.lines)
     cycles = _blank_meaningless(record, cycles, regime, stated, missing)
     if turns and cycles.sizes["cycle"]:
         missing["mu_kinetic"] = turns

@@ -83,7 +83,7 @@ def is_loop_running() -> bool:
 
 
 def serve_beside(serve: Callable[[Tell], Coroutine[Any, Any, None]], tell: Tell) -> None:
-    """Serve in a thread of its own; return when the address has been told.
+    """Serve in a thread of its own; return when the address is known.
 
     Raises
     ------

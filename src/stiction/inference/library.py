@@ -26,7 +26,7 @@ from stiction.system.slider import Slider
 
 Progress = Callable[[float], None] | None
 
-SIMULATIONS = 4000  # of a library, unless told otherwise
+SIMULATIONS = 4000  # of a library, by default
 BLOCK = 32  # simulations that are stored together
 SPARE = 2  # cycles simulated beyond those that are used: the first begins from rest
 LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without

@@ -27,7 +27,7 @@ T = TypeVar("T")
 DISPLACEMENTS = ("position", "drive_position")
 FEWEST = 2  # samples of a block
 STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
-UNEVEN = 0.01  # relative: intervals that differ by more are told
+UNEVEN = 0.01  # relative: intervals that differ by more are reported
 
 
 class Measurement(NamedTuple):

@@ -56,7 +56,7 @@ def tolerance(rtol: float) -> float:
     The estimate of the local error falls with h^4 (the cubic inside a step), the error of
     the result with h^5 (the order of the method), hence the power 4/5: the result's error is
     then proportional to rtol. The factor is measured on 18 systems, by ``python -m benchmarks
-    --only calibration``: the error, told as a change of mass or load, is rtol in their middle.
+    --only calibration``: the error, as a change of mass or load, is rtol in their middle.
     """
     return FACTOR * float(rtol**0.8)
 

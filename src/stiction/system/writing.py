@@ -45,7 +45,7 @@ def parameter_table(tables: Mapping[str, TomlTable]) -> Table:
 
 
 def abbreviate(value: Any) -> Any:
-    """Return a value with long lists of numbers, as of recorded tables, told by their length."""
+    """Return a value in which a length replaces long lists of numbers, as of recorded tables."""
     if isinstance(value, Mapping):
         return {name: abbreviate(each) for name, each in value.items()}
     if not isinstance(value, list | tuple):

@@ -27,7 +27,7 @@ from stiction.analysis.signals.turning_points import TurningPoints, turning_poin
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
 
-LINES = 4  # taken off at most
+LINES = 4  # subtracted at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least
 OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
 

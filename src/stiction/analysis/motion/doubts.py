@@ -84,7 +84,7 @@ def warnings(
     return tuple(found)
 
 
-def taken_off(lines: tuple[Line, ...]) -> tuple[str, ...]:
+def subtracted_lines(lines: tuple[Line, ...]) -> tuple[str, ...]:
     """Return a sentence for each line that was subtracted from the force."""
     found = []
     for line in lines:

@@ -45,7 +45,7 @@ class VelocityStep:
     a_minus_b : float
         Change of steady friction over the logarithm of the ratio of speeds.
     D_c, D_c_error : float
-        Distance over which friction evolves, with its standard error, m; NaN if it cannot be told.
+        Distance over which friction evolves, with its standard error, m; NaN if it is not known.
     slip, mu, fit : ndarray
         (m,), slip since the jump (m), friction, and the fitted curve.
     """

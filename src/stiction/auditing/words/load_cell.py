@@ -126,7 +126,7 @@ def _largest(seen: SimulatedTest) -> list[str]:
             f"{percent(read / true - 1.0)} is the inertia of the mass, which overshoots."
         ]
     if _slides(seen, before, at):
-        return []  # which is told of all sliding
+        return []  # `_sliding` says so of all sliding
     off = (
         f"The largest force is not the friction of the surfaces: the load cell reads {shown}, "
         f"where the true coefficient is {_number(true)}: multiply by {_number(true / read)}."

@@ -29,7 +29,7 @@ from stiction.text.units import to_si
 # from the name of a file in a description to its path, or a `DescriptionError`
 Locate = Callable[[str], Path]
 QUANTITIES = {"drive": ("velocity", "position"), "load": ("load",)}
-USUAL = {"time": ("time", "t")}  # names of a column that need not be told
+USUAL = {"time": ("time", "t")}  # names of a column that need not be given
 PIECE = "recorded"
 STAND_IN = {"piece": "hold", "duration": 1.0}
 
@@ -45,8 +45,8 @@ def read_recorded(
 ) -> Recorded | RecordedLoad:
     """Read a recorded drive or load from a table in a text file.
 
-    Columns have a name and a unit, ``t [ms]``; a unit that the file's headings lack is told here.
-    Columns without a name are told by number: ``"2 [mm/s]"``.
+    Columns have a name and a unit, ``t [ms]``; a unit that the file's headings lack is given here.
+    Columns without a name go by number: ``"2 [mm/s]"``.
 
     Parameters
     ----------
@@ -176,7 +176,7 @@ def rows_of(
 ) -> tuple[dict[str, FrozenColumn], list[Fault]]:
     """Return the columns of a file in SI by their quantity, and all faults.
 
-    `names` are those of the columns, as far as they are told, `quantities` those that it may hold.
+    `names` are those of the columns, as far as they are given, `quantities` those that it may hold.
     """
     try:
         table = read_text_table(path)
@@ -199,10 +199,10 @@ def rows_of(
 
 
 def _quantity(table: TextTable, names: Mapping[str, str], quantities: tuple[str, ...]) -> str:
-    """Return what is recorded: the one that is told, or the only one among the headings."""
+    """Return what is recorded: the one that is given, or the only one among the headings."""
     headings = {each.name.lower() for each in table.headings}
-    told = [name for name in quantities if name in names]
-    found = told or [name for name in quantities if name in headings]
+    given = [name for name in quantities if name in names]
+    found = given or [name for name in quantities if name in headings]
     if len(found) == 1:
         return found[0]
     if found:
@@ -214,9 +214,9 @@ def _quantity(table: TextTable, names: Mapping[str, str], quantities: tuple[str,
     )
 
 
-def _column(table: TextTable, name: str, told: str | None) -> FrozenColumn:
+def _column(table: TextTable, name: str, given: str | None) -> FrozenColumn:
     """Return a column in SI."""
-    wanted = heading(told) if told is not None else _usual(table, name)
+    wanted = heading(given) if given is not None else _usual(table, name)
     index = find_column(table, wanted, name)
     stated = table.headings[index].unit if table.headings else None
     unit = wanted.unit or stated
@@ -234,7 +234,7 @@ def _column(table: TextTable, name: str, told: str | None) -> FrozenColumn:
 
 
 def _usual(table: TextTable, name: str) -> ColumnHeading:
-    """Return the heading by which a column goes if none is told."""
+    """Return the heading by which a column goes if none is given."""
     names = [each.name.lower() for each in table.headings]
     usual = next((each for each in USUAL.get(name, ()) if each in names), name)
     return ColumnHeading(usual, None)

@@ -36,7 +36,7 @@ Progress = Callable[[float], None] | None
 
 FEWEST = 40  # simulations with cycles, below which a mechanism is left out
 WIDTH = 1.0  # of the kernel, over the typical distance between records
-WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are told apart surely
+WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are distinguished for sure
 
 
 class Simulations(NamedTuple):

@@ -21,7 +21,7 @@ from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, observe_all
 from stiction.inference.priors import Rig
 
-SIMULATIONS = 1000  # of each mechanism, unless told otherwise
+SIMULATIONS = 1000  # of each mechanism, by default
 SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
 
 

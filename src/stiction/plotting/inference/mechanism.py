@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 LETTERS = 16  # in a line of a mechanism's name
 TAILS = (0.025, 0.975)
-LOOKS = (  # of the mechanisms' loadings: told apart without colour too
+LOOKS = (  # of the mechanisms' loadings: distinct without colour, too
     (BLUE, "-"), (RED, (0, (4, 1.5))), (GREEN, (0, (1, 1))), (ORANGE, (0, (5, 1.5, 1, 1.5))),
 )  # fmt: skip
 DARK = 0.5  # share above which its number is white

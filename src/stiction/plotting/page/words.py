@@ -23,7 +23,7 @@ from stiction.trajectory import Trajectory
 
 LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}
 SUBSCRIPTS = {"inf": r"\infty", "star": "*", "static": r"\mathrm{static}"}
-MOST_RECORDS = 2  # of a program, told in words
+MOST_RECORDS = 2  # of a program, in words
 WIDTH = 40  # characters of a line
 NAMES = {kind: name for known in (DRIVE_PIECES, LOAD_PIECES) for name, kind in known.items()}
 

@@ -119,7 +119,7 @@ def _first_interval(time: Floats) -> list[str]:
 
 
 def check_stated(time: Floats, interval: float | None, stated: str) -> list[str]:
-    """Return a note on how the stated interval agrees with the times; rounding is not told."""
+    """Return a note on how the stated interval agrees with the times, except for rounding."""
     if interval is None or len(time) < 3:
         return []
     usual = float(np.median(np.diff(time)))

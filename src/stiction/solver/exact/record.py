@@ -1,4 +1,4 @@
-"""Steps kept as rows of numbers, so that the motion inside them can be told later.
+"""Steps stored as rows of numbers, from which the motion inside them follows later.
 
 A row holds what the step's own dense output needs (section 14 of the method): its start, its
 size, the oscillation under it, and its stages. A record without rows keeps nothing.

@@ -85,7 +85,7 @@ def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
 def same_end(known: Returns, theta: float, last: Cycle) -> tuple[int, Cycle]:
     """Return the cycle from an angle, if it ends like the two nearest long ones (M59).
 
-    It is told by the row of the nearest; below zero if there is none.
+    It comes with the row of the nearest, below zero if it does not.
 
     One of the two must have begun earlier: then the edge, up to which cycles are short, has been
     passed. The nearest cycle is used, minus the turn since its start; a line through both would
