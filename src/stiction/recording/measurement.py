@@ -13,7 +13,13 @@ from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError, echo
 from stiction.recording.channels import CHANNELS, plain
 from stiction.recording.formats import TextLayout, read_tables
-from stiction.recording.guess.choice import Choice, Chosen, choose_columns, own_clock
+from stiction.recording.guess.choice import (
+    Choice,
+    Chosen,
+    UnclearColumns,
+    choose_columns,
+    own_clock,
+)
 from stiction.recording.guess.clock import Block, blocks, check_stated, rate_of
 from stiction.recording.guess.displacement import unwrap
 from stiction.recording.guess.remarks import Said, what_is_said
@@ -24,6 +30,7 @@ from stiction.recording.table import FileTable, Remark, number_of
 from stiction.text.units import in_words
 
 T = TypeVar("T")
+FORCES = {"force", "force_across"}
 DISPLACEMENTS = ("position", "drive_position")
 FEWEST = 2  # samples of a block
 STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
@@ -69,8 +76,10 @@ def read_measurements(
     for table in read_tables(path, layout):
         try:
             found += _measurements(path, table, asked)
+        except UnclearColumns as error:
+            (without if FORCES & {*error.lacking} else faults).found.append(error)
         except ResultError as error:
-            (without if "no column is the force" in str(error) else faults).found.append(error)
+            faults.found.append(error)
     faults.refuse()
     if not found:
         without.refuse()
@@ -130,8 +139,8 @@ def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurem
 def _has_times(path: Path, table: FileTable, reading: ReadingOptions) -> bool:
     try:
         return "time" in choose_columns(path, table, reading.columns, timed=False).channels
-    except ResultError as error:
-        return "no column is the time" not in str(error)
+    except UnclearColumns as error:
+        return "time" not in error.lacking
 
 
 def _clock(table: FileTable, choice: Choice, interval: float | None) -> tuple[Floats, str]:

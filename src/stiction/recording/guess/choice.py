@@ -13,6 +13,15 @@ from stiction.recording.table import FileColumn, FileTable
 from stiction.recording.units import is_electric, is_ratio, size_of
 
 
+class UnclearColumns(ResultError):
+    """No column, or several, can be a channel; no column can be those that are `lacking`."""
+
+    def __init__(self, message: str, *lacking: str) -> None:
+        """Store the message, and the names of the channels."""
+        super().__init__(message)
+        self.lacking = lacking
+
+
 class Chosen(NamedTuple):
     """A column for a channel: the size of its unit in SI, the unit as read, and a note.
 
@@ -54,7 +63,7 @@ def choose_columns(path: object, table: FileTable, said: dict[str, str], *, time
 
     Raises
     ------
-    ResultError
+    UnclearColumns
         If no column, or more than one, can be the time or the force; with the choices, for all
         channels at once.
     """
@@ -78,7 +87,7 @@ def choose_columns(path: object, table: FileTable, said: dict[str, str], *, time
                 taken.append(column)
                 found[name] = _with_size(path, table, name, column, wish.unit)
             elif name in said:
-                _refuse(path, table, name, "no column is")
+                _refuse_lack(path, table, name)
             elif name == "force":
                 found[name] = _ratio(path, table, taken)
                 taken.append(found[name].column)
@@ -90,7 +99,12 @@ def choose_columns(path: object, table: FileTable, said: dict[str, str], *, time
             column = wish.column or _times(path, table, force, wish, taken)
             taken.append(column)
             found["time"] = _with_size(path, table, "time", column, wish.unit)
-    faults.refuse()
+    try:
+        faults.refuse()
+    except ResultError as error:
+        unclear = (each for each in faults.found if isinstance(each, UnclearColumns))
+        lacking = (name for each in unclear for name in each.lacking)
+        raise UnclearColumns(str(error), *lacking) from None
     notes += [x.note for x in found.values() if x.note]
     for column in table.columns:
         if column not in taken and LENGTH.fullmatch(plain(column.name)):
@@ -221,7 +235,7 @@ def _ratio(path: object, table: FileTable, taken: Sequence[FileColumn]) -> Chose
     if len(matches) > 1:
         _ambiguous(path, "force", matches)
     if not matches:
-        _refuse(path, table, "force", "no column is")
+        _refuse_lack(path, table, "force")
     column = matches[0]
     size = 0.01 if column.unit == "%" else 1.0
     note = f"column {column} is a friction coefficient: the force is that times the normal load"
@@ -246,7 +260,7 @@ def _times(
     if not matches and _has_no_names(table) and wish.unit:
         matches = [x for x in free if x.number == 1]
     if not matches:
-        _refuse(path, table, "time", "no column is", "; or give --interval, e.g. '0.5 ms'")
+        _refuse_lack(path, table, "time", "; or give --interval, e.g. '0.5 ms'")
     first = matches[0]
     same = all(np.array_equal(x.values, first.values, equal_nan=True) for x in matches)
     alike = same and len({x.unit for x in matches}) == 1
@@ -320,10 +334,20 @@ def _ambiguous(path: object, name: str, matches: Sequence[FileColumn]) -> NoRetu
     )
 
 
-def _refuse(path: object, table: FileTable, name: str, why: str, remedy: str = "") -> NoReturn:
+def _refuse(path: object, table: FileTable, name: str, why: str) -> NoReturn:
+    raise ResultError(_with_columns(path, table, name, why))
+
+
+def _refuse_lack(path: object, table: FileTable, name: str, remedy: str = "") -> NoReturn:
+    message = _with_columns(path, table, name, "no column is")
+    raise UnclearColumns(f"{message}{remedy}", name)
+
+
+def _with_columns(path: object, table: FileTable, name: str, why: str) -> str:
+    """Return why a channel has no column, with the columns that there are."""
     columns = ", ".join(str(each) for each in table.columns) or "none"
     unit = CHANNELS[name].example
-    raise ResultError(
+    return (
         f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; say for example "
-        f"{_flag(name)} '2={unit}'{remedy}"
+        f"{_flag(name)} '2={unit}'"
     )
