@@ -13,7 +13,7 @@ import numpy as np
 from stiction.friction.law import Vector, states
 from stiction.solver.compilation.jit import entry_by_address, inlined
 from stiction.solver.compilation.pointer import caller, code_and_fields, pointee, types
-from stiction.solver.compilation.stand_in import called_from_both, stand_in
+from stiction.solver.compilation.stand_in import stand_in
 from stiction.solver.problem import change, force, gradient, grain
 from stiction.solver.regularised import Friction, friction_and_gradient
 from stiction.solver.smooth.workspace import TRIAL, Workspace
@@ -181,10 +181,6 @@ def own_gradient(
             jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
 
 
-called_from_both(own_gradient, forceinline=True)  # it shares logarithms with the force
-
-
-@called_from_both
 def differences(
     law: Any,
     slip: Vector,
@@ -254,20 +250,6 @@ def _write_flow(
     return write
 
 
-@stand_in(write_gradient, forceinline=True)
-def _write_gradient(
-    law: Any,
-    slip: Any,
-    load: Any,
-    per_mass: Any,
-    z: Any,
-    values: Any,
-    i: Any,
-    flow: Any,
-    jacobian: Any,
-    size: Any,
-) -> Callable[..., None]:
-    write: Any = own_gradient if hasattr(law.instance_class, "gradient") else differences
-    return lambda law, slip, load, per_mass, z, values, i, flow, jacobian, size: write(
-        law, slip, load, per_mass, z, values, i, flow, jacobian, size
-    )
+@stand_in(write_gradient, forceinline=True)  # a law's own shares logarithms with the force
+def _write_gradient(law: Any, *_: Any) -> Callable[..., None]:
+    return own_gradient if hasattr(law.instance_class, "gradient") else differences
