@@ -16,6 +16,7 @@ from typing import NamedTuple
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.exact.method import Exact
 from stiction.solver.multiscale.method import Multiscale
+from stiction.solver.multiscale.return_map import MAY_COST
 from stiction.solver.problem import Problem, varies
 from stiction.solver.state import RUNNING, Output, State
 from stiction.system.slider import Slider
@@ -73,7 +74,9 @@ class Automatic(Multiscale):
             return Exact.advance(self, problem, state, end, held, budget, out)
         if isinstance(self.at, MapTrial):
             code, now = super().advance(problem, state, end, held, budget, out)
-            self.at = self.after_map(self.at, floor(self.map_of(problem, out).balance[0]), now)
+            self.at = self.after_map(
+                self.at, floor(self.map_of(problem, out).balance[MAY_COST]), now
+            )
             return code, now
         self.compile_map(problem)
         used, turns = out.used, min(budget, self.at.left)

@@ -20,7 +20,20 @@ from stiction.solver.multiscale.inside import (
     place_of_root,
 )
 from stiction.solver.multiscale.interpolant import POINTS, interpolate
-from stiction.solver.multiscale.return_map import NEAR, NODES, Cycle, Returns
+from stiction.solver.multiscale.return_map import (
+    AT_EDGE,
+    EDGES_MET,
+    MAY_COST,
+    NEAR,
+    NODES,
+    NODES_VAIN,
+    PATCH_NODES,
+    PATCH_SCALE,
+    PATCH_START,
+    PATCHES_MADE,
+    Cycle,
+    Returns,
+)
 from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
 from stiction.solver.multiscale.steps import advance
 from stiction.solver.problem import Problem, in_principal_axes, rate
@@ -136,40 +149,40 @@ def chart(
     from the same angle.
     """
     motion, memory, counts = state
-    row, missed = known.sizes[0], inf
+    row, missed = known.sizes[PATCHES_MADE], inf
     patch, c = known.patches[row], known.coefficients[row]
-    first = 1 if patch[0] == theta else 0
+    first = 1 if patch[PATCH_START] == theta else 0
     if first > 0 and len(known.record.rows) > 0:
         begin_again(known)
     c[first:] = 0.0
-    patch[0] = theta
+    patch[PATCH_START] = theta
     for n in range(first, NODES):
         there = theta + 0.5 * (POINTS[n] + 1.0) * reach
-        most = int(min(NODE_STEPS, 1.0 + known.balance[0]))
+        most = int(min(NODE_STEPS, 1.0 + known.balance[MAY_COST]))
         returns, cycle, swing, end, turns = solve_cycle(
             problem, accuracy, memory, known, there, longest, most
         )
         memory, counts = end.memory, add_counts(counts, end.counts)
-        known.sizes[3] += 1
-        known.balance[0] -= turns
-        if known.balance[0] < 0.0:  # it costs too much, wherever it would end
+        known.sizes[NODES_VAIN] += 1
+        known.balance[MAY_COST] -= turns
+        if known.balance[MAY_COST] < 0.0:  # it costs too much, wherever it would end
             break
         if not returns:
-            known.edges[known.sizes[1]] = there
-            known.sizes[1] += 1
-            patch[0] = theta if n > 0 else nan
+            known.edges[known.sizes[EDGES_MET]] = there
+            known.sizes[EDGES_MET] += 1
+            patch[PATCH_START] = theta if n > 0 else nan
             return State(motion, memory, counts)
         miss = added_node(c, n, cycle, swing)
         if len(known.record.rows) > 0:
             add_motion(problem, finer(accuracy), known, n, window_of(known, cycle), cycle.held)
         if miss < known.closing and missed < 10.0 * known.closing:
-            patch[1], patch[2] = 2.0 / reach, n + 1
+            patch[PATCH_SCALE], patch[PATCH_NODES] = 2.0 / reach, n + 1
             if len(known.record.rows) > 0:
                 counts = resolve_motion(
                     problem, accuracy, State(motion, memory, counts), known, n + 1, reach, longest
                 )
-            known.sizes[0] += 1
-            known.sizes[3] -= n + 1
+            known.sizes[PATCHES_MADE] += 1
+            known.sizes[NODES_VAIN] -= n + 1
             return State(motion, memory, counts)
         if n >= NODES // 2 and miss > sqrt(known.closing):  # the error should fall geometrically
             break
@@ -200,8 +213,8 @@ def resolve_motion(
     patch (see `add_motion`).
     """
     _, memory, counts = state
-    row = known.sizes[0]
-    theta, at_edge = known.patches[row, 0], known.inside.shapes[row, 3] == 1
+    row = known.sizes[PATCHES_MADE]
+    theta, at_edge = known.patches[row, PATCH_START], known.inside.shapes[row, AT_EDGE] == 1
     if at_edge:
         begin_at_edge(known)
         n = 0

@@ -10,16 +10,16 @@ from math import inf
 
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.record import WIDTH
-from stiction.solver.multiscale.return_map import FAR, NEAR, PAST, Cycle, Returns
+from stiction.solver.multiscale.return_map import CYCLES_PAST, FAR, NEAR, PAST, Cycle, Returns
 
 
 @inlined
 def remember(known: Returns, theta: float, cycle: Cycle) -> None:
     """Store a solved cycle in the place of the oldest one."""
-    place = known.sizes[2] % PAST
+    place = known.sizes[CYCLES_PAST] % PAST
     row = known.past[place]
     row[0], row[1], row[2], row[3] = theta, cycle.turn, cycle.time, cycle.held
-    known.sizes[2] += 1
+    known.sizes[CYCLES_PAST] += 1
     keep_steps(known, place)
 
 
@@ -49,7 +49,7 @@ def nearest(known: Returns, theta: float, longer: bool, than: float) -> tuple[in
     """
     i = j = -1
     near = next_near = inf
-    for row in range(min(known.sizes[2], PAST)):
+    for row in range(min(known.sizes[CYCLES_PAST], PAST)):
         if (known.past[row, 2] > than) != longer:
             continue
         distance = abs(known.past[row, 0] - theta)

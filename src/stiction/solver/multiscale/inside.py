@@ -27,12 +27,19 @@ from stiction.solver.exact.record import (
 from stiction.solver.exact.sampling import write_slip
 from stiction.solver.multiscale.interpolant import POINTS, interpolate
 from stiction.solver.multiscale.return_map import (
+    AT_EDGE,
     COLUMNS,
+    FIRST_PIECE,
     NEAR,
+    NODE_COUNT,
     NODES,
     PAST,
+    PATCH_NODES,
+    PATCHES_MADE,
     PHASES,
+    PIECE_COUNT,
     PIECES,
+    RESOLVED,
     Inside,
     Returns,
 )
@@ -177,16 +184,16 @@ def add_motion(
     slip's duration, to which the phase is relative. In that root the motion is smooth. There it
     takes the place of the angle, and its own nodes are solved later.
     """
-    inside, row = known.inside, known.sizes[0]
+    inside, row = known.inside, known.sizes[PATCHES_MADE]
     shape = inside.shapes[row]
     if n == 0:
-        shape[3] = 0
+        shape[AT_EDGE] = 0
     if n < 2:
         inside.ends[row, n] = held
     if n == 1:
         a, b = inside.ends[row]
-        shape[3] = 1 if max(a, b) > STEEP * min(a, b) else 0
-    if shape[3] == 0:
+        shape[AT_EDGE] = 1 if max(a, b) > STEEP * min(a, b) else 0
+    if shape[AT_EDGE] == 0:
         add_node(problem, accuracy, known, n, window)
 
 
@@ -194,8 +201,8 @@ def add_motion(
 def begin_again(known: Returns) -> None:
     """Forget all nodes but the first of a patch that was not completed: the next is narrower."""
     inside = known.inside
-    shape = inside.shapes[known.sizes[0]]
-    shape[1], shape[2] = 0, 1 if shape[0] > 0 else 0
+    shape = inside.shapes[known.sizes[PATCHES_MADE]]
+    shape[NODE_COUNT], shape[RESOLVED] = 0, 1 if shape[PIECE_COUNT] > 0 else 0
     inside.missed[0] = inf
 
 
@@ -206,8 +213,8 @@ def begin_at_edge(known: Returns) -> None:
     It is where the square of the time held would vanish, beyond the end where that is smaller: of
     the patch's polynomial, or where that has no such place near by, of a line through both ends.
     """
-    row, inside = known.sizes[0], known.inside
-    c, n = known.coefficients[row], int(known.patches[row, 2])
+    row, inside = known.sizes[PATCHES_MADE], known.inside
+    c, n = known.coefficients[row], int(known.patches[row, PATCH_NODES])
     side = 1.0 if inside.ends[row, 1] < inside.ends[row, 0] else -1.0
     place = side
     for _ in range(NEWTON):
@@ -220,7 +227,7 @@ def begin_at_edge(known: Returns) -> None:
         a, b = inside.ends[row, 0] ** 2, inside.ends[row, 1] ** 2
         place = (a + b) / (a - b)
     inside.ends[row, 0], inside.ends[row, 1] = place, side
-    inside.shapes[row, 1], inside.shapes[row, 2] = 0, 1
+    inside.shapes[row, NODE_COUNT], inside.shapes[row, RESOLVED] = 0, 1
 
 
 @inlined
@@ -256,23 +263,24 @@ def add_node(
     then on. The nodes of the motion are enough when a fresh one is predicted, and the one before it
     nearly so. Later ones are left out; a patch whose motion is not resolved has none.
     """
-    inside, shape = known.inside, known.inside.shapes[known.sizes[0]]
+    inside, shape = known.inside, known.inside.shapes[known.sizes[PATCHES_MADE]]
     if n == 0:
         pieces = resolution(problem, window.duration, known.closing)
-        shape[0], shape[1], shape[2] = min(inside.finer[0] * pieces, max(pieces, PIECES)), 0, 1
-    if shape[2] == 0 or shape[1] > 0:
+        shape[PIECE_COUNT] = min(inside.finer[0] * pieces, max(pieces, PIECES))
+        shape[NODE_COUNT], shape[RESOLVED] = 0, 1
+    if shape[RESOLVED] == 0 or shape[NODE_COUNT] > 0:
         return
     pieces = resolved_pieces(problem, accuracy, known, n, window)
-    shape[2] = 1 if pieces > 0 else 0
+    shape[RESOLVED] = 1 if pieces > 0 else 0
     if n == 0:
-        shape[0] = pieces
+        shape[PIECE_COUNT] = pieces
     if pieces == 0:
         if n > 0:
             inside.finer[0] = min(2 * inside.finer[0], FINEST)
         return
     miss = added_motion(inside, n, pieces)
     if miss < 1.0 and inside.missed[0] < 10.0:
-        shape[1] = n + 1
+        shape[NODE_COUNT] = n + 1
     inside.missed[0] = miss
 
 
@@ -285,7 +293,7 @@ def resolved_pieces(
     Only at the first node it may be more than at the start.
     """
     inside, record = known.inside, known.record
-    pieces = inside.shapes[known.sizes[0], 0]
+    pieces = inside.shapes[known.sizes[PATCHES_MADE], PIECE_COUNT]
     if record.used[0] == 0 or record.used[0] > len(record.rows) or not window.duration > 0.0:
         return 0
     while pieces <= min(PIECES, len(inside.values) - inside.spans[PAST, 1]):
@@ -322,27 +330,27 @@ def added_motion(inside: Inside, n: int, pieces: int) -> float:
 @inlined
 def in_progress(known: Returns) -> bool:
     """Return whether more nodes may still tell the motion inside a patch."""
-    shape = known.inside.shapes[known.sizes[0]]
-    return bool(shape[1] == 0 and shape[2] == 1)
+    shape = known.inside.shapes[known.sizes[PATCHES_MADE]]
+    return bool(shape[NODE_COUNT] == 0 and shape[RESOLVED] == 1)
 
 
 @inlined
 def begin_finer(known: Returns) -> bool:
     """Begin the motion of a patch again if it had too few pieces; return whether it had."""
-    shape = known.inside.shapes[known.sizes[0]]
-    if shape[0] == 0 or shape[1] > 0 or shape[2] == 1:
+    shape = known.inside.shapes[known.sizes[PATCHES_MADE]]
+    if shape[PIECE_COUNT] == 0 or shape[NODE_COUNT] > 0 or shape[RESOLVED] == 1:
         return False
-    shape[2], known.inside.missed[0] = 1, inf
+    shape[RESOLVED], known.inside.missed[0] = 1, inf
     return True
 
 
 @piece
 def finish_motion(known: Returns) -> None:
     """Turn the values at the phases into coefficients, or leave the patch without motion."""
-    inside, row = known.inside, known.sizes[0]
+    inside, row = known.inside, known.sizes[PATCHES_MADE]
     shape = inside.shapes[row]
-    pieces, nodes, first = shape[0], shape[1], inside.spans[PAST, 1]
-    shape[2] = first
+    pieces, nodes, first = shape[PIECE_COUNT], shape[NODE_COUNT], inside.spans[PAST, 1]
+    shape[FIRST_PIECE] = first
     if nodes == 0:
         return
     inside.spans[PAST, 1] += pieces
@@ -365,7 +373,7 @@ def finish_motion(known: Returns) -> None:
 def at_angle(inside: Inside, row: int, p: int, x: float) -> None:
     """Set the coefficients of a piece at a place in the patch, -1 to 1."""
     shape, block = inside.shapes[row], inside.block
-    nodes, values = shape[1], inside.values[shape[2] + p]
+    nodes, values = shape[NODE_COUNT], inside.values[shape[FIRST_PIECE] + p]
     for j in range(BLOCK):
         block[j] = 0.0
     a = 1.0
@@ -406,9 +414,9 @@ def write_cycle(
 ) -> int:
     """Fill the samples of a slip from a place in a patch; return the next row."""
     inside = known.inside
-    if inside.shapes[row, 3] == 1:
+    if inside.shapes[row, AT_EDGE] == 1:
         x = root_of_place(known, row, x)
-    pieces, current = inside.shapes[row, 0], -1
+    pieces, current = inside.shapes[row, PIECE_COUNT], -1
     per = pieces / (landing - start)
     while k < len(times) and times[k] <= landing:
         phase = (times[k] - start) * per

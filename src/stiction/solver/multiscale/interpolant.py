@@ -16,7 +16,15 @@ from math import sqrt
 import numpy as np
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.multiscale.return_map import NODES, Cycle, Returns
+from stiction.solver.multiscale.return_map import (
+    NODES,
+    PATCH_NODES,
+    PATCH_SCALE,
+    PATCH_START,
+    PATCHES_MADE,
+    Cycle,
+    Returns,
+)
 
 
 def leja(count: int) -> np.ndarray:
@@ -62,8 +70,8 @@ def interpolate(coefficients: np.ndarray, n: int, x: float) -> tuple[float, floa
 @inlined
 def locate(known: Returns, theta: float) -> tuple[int, float]:
     """Return the row of the patch that contains an angle, or -1, and the place in it, -1 to 1."""
-    for row in range(known.sizes[0]):
-        x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
+    for row in range(known.sizes[PATCHES_MADE]):
+        x = (theta - known.patches[row, PATCH_START]) * known.patches[row, PATCH_SCALE] - 1.0
         if -1.0 <= x <= 1.0:
             return row, x
     return -1, 0.0
@@ -72,6 +80,6 @@ def locate(known: Returns, theta: float) -> tuple[int, float]:
 @inlined
 def cycle_from(known: Returns, row: int, x: float) -> Cycle:
     """Return the cycle from a place in a patch; its time held is zero without a stick."""
-    n = int(known.patches[row, 2])
+    n = int(known.patches[row, PATCH_NODES])
     turn, time, square = interpolate(known.coefficients[row], n, x)
     return Cycle(turn, time, sqrt(max(square, 0.0)))

@@ -19,7 +19,22 @@ from stiction.solver.multiscale.replay import (
     state_at_landing,
     stick_of,
 )
-from stiction.solver.multiscale.return_map import FAR, PATCHES, Cycle, Returns, Stick
+from stiction.solver.multiscale.return_map import (
+    CYCLES_SOLVED,
+    EDGES_MET,
+    FAR,
+    LAST_ANGLE,
+    LAST_TIME,
+    MAY_COST,
+    NODES_VAIN,
+    OF_A_CYCLE,
+    PATCH_START,
+    PATCHES,
+    PATCHES_MADE,
+    Cycle,
+    Returns,
+    Stick,
+)
 from stiction.solver.multiscale.section import wrap_angle
 from stiction.solver.multiscale.steps import advance
 from stiction.solver.multiscale.walk import follow_patches
@@ -41,14 +56,14 @@ def reach(known: Returns, theta: float, turn: float) -> float:
     """
     way = 1.0 if turn > 0.0 else -1.0
     width = float(known.width[0])
-    tried = known.patches[min(known.sizes[0], PATCHES - 1), 0]
+    tried = known.patches[min(known.sizes[PATCHES_MADE], PATCHES - 1), PATCH_START]
     part = 0.25 if tried == theta - turn else 0.5
-    for i in range(known.sizes[1]):
+    for i in range(known.sizes[EDGES_MET]):
         gap = way * float(known.edges[i] - theta)
         if gap >= 0.0:
             width = min(width, part * gap)
-    for i in range(known.sizes[0]):
-        gap = way * float(known.patches[i, 0] - theta)
+    for i in range(known.sizes[PATCHES_MADE]):
+        gap = way * float(known.patches[i, PATCH_START] - theta)
         if gap > 0.3 * width:
             width = min(width, gap)
     return way * width
@@ -65,9 +80,9 @@ def pays(known: Returns, stick: Stick, cycle: Cycle, over: float, t_end: float) 
     return (
         min(abs(over), abs(cycle.turn) * left) >= PAYS * abs(cycle.turn)
         and left >= PAYS
-        and max(known.sizes[0], known.sizes[1]) < PATCHES
-        and known.sizes[3] <= VAIN + known.sizes[4] // VAIN_EACH
-        and known.balance[0] > 0.0
+        and max(known.sizes[PATCHES_MADE], known.sizes[EDGES_MET]) < PATCHES
+        and known.sizes[NODES_VAIN] <= VAIN + known.sizes[CYCLES_SOLVED] // VAIN_EACH
+        and known.balance[MAY_COST] > 0.0
     )
 
 
@@ -108,9 +123,9 @@ def learn_and_follow(
 ) -> tuple[int, State, int]:
     """Learn from the cycle that ends with the present stick, and follow the map from there."""
     stick, found_before = stick_of(problem, state.motion), state.counts.mapped
-    theta, taken_off = known.last[0], known.last[1]
+    theta, taken_off = known.last[LAST_ANGLE], known.last[LAST_TIME]
     cycle = Cycle(wrap_angle(stick.theta - theta), stick.end - taken_off, stick.end - stick.start)
-    known.sizes[4] += 1
+    known.sizes[CYCLES_SOLVED] += 1
     if cycle.turn < inf:  # a number: both ends are known
         remember(known, theta, cycle)
     while cycle.turn < inf and state.counts.sticks < len(sticks):
@@ -147,9 +162,9 @@ def learn_and_follow(
         stick = Stick(landing, end, wrap_angle(stick.theta + following.turn))
         cycle = following
     if state.counts.mapped > found_before:
-        known.balance[0] += known.balance[1] * (state.counts.mapped - found_before)
+        known.balance[MAY_COST] += known.balance[OF_A_CYCLE] * (state.counts.mapped - found_before)
         state = state_at_landing(problem, state, stick)
-    known.last[0], known.last[1] = stick.theta, stick.end
+    known.last[LAST_ANGLE], known.last[LAST_TIME] = stick.theta, stick.end
     return COMPLETED, state, k
 
 
@@ -183,7 +198,7 @@ def stride(
     turns = 0
     while True:
         rests = at_rest(problem, state.motion, accuracy)
-        if rests and not known.last[1] >= state.motion.t:
+        if rests and not known.last[LAST_TIME] >= state.motion.t:
             steps = state.counts.steps
             code, state, k = learn_and_follow(
                 problem, state, t_end, accuracy, times, samples, k, sticks, known
@@ -191,16 +206,16 @@ def stride(
             turns += state.counts.steps - steps
             if code > COMPLETED:
                 return code, plain(state), k, turns
-        if turns >= budget or state.counts.sticks == len(sticks) or known.balance[0] < 0.0:
+        if turns >= budget or state.counts.sticks == len(sticks) or known.balance[MAY_COST] < 0.0:
             return RUNNING, plain(state), k, turns
         if rests:
             known.record.used[0] = 0
         room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
-        most = int(min(budget - turns, 1.0 + known.balance[0] / SHORTER))
+        most = int(min(budget - turns, 1.0 + known.balance[MAY_COST] / SHORTER))
         code, state, k, used = advance(
             problem, state, t_end, accuracy, most, times, samples, k, room, known
         )
         turns += used
-        known.balance[0] -= SHORTER * used
+        known.balance[MAY_COST] -= SHORTER * used
         if code != RUNNING:
             return code, plain(state), k, turns

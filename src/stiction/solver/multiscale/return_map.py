@@ -33,6 +33,13 @@ PIECES = 16  # of a slip at most
 ROOMS = 256  # for pieces of all patches
 COLUMNS = 8  # of a sample, filled up to a power of two
 STEPS = 4096  # kept of one cycle, and of all that are remembered
+# places in the arrays of `Returns` and `Inside`
+PATCHES_MADE, EDGES_MET, CYCLES_PAST, NODES_VAIN, CYCLES_SOLVED = range(5)  # sizes
+PATCH_START, PATCH_SCALE, PATCH_NODES = range(3)  # patches
+MAY_COST, OF_A_CYCLE = range(2)  # balance
+LAST_ANGLE, LAST_TIME = range(2)  # last
+PIECE_COUNT, NODE_COUNT, FIRST_PIECE, AT_EDGE = range(4)  # shapes
+RESOLVED = FIRST_PIECE  # while a patch is made
 
 
 class Cycle(NamedTuple):
@@ -56,12 +63,10 @@ class Inside(NamedTuple):
 
     values : of pieces of patches, by node, and by phase and column of a sample; shapes : of each
     patch the number of pieces, that of nodes, its first piece, or while it is made whether it is
-    resolved so far, and whether it is interpolated
-    in the root of the distance to an edge; ends : of each, the place of that edge and its side, at
-    first the times held at both ends; kept : steps of the cycles
-    of `past`; spans : first and number of the steps of each, and behind all the next
-    free row, and the next free piece;
-    finer : how many times as many pieces as a swing needs;
+    resolved so far, and whether it is interpolated in the root of the distance to an edge; ends :
+    of each, the place of that edge and its side, at first the times held at both ends; kept : steps
+    of the cycles of `past`; spans : first and number of the steps of each, and behind all the next
+    free row, and the next free piece; finer : how many times as many pieces as a swing needs;
     points, bound, basis, block, row, missed : room for the work.
     """
 

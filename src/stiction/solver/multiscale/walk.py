@@ -10,7 +10,14 @@ from stiction.solver.compilation.jit import inlined, piece, switch
 from stiction.solver.exact.sampling import sample_stick
 from stiction.solver.multiscale.inside import write_cycle
 from stiction.solver.multiscale.interpolant import cycle_from, locate
-from stiction.solver.multiscale.return_map import Cycle, Returns, Stick
+from stiction.solver.multiscale.return_map import (
+    NODE_COUNT,
+    PATCH_SCALE,
+    PATCH_START,
+    Cycle,
+    Returns,
+    Stick,
+)
 from stiction.solver.multiscale.section import elongation_held, wrap_angle
 from stiction.solver.problem import Problem, in_principal_axes, rate
 
@@ -59,7 +66,7 @@ def follow_patches(
             k = sample_known_stick(problem, Stick(start, end, theta), times, samples, k)
             wanted = times[k] if k < len(times) else inf
         if wanted <= landing:
-            if known.inside.shapes[row, 1] == 0:
+            if known.inside.shapes[row, NODE_COUNT] == 0:
                 break
             k = write_cycle(known, row, x, end, landing, times, samples, k)
             wanted = times[k] if k < len(times) else inf
@@ -69,7 +76,7 @@ def follow_patches(
         count += 1
         start, end, theta = landing, end + time, wrap_angle(theta + turn)
         cycle = following
-        x = (theta - known.patches[row, 0]) * known.patches[row, 1] - 1.0
+        x = (theta - known.patches[row, PATCH_START]) * known.patches[row, PATCH_SCALE] - 1.0
         if not -1.0 <= x <= 1.0:
             row, x = locate(known, theta)
     return Stick(start, end, theta), cycle, count, stuck, k
