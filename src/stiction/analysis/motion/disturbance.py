@@ -6,8 +6,8 @@ import numpy as np
 
 from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.motion.regime.kinds import COUPLED, OWN, irregularity
 from stiction.analysis.motion.rest import STICKING, rest_share
+from stiction.analysis.motion.vibration import COUPLED, OWN, irregularity
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains

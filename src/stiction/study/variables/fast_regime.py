@@ -17,7 +17,7 @@ import numpy as np
 from stiction.analysis.motion.course import QUARTER, QUIET, built_up, dies_out
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
-from stiction.analysis.motion.regime.kinds import irregularity
+from stiction.analysis.motion.vibration import irregularity
 from stiction.arrays import Floats
 from stiction.study.variables.features import PARTS, Features
 

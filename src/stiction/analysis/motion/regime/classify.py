@@ -11,16 +11,15 @@ from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.force_course import by_course
 from stiction.analysis.motion.regime.kinds import (
-    COUPLED,
     HARMONIC,
     IRREGULAR,
-    OWN,
     SETTLING,
     STEADY,
     TRANSITIONAL,
     UNDETERMINED,
 )
 from stiction.analysis.motion.rest import comes_to_rest
+from stiction.analysis.motion.vibration import COUPLED, OWN
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period

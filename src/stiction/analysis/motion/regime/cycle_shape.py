@@ -12,7 +12,6 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
-    COUPLED,
     HARMONIC,
     IRREGULAR,
     RESTS,
@@ -21,11 +20,10 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
     bounds,
     couples,
-    drop_spread,
-    irregularity,
     shape,
 )
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
+from stiction.analysis.motion.vibration import COUPLED, drop_spread, irregularity
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
 from stiction.analysis.signals.robust import median
