@@ -640,6 +640,16 @@ def test_times_of_milliseconds_are_written_so() -> None:
     assert 0.1 < max(labels) <= 0.8
 
 
+def test_wild_samples_do_not_flatten_the_cycles() -> None:
+    time = np.arange(0.0, 20.0, 1e-3)
+    force = 1.0 + np.sin(2 * pi * time)
+    force[[3300, 3700]] = 99.9
+    whole, part = plot_cycles(st.Record(time=time, force=force))
+    assert whole.get_ylim()[1] < 3.0
+    assert [text.get_text() for text in whole.texts] == ["2 wild samples beyond"]
+    assert not list(part.texts)
+
+
 @pytest.mark.parametrize(
     ("speed", "phi", "other"),
     [*inside(8, (-5.0, -1.5), (0.3, 6.0), (8.0, 30.0)), (-1.523, 1.0, 14.35)],

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
-from stiction.arrays import xr
+from stiction.analysis.signals.robust import without_outliers
+from stiction.arrays import Floats, xr
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
 from stiction.plotting.run.time_series import draw_line, name_time
@@ -21,6 +22,7 @@ from stiction.trajectory import Trajectory
 
 FEW = 12  # cycles that can be distinguished on a page's width
 SHOWN = 6  # cycles in the close-up
+SPAN, MARGIN = 2.0, 0.08  # wild samples may take as much room as the others; above and below them
 
 
 def plot_cycles(
@@ -97,8 +99,22 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
             ncols=2,
             markerscale=4.0 / size,
         )
-    ax.margins(y=0.08)
+    ax.margins(y=MARGIN)
+    _leave_out_wild(ax, factor * record.force)
     ax.set_ylabel(f"spring force ({prefix}N)")
+
+
+def _leave_out_wild(ax: Axes, force: Floats) -> None:
+    """Frame a force (as drawn) without its wild samples, if these would flatten it; say so."""
+    rest = without_outliers(force)
+    low, high = float(rest.min()), float(rest.max())
+    if np.ptp(force) <= SPAN * (high - low):
+        return
+    room = MARGIN * (high - low)
+    ax.set_ylim(low - room, high + room)
+    beyond = int(np.count_nonzero((force < low) | (force > high)))
+    said = f"{beyond} wild sample{'s' * (beyond > 1)} beyond"
+    ax.text(0.5, 1.02, said, transform=ax.transAxes, ha="center", color=GREY)  # above all lines
 
 
 def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:
