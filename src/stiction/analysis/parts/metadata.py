@@ -27,7 +27,8 @@ TOLD = (SWING, LOADING_RATE)  # among the warnings
 ROUGH = {  # why a value may be farther from the truth than its error says
     BY_SLIPS: (
         "Stiffness over mass by the motion is rough, its error is that of the scatter alone: "
-        "friction that changes with speed makes a slip last longer than half a free swing."
+        "friction that changes with speed makes a slip last longer than half a free swing, and "
+        "so does a load cell whose filter smears it."
     ),
     BY_RISE: (
         "The force may rise more slowly than stiffness times drive velocity: the mass creeps."
