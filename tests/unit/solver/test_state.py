@@ -7,6 +7,7 @@ from tests.entry import plain
 from tests.systems import STEADY
 
 from stiction.solver import state
+from stiction.solver.stepping.limit import NEVER_ASKED
 
 MEMORY = state.Memory(
     1e-3,
@@ -44,8 +45,8 @@ def test_the_size_to_try_is_the_plan_s_within_bounds():
 def test_a_take_off_begins_the_plan_and_a_kink_ends_it():
     begun = plain(state.at_takeoff)(MEMORY)
     assert begun == MEMORY._replace(h=MEMORY.plan[0], place=0, warm=False, limit=state.NO_LIMIT)
-    never = MEMORY._replace(limit=state.NEVER_ASKED)
-    assert plain(state.at_takeoff)(never).limit == state.NEVER_ASKED
+    never = MEMORY._replace(limit=NEVER_ASKED)
+    assert plain(state.at_takeoff)(never).limit == NEVER_ASKED
     cold = state.drop_memory(MEMORY, 5e-4)
     assert cold == MEMORY._replace(h=5e-4, place=state.PLANNED, warm=False, limit=state.NO_LIMIT)
 
