@@ -41,8 +41,8 @@ class Noise(NamedTuple):
         Standard deviation of its noise.
     gain, zero : float
         Uncertainty of its gain and of its zero.
-    filters : tuple of LowPass
-        Its bandwidth and its anti-alias filter.
+    filters : tuple
+        Its bandwidth and its anti-alias filter, as `LowPass`.
     """
 
     level: float
