@@ -8,11 +8,12 @@ from typing import NamedTuple
 
 from stiction.errors import ResultError
 from stiction.storage.files import place, workshop
+from stiction.storage.version import own_version
 from stiction.study.execution.sweep import do
 from stiction.study.plan.study import Study
 from stiction.study.store import seal
 from stiction.study.store.creation import lay_out
-from stiction.study.store.store import CHECKED, Store, group_at, store_at, version
+from stiction.study.store.store import CHECKED, Store, group_at, store_at
 from stiction.study.view.view import REFINED
 
 
@@ -75,9 +76,11 @@ def restore(path: Path, *, trust: bool = False) -> list[str]:
     if not found.files:
         return []
     group = group_at(path, "r")
-    if group.attrs.get("stiction_version") != version():
+    if group.attrs.get("stiction_version") != own_version():
         wrote = group.attrs.get("stiction_version")
-        raise ResultError(f"{path}: stiction {wrote} wrote it, this is {version()}; use that one")
+        raise ResultError(
+            f"{path}: stiction {wrote} wrote it, this is {own_version()}; use that one"
+        )
     study = Study.from_json(str(group.attrs["description"]), trust=trust)
     if found.head:
         _restore_head(study, path, found.head)

@@ -10,6 +10,7 @@ import numpy as np
 
 from stiction.errors import ResultError
 from stiction.storage.files import place, workshop
+from stiction.storage.version import own_version
 from stiction.study.plan.study import Study
 from stiction.study.store.kept import TIME, flag_attributes, stored_variables, trace_times
 from stiction.study.store.seal import seal
@@ -20,7 +21,6 @@ from stiction.study.store.store import (
     Store,
     errors_as_message,
     open_store,
-    version,
 )
 
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ def _make_arrays(study: Study, group: zarr.Group) -> None:
     group.attrs.update(
         title="study by stiction",
         format=CHECKED,
-        stiction_version=version(),
+        stiction_version=own_version(),
         description=study.to_json(),
         coordinates=" ".join([*study.coordinates, "message"]),  # as xarray reads it
     )

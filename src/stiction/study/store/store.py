@@ -25,6 +25,7 @@ from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
 from stiction.storage.files import place, workshop
 from stiction.storage.foreign import opening, refuse_links, refuse_size
 from stiction.storage.kinds import STORE, use_of
+from stiction.storage.version import own_version
 from stiction.study.plan.layout import MANY_TASKS, Index, Layout, Region
 from stiction.study.plan.study import Study
 from stiction.study.store import seal
@@ -218,10 +219,10 @@ def open_store(study: Study, path: str | Path) -> Store:
             f"{path}: holds another study, or one with a different description; it was not "
             "overwritten: choose another name, or remove it"
         )
-    if attributes.get("stiction_version") != version():
+    if attributes.get("stiction_version") != own_version():
         raise ResultError(
             f"{path}: was begun by stiction {attributes.get('stiction_version')}, this is "
-            f"{version()}; continue with that version, or choose another name"
+            f"{own_version()}; continue with that version, or choose another name"
         )
     return store
 
@@ -279,7 +280,8 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
     if known not in FORMATS:
-        by = f"stiction {group.attrs.get('stiction_version')!s:.20} wrote it, this is {version()}"
+        wrote = f"{group.attrs.get('stiction_version')!s:.20}"
+        by = f"stiction {wrote} wrote it, this is {own_version()}"
         what = "is not the store of a study" if known is None else f"has format {known!s:.20}; {by}"
         raise ResultError(f"{path}: {what}; choose another name")
     return group
@@ -326,10 +328,3 @@ def open_study(path: str | Path) -> xr.Dataset:
     with opening(path, "is damaged"):
         data: xr.Dataset = xr.open_zarr(files, zarr_format=3)
     return data.rename({old: new for old, new in FORMERLY.items() if old in data})
-
-
-def version() -> str:
-    """Return the version of this package."""
-    from stiction import __version__
-
-    return __version__
