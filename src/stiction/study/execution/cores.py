@@ -23,9 +23,7 @@ from stiction.machine import CORES, largest_object, python
 from stiction.study.execution.engines import Work, in_threads, never
 
 T = TypeVar("T")
-# s; twice what a process takes to start. Who waits as long as a thing costs before he buys it never
-# pays more than twice the least.
-LONG = 2.0
+LONG = 2.0  # s, twice what a process takes to start: work that ends sooner gains nothing from one
 A_PROCESS = 250e6  # bytes: Python, the packages, the compiled solver, and a block of runs
 READY = b"."
 
