@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from stiction.analysis.record import Record
@@ -77,6 +78,11 @@ class RecordComparison:
         usual = self.fit.farther >= RARE and self.predictive.larger >= RARE
         return usual and not self.fit.beyond
 
+    @cached_property
+    def warnings(self) -> tuple[str, ...]:
+        """What an analysis of the record warns of: a fit does not see it."""
+        return analyse(self.record).warnings
+
     @property
     def absent(self) -> list[str]:
         """The channels that a fit would use and the record does not have."""
@@ -124,10 +130,9 @@ def sections(found: RecordComparison) -> list[Section]:
     """Return the sections of a report."""
     if found.fit is None:
         return [Section(RECORD, [f"No verdict: {found.reason}."])]
-    warned = analyse(found.record).warnings
     parts = [
         Section(RECORD, [verdict(found), DESCRIBED]),
-        *([Section(WARNINGS, [*warned])] if warned else []),
+        *([Section(WARNINGS, [*found.warnings])] if found.warnings else []),
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]

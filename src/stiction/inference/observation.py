@@ -161,10 +161,10 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
     """Return the noise of a channel, as its sensor states it or as its samples show it."""
     sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
     level = 0.0 if sensor is None else float(np.hypot(sensor.noise, sensor.quantisation / 12**0.5))
-    noise = Noise(level or white_noise(values))
+    level = level or white_noise(values)
     if sensor is None:
-        return noise
-    return Noise(noise.level, sensor.gain_uncertainty, sensor.zero_uncertainty, sensor.filters)
+        return Noise(level)
+    return Noise(level, sensor.gain_uncertainty, sensor.zero_uncertainty, sensor.filters)
 
 
 def block_means(values: Floats, block: int) -> Floats:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import lru_cache
 from importlib import import_module
 from math import ceil, comb, inf, log2, sqrt
 from typing import Annotated, Any, NamedTuple, Self
@@ -170,19 +171,29 @@ def low_pass(values: Floats, filters: Iterable[LowPass], rate: float) -> Floats:
 
     See `Sensor.response`.
     """
-    for cut, order in filters:
-        signal: Any = import_module("scipy.signal")  # slow to import
-        if cut > FASTEST * rate:
-            factor = 2 ** ceil(log2(cut / (FASTEST * rate)))
+    for each in filters:
+        if each.cut > FASTEST * rate:
+            factor = 2 ** ceil(log2(each.cut / (FASTEST * rate)))
             raise ResultError(
-                f"a filter at {cut:g} Hz needs samples at {cut / FASTEST:g} Hz or more, the run "
-                f"has {rate:g} Hz; simulate it with {factor} times the sample rate"
+                f"a filter at {each.cut:g} Hz needs samples at {each.cut / FASTEST:g} Hz or more, "
+                f"the run has {rate:g} Hz; simulate it with {factor} times the sample rate"
             )
         if len(values):
-            sections = signal.butter(order, cut, fs=rate, output="sos")
-            start = signal.sosfilt_zi(sections) * values[0]
-            values = np.asarray(signal.sosfilt(sections, values, zi=start)[0])
+            signal: Any = import_module("scipy.signal")  # slow to import
+            sections, rest = _sections(each, rate)
+            values = np.asarray(signal.sosfilt(sections, values, zi=rest * values[0])[0])
     return values
+
+
+@lru_cache(maxsize=16)
+def _sections(low_pass: LowPass, rate: float) -> tuple[Floats, Floats]:
+    """Return a filter's sections, and their state after a long time at 1.
+
+    They take three times as long as to filter a record of a fit's library.
+    """
+    signal: Any = import_module("scipy.signal")  # slow to import
+    sections = signal.butter(low_pass.order, low_pass.cut, fs=rate, output="sos")
+    return sections, signal.sosfilt_zi(sections)
 
 
 class NoiseLevel(NamedTuple):

@@ -1,13 +1,12 @@
 """All cores: processes that start beside the threads do the same, and are missed by nobody."""
 
 import os
-import time
 from functools import partial
 from itertools import count
 
 import pytest
 from tests.tasks import forces, stop_elsewhere, who
-from tests.waiting import PATIENCE
+from tests.waiting import until
 
 import stiction as st
 from stiction.study.execution import cores
@@ -25,19 +24,6 @@ class Worn(NamedTuple):
     def slope(law, v):
         return -20.0 * law.mu_0 / (1.0 + 20.0 * v) ** 2
 """
-TABLE = """
-[slider]
-mass = "0.25 kg"
-k_x = "1 kN/m"
-k_y = "10 MN/m"
-phi = "1 deg"
-normal_load = "10 N"
-[friction]
-law = "worn.py:Worn"
-mu_0 = 0.2
-[drive]
-velocity = "1 mm/s"
-"""
 
 
 @pytest.fixture(autouse=True)
@@ -46,14 +32,16 @@ def at_once(monkeypatch):
     monkeypatch.setattr(cores, "LONG", 0.0)
 
 
-def others(found):
-    """Yield what comes until another process has done something."""
-    end = time.monotonic() + PATIENCE
-    for each in found:
-        yield each
-        if each[1] != os.getpid():
-            return
-        assert time.monotonic() < end, "no process starts"
+def until_another(found):
+    """Return what comes until another process has done something."""
+    done = []
+
+    def comes():
+        done.append(next(found))
+        return done[-1][1] != os.getpid()
+
+    until(comes, "the start of a process")
+    return done
 
 
 def is_alive(process):
@@ -66,7 +54,7 @@ def is_alive(process):
 
 def test_a_process_does_tasks_and_ends_with_them():
     found = Cores(2).results(who, count())
-    done = [*others(found)]
+    done = until_another(found)
     found.close()
     tasks = [task for task, _ in done]
     assert len(set(tasks)) == len(tasks)
@@ -95,17 +83,18 @@ def test_what_a_process_leaves_is_done_here(how, tmp_path):
 def test_nobody_waits_for_a_process_when_the_work_is_broken_off(tmp_path):
     seen = tmp_path / "seen"
     found = Cores(2).results(partial(stop_elsewhere, "never ends", os.getpid(), seen), count())
-    for _ in found:
-        if seen.exists() and seen.read_text():
-            break
+    until(lambda: next(found) >= 0 and seen.exists() and seen.read_text(), "a process")
     found.close()
     assert not is_alive(int(seen.read_text()))
 
 
 def test_a_law_from_a_file_gives_the_same_in_another_process(tmp_path):
     (tmp_path / "worn.py").write_text(LAW)
-    (tmp_path / "a.toml").write_text(TABLE)
+    text = st.presets.nakano_popov_2020().to_toml()
+    before, after = text[: text.index("[friction]")], text[text.index("[drive]") :]
+    law = '[friction]\nlaw = "worn.py:Worn"\nmu_0 = 0.2\n\n'
+    (tmp_path / "a.toml").write_text(before + law + after)
     slider = st.Slider.from_toml(tmp_path / "a.toml")
     found = Cores(2).results(partial(forces, slider), count())
-    assert len({force for force, _ in others(found)}) == 1
+    assert len({force for force, _ in until_another(found)}) == 1
     found.close()

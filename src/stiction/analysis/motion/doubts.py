@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import log10, pi
+from math import inf, log10, pi
 
 import numpy as np
 
@@ -345,10 +345,14 @@ def _remedy_of_mass(ratio: float) -> str:
     return "check mass and stiffness"
 
 
+def _usual_fall(cycles: xr.Dataset) -> float:
+    """Return how long a fall of the force takes, s; infinite without cycles."""
+    falls = cycles["trough_time"].values - cycles["peak_time"].values
+    return float(np.median(falls)) if len(falls) else inf
+
+
 def _coarse(record: Record, cycles: xr.Dataset) -> Iterator[str]:
-    if not cycles.sizes["cycle"]:
-        return
-    fall = float(np.median(cycles["trough_time"].values - cycles["peak_time"].values))
+    fall = _usual_fall(cycles)
     samples = fall * record.sample_rate
     if samples < FEW:
         yield (
@@ -358,11 +362,8 @@ def _coarse(record: Record, cycles: xr.Dataset) -> Iterator[str]:
 
 
 def _smear(record: Record, cycles: xr.Dataset) -> Iterator[str]:
-    sensor = (record.sensors or {}).get("force")
-    if sensor is None or not cycles.sizes["cycle"]:
-        return
-    fall = float(np.median(cycles["trough_time"].values - cycles["peak_time"].values))
-    if fall * sensor.cut_off < SHARP:
+    sensor, fall = (record.sensors or {}).get("force"), _usual_fall(cycles)
+    if sensor is not None and fall * sensor.cut_off < SHARP:
         yield (
             f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
             f"slower than {in_words(sensor.cut_off, 'Hz')}: drops, slip speeds and the creep just "
