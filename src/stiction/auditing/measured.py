@@ -80,7 +80,7 @@ class RecordComparison:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What an analysis of the record warns of: a fit does not see it."""
+        """What an analysis of the record warns of, which a fit does not see."""
         return analyse(self.record).warnings
 
     @property
