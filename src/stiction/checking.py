@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stiction.errors import ResultError
-from stiction.result.file import CHANGED, intact_description, is_netcdf, read_tables
+from stiction.result.file import DamageError, intact_description, is_netcdf, read_tables
 from stiction.simulation import run
 from stiction.storage.isolation import apart
 from stiction.storage.kinds import RESULT, use_of
@@ -119,13 +119,12 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     try:
         read_tables(path)
         return Check(path, [])
+    except DamageError as damage:
+        told = damage.lost
     except ResultError as error:
-        if not os.path.isfile(path):
+        if not (os.path.isfile(path) and is_netcdf(path)):
             raise
-        if not is_netcdf(path):
-            raise
-        told = str(error).removeprefix(f"{path}: ").removeprefix(CHANGED)
-        told = told.partition("; compute it")[0]
+        told = str(error).removeprefix(f"{path}: ")
     description = apart(intact_description, path)
     if not repair:
         return Check(path, [told])

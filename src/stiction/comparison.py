@@ -161,7 +161,7 @@ def compare(
     samples = len(all_laws) * settings.duration * (settings.sample_rate or 0.0)
     if short := shortage(SAMPLE * samples):
         message = f"makes {samples:.3g} samples in {len(all_laws)} runs, which {short}"
-        raise DescriptionError([Fault("run.sample_rate", f"{message}; lower it")])
+        raise DescriptionError.of("run.sample_rate", f"{message}; lower it")
     runs: dict[str, Trajectory] = {}
     for name, law in zip(labels(all_laws), all_laws, strict=True):
         part = None if progress is None else share(progress, len(runs), len(all_laws))
@@ -246,7 +246,7 @@ def read(description: Description, value: Any) -> Law:
     if text in LAWS:
         return comparable(LAWS[text], description)
     other = f"(or a table {EXAMPLE}, a .toml file, file.py:Class)"
-    raise DescriptionError([Fault("law", f"{unknown_name('law', text, LAWS)} {other}")])
+    raise DescriptionError.of("law", f"{unknown_name('law', text, LAWS)} {other}")
 
 
 def comparable(kind: Any, description: Description) -> Law:
@@ -283,7 +283,7 @@ def inline(text: str) -> dict[str, Any]:
         table: dict[str, Any] = tomllib.loads(f"law = {text}")["law"]
     except (ValueError, RecursionError) as error:
         message = f"is not a TOML table: {error}; write for example {EXAMPLE}"
-        raise DescriptionError([Fault("law", message)]) from None
+        raise DescriptionError.of("law", message) from None
     return table
 
 
@@ -291,7 +291,7 @@ def friction_table(path: str) -> dict[str, Any]:
     """Return the table [friction] of a file."""
     table = read_toml(path).get("friction")
     if not isinstance(table, dict):
-        raise DescriptionError([Fault(path, "has no table [friction]; write one in it")])
+        raise DescriptionError.of(path, "has no table [friction]; write one in it")
     return table
 
 

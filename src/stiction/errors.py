@@ -127,6 +127,17 @@ class DescriptionError(StictionError, ValueError):
             lines.append(f"and {len(self.faults) - MOST} more faults")
         super().__init__("\n".join(lines))
 
+    @classmethod
+    def of(cls, path: str, message: str) -> DescriptionError:
+        """Return the error of a single fault.
+
+        Examples
+        --------
+        >>> print(DescriptionError.of("phi", "missing"))
+        phi: missing
+        """
+        return cls([Fault(path, message)])
+
     def at(self, place: str = "") -> DescriptionError:
         """Return the error with its faults at another place, see `Fault.at`."""
         return DescriptionError([fault.at(place) for fault in self.faults])

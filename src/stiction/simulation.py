@@ -123,10 +123,10 @@ def simulate(
         remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
         if isinstance(slider, Description):
             remedy = "st.run(description) simulates a whole description, duration and all"
-        raise DescriptionError([Fault("slider", f"{echo(slider)} is not a Slider; {remedy}")])
+        raise DescriptionError.of("slider", f"{echo(slider)} is not a Slider; {remedy}")
     if not isinstance(initial, Initial | None):
         remedy = "write for example st.Initial(u_x='1 mm')"
-        raise DescriptionError([Fault("initial", f"{echo(initial)} is not an Initial; {remedy}")])
+        raise DescriptionError.of("initial", f"{echo(initial)} is not an Initial; {remedy}")
     if duration is None:
         duration = time_to_end(slider, initial or PAPERS)
     given: dict[str, Any] = {
@@ -148,10 +148,10 @@ def time_to_end(slider: Slider, initial: Initial) -> float:
     until = end(slider.motion, slider.load)
     if until is None:
         message = "missing; only a program of drive or load whose last piece ends has one"
-        raise DescriptionError([Fault("duration", message)])
+        raise DescriptionError.of("duration", message)
     if not until > initial.time:
         message = f"missing; the programs end at {until:g} s, where the run starts"
-        raise DescriptionError([Fault("duration", message)])
+        raise DescriptionError.of("duration", message)
     return until - initial.time
 
 
@@ -228,18 +228,18 @@ def solve(
     """
     _, initial, settings = description
     if not isinstance(max_steps, int) or max_steps < 1:
-        raise DescriptionError([Fault("max_steps", f"must be at least 1, is {echo(max_steps)}")])
+        raise DescriptionError.of("max_steps", f"must be at least 1, is {echo(max_steps)}")
     if settings.regularisation is not None and has_state(description.slider.law):
         message = "the law is smooth at zero slip by itself; leave regularisation out"
-        raise DescriptionError([Fault("run.regularisation", message)])
+        raise DescriptionError.of("run.regularisation", message)
     initial.internal(description.slider)  # or say what is wrong with it
     clashing = [state.name for state in states(description.slider.law) if state.name in VARIABLES]
     if clashing:
         message = f"has internal states {', '.join(clashing)}, which are taken in results; rename"
-        raise DescriptionError([Fault("friction.law", message)])
+        raise DescriptionError.of("friction.law", message)
     if initial.time + settings.duration == initial.time:
         message = f"is below the resolution of time at t = {initial.time:g} s; start earlier"
-        raise DescriptionError([Fault("run.duration", message)])
+        raise DescriptionError.of("run.duration", message)
     try:
         return integrate(description, times, max_steps, progress, inside=inside)
     except NumbaError:

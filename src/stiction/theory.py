@@ -36,7 +36,7 @@ from numpy.typing import ArrayLike
 
 from stiction.arguments import is_numeric, name_arguments
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, echo
 
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
@@ -499,7 +499,7 @@ def _floats(*values: ArrayLike) -> tuple[Floats, ...]:
     for value in values:
         if not is_numeric(value):
             told = f"the theory takes numbers in SI, or arrays of them, not {echo(value)}"
-            raise DescriptionError([Fault("", told)])
+            raise DescriptionError.of("", told)
     return tuple(np.asarray(value, dtype=np.float64) for value in values)
 
 

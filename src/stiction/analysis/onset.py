@@ -18,7 +18,7 @@ import numpy as np
 
 from stiction.analysis.limit_cycle import KICK, OSCILLATING, REST, UNDECIDED, Found, settle
 from stiction.arrays import Floats, xr
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.linear_stability import steady_sliding
 from stiction.names import draw
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
@@ -178,7 +178,7 @@ def find_onset(
     numbers = np.array([read(each, path) for each in sliders])
     if len(numbers) < 3 or not (np.diff(numbers) > 0).all():
         message = f"{len(numbers)} values to sweep through; give three or more that ascend"
-        raise DescriptionError([Fault(path, message)])
+        raise DescriptionError.of(path, message)
     up = sweep_sliders(sliders, most_blocks, rtol)
     down = sweep_sliders(sliders[::-1], most_blocks, rtol)[::-1]
     points = [SweepPoint(*each) for each in zip(map(float, numbers), up, down, strict=True)]

@@ -16,7 +16,7 @@ from stiction.arguments import is_list
 from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, echo
 from stiction.text.units import FORCE, VELOCITY, Kind, Quantity, to_si
 
 TIME, LENGTH = Kind("a time", "s", "5 s"), Kind("a length", "m", "0.1 mm")
@@ -199,4 +199,4 @@ def _read(path: str, value: Quantity | None, kind: Kind) -> float:
 
 
 def _fault(path: str, message: str) -> DescriptionError:
-    return DescriptionError([Fault(path, message)])
+    return DescriptionError.of(path, message)

@@ -28,7 +28,7 @@ def as_pieces(known: Mapping[str, type[Any]], kind: Kind) -> BeforeValidator:
                 piece = _in_si(_piece(each, known), kind)
                 if piece.duration is None and i < len(value) - 1:
                     message = "missing; only the last piece may have no end"
-                    raise DescriptionError([Fault("piece.duration", message)])
+                    raise DescriptionError.of("piece.duration", message)
                 made.append(piece)
             except DescriptionError as error:
                 found += [*error.at(str(i + 1)).faults]
@@ -63,7 +63,7 @@ def _piece(value: Any, known: Mapping[str, type[Any]]) -> Any:
     if isinstance(value, Mapping):
         return choose(dict(value), "piece", known)
     if type(value) not in known.values():
-        raise DescriptionError([Fault("piece", f"{echo(value)} is none of {', '.join(known)}")])
+        raise DescriptionError.of("piece", f"{echo(value)} is none of {', '.join(known)}")
     return value
 
 

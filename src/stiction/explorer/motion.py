@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import isfinite, nan
+from math import isfinite
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,8 @@ from stiction import theory
 from stiction.drive.program import nominal_velocity
 from stiction.errors import STATUSES
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
-from stiction.friction import Anisotropic, has_state
-from stiction.friction.law import static_coefficient
+from stiction.friction import ellipse
+from stiction.friction.law import limit_coefficient
 from stiction.result.table import ColumnTable, sample_table
 from stiction.simulation import automatic_times, solve
 from stiction.solver.integrate import Solution
@@ -189,8 +189,8 @@ def about(description: Description, solution: Solution, table: ColumnTable) -> d
         "status": status.value,
         "scene": {
             "phi": slider.misalignment,
-            "limit": limit(description, table),
-            "ellipse": ellipse(description),
+            "limit": limit_coefficient(slider.law, table["friction"], table["normal_load"]),
+            "ellipse": ellipse(slider.law),
             "k": (slider.k_x, slider.k_y),
             "velocity": velocity,
             "damping": theory.damping_number_of(slider, velocity),
@@ -240,20 +240,3 @@ def text_of(value: float, unit: str) -> str:
     if unit == "%":
         return f"{value:.4g} %"
     return in_words(value, unit, DIGITS)
-
-
-def limit(description: Description, table: ColumnTable) -> float:
-    """Return the limit of friction over the load; of a law with state, the largest there was."""
-    law = description.slider.law
-    if has_state(law):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = table["friction"] / table["normal_load"]
-        found = ratio[np.isfinite(ratio)]
-        return float(found.max()) if len(found) else nan
-    return static_coefficient(law)
-
-
-def ellipse(description: Description) -> tuple[float, float]:
-    """Return the ratio and the angle (rad, from X) of the ellipse of friction; a circle has 1."""
-    law: Any = description.slider.law
-    return (law.ratio, law.angle) if isinstance(law, Anisotropic) else (1.0, 0.0)

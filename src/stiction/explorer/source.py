@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
-from stiction.errors import DescriptionError, Fault, ResultError, echo
+from stiction.errors import DescriptionError, ResultError, echo
 from stiction.explorer.motion import CURVES
 from stiction.friction.user.loading import Find, is_own
 from stiction.presets import nakano_popov_2020
@@ -96,7 +96,7 @@ class Opened:
                 "command "
                 "line: stiction explore my.toml"
             )
-            raise DescriptionError([Fault("friction.law", message)])
+            raise DescriptionError.of("friction.law", message)
 
         return find
 

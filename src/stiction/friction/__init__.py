@@ -19,6 +19,7 @@ from stiction.friction.law import has_state as has_state
 from stiction.friction.law import states as states
 from stiction.friction.laws import Anisotropic as Anisotropic
 from stiction.friction.laws.anisotropic import anisotropy_table, read_anisotropy
+from stiction.friction.laws.anisotropic import ellipse as ellipse
 from stiction.friction.registry import FUNCTIONS as FUNCTIONS
 from stiction.friction.registry import LAWS as LAWS
 from stiction.friction.registry import METHODS as METHODS

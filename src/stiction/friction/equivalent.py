@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.friction.law import Law, has_state, static_coefficient
 
 CHANGED = 1.0 - exp(-1.0)
@@ -57,7 +57,7 @@ def traits(law: Law, drive: float, fastest: float) -> Traits:
     static = float(mu[0]) if has_state(law) else static_coefficient(law)
     if not np.isfinite([*mu, static]).all():
         rule = f"its coefficient is not finite between {slowest:.3g} and {fastest:.3g} m/s"
-        raise DescriptionError([Fault("law", f"{rule}; correct {type(law).__name__}")])
+        raise DescriptionError.of("law", f"{rule}; correct {type(law).__name__}")
     kinetic = float(mu[np.abs(mu - static).argmax()])
     if abs(kinetic - static) <= 1e-9 * static:
         return Traits(static, static, drive or fastest)
@@ -81,11 +81,11 @@ def like(kind: Any, shared: Traits) -> Law:
     remedy = f"write a table with its parameters: {', '.join(required)}"
     if not hasattr(kind, "like"):
         message = f"takes no parameters from another law; {remedy}"
-        raise DescriptionError([Fault("law", message)])
+        raise DescriptionError.of("law", message)
     try:
         made: Law = kind.like(*(float(f"{value:.4g}") for value in shared))  # as written
     except (ArithmeticError, ValueError) as error:
         wanted = f"{shared.static:.4g} at rest, {shared.kinetic:.4g} in fast slip"
         message = f"cannot be given friction coefficients {wanted} ({error}); {remedy}"
-        raise DescriptionError([Fault("law", message)]) from None
+        raise DescriptionError.of("law", message) from None
     return made

@@ -14,7 +14,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any, NamedTuple, Protocol, Self, TypeGuard
 
-from stiction.errors import DescriptionError, Fault
+import numpy as np
+
+from stiction.arrays import Floats
+from stiction.errors import DescriptionError
 
 Vector = tuple[float, float]
 
@@ -113,6 +116,17 @@ def static_coefficient(law: Any) -> float:
     return max(float(getattr(law, "mu_static", 0.0)), float(law.coefficient(0.0)))
 
 
+def limit_coefficient(law: Any, friction: Floats, normal_load: Floats) -> float:
+    """Return the friction limit at rest over the load; of a law with state, the largest in a run.
+
+    `friction` and `normal_load` are samples of the run, in N. Zero if nothing rubs.
+    """
+    if not has_state(law):
+        return static_coefficient(law)
+    loaded = normal_load > 0.0
+    return float(np.nanmax(friction[loaded] / normal_load[loaded], initial=0.0))
+
+
 def static_fault(law: FrictionLaw) -> Iterator[tuple[str, str]]:
     """Check a law's separate static coefficient; yield field and message of a fault."""
     static, kinetic = float(getattr(law, "mu_static", 0.0)), law.coefficient(0.0)
@@ -137,4 +151,4 @@ def refuse_strengthening(kind: str, static: float, kinetic: float) -> None:
             f"cannot strengthen or stay, from {static:g} to {kinetic:g}; compare it at a "
             "kinetic coefficient below the static one"
         )
-        raise DescriptionError([Fault(kind, message)])
+        raise DescriptionError.of(kind, message)

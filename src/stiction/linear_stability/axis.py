@@ -7,7 +7,7 @@ from math import exp, inf, log, nan, pi
 from typing import NamedTuple
 
 from stiction.arguments import is_list
-from stiction.errors import DescriptionError, Fault, Faults, echo
+from stiction.errors import DescriptionError, Faults, echo
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
@@ -70,11 +70,11 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
         If the range is invalid, or contains forbidden values.
     """
     if not isinstance(path, str):
-        raise DescriptionError([Fault("path", f"{echo(path)} is not a parameter; write 'phi'")])
+        raise DescriptionError.of("path", f"{echo(path)} is not a parameter; write 'phi'")
     path = canonical_path(path)
     ends = default(slider, path) if between is None else between
     if not is_list(ends) or len(ends) != 2:
-        raise DescriptionError([Fault(path, f"{echo(ends)} is not a range; give its two ends")])
+        raise DescriptionError.of(path, f"{echo(ends)} is not a range; give its two ends")
     faults, values = Faults(), []
     for end in ends:
         with faults.of_part():
@@ -85,12 +85,10 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
         if between is not None:
             raise
         message = f"the usual range, {ends[0]} to {ends[1]}, is not allowed; give another: {error}"
-        raise DescriptionError([Fault(path, message)]) from None
+        raise DescriptionError.of(path, message) from None
     low, high = values
     if not low < high:
-        raise DescriptionError(
-            [Fault(path, f"{echo(ends)} is not a range; give its low end first")]
-        )
+        raise DescriptionError.of(path, f"{echo(ends)} is not a range; give its low end first")
     return Axis(path, unit(slider, path), low, high)
 
 
@@ -104,7 +102,7 @@ def default(slider: Slider, path: str) -> tuple[float | str, float | str]:
     value = read(slider, path)
     if value == 0.0:
         message = "is zero, which gives no range; say which, for example between=(0, 1)"
-        raise DescriptionError([Fault(path, message)])
+        raise DescriptionError.of(path, message)
     low, high = sorted((value * 10.0**-DECADES, value * 10.0**DECADES))
     return low, high
 

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from stiction.arrays import Floats, xr
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.linear_stability.axis import Axis, axis, present_value
 from stiction.linear_stability.linear import growth_rate, steady_sliding
 from stiction.linear_stability.roots import sign_changes, signed_growth
@@ -86,7 +86,7 @@ def boundary(
     """
     across, up = axis(slider, x, x_between), axis(slider, y, y_between)
     if across.path == up.path:
-        raise DescriptionError([Fault(x, "spans no plane with itself; name two parameters")])
+        raise DescriptionError.of(x, "spans no plane with itself; name two parameters")
 
     def at(point: Point) -> Slider:
         inside = (min(max(each, 0.0), 1.0) for each in point)

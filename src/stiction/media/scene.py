@@ -8,7 +8,6 @@ factor, which the picture states.
 from __future__ import annotations
 
 from math import cos, floor, log10, sin
-from typing import Any
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -16,8 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.patches import FancyArrowPatch, Polygon
 
 from stiction.arrays import Floats
-from stiction.friction import Anisotropic
-from stiction.friction.law import static_coefficient
+from stiction.friction import ellipse
+from stiction.friction.law import limit_coefficient
 from stiction.plotting.apparatus.shapes import dashpot_paths, spring_path
 from stiction.plotting.page.style import (
     BLACK,
@@ -41,7 +40,7 @@ HOME = np.array([0.3, -0.45])  # of the mass, where the springs are relaxed
 WALLS = np.array([3.1, 2.2])  # along x and y from there
 DAMPER = 1.45  # length of one with an axis of its own
 LARGEST = np.array([1.2, 0.5])  # displacement of the mass in the picture
-RADIUS = 1.35  # of the friction limit
+RADIUS = 1.35  # of the largest friction force
 SIDE = 0.42  # half of the mass
 GRID = 0.9  # between the marks on the plate
 DECADES = 4.0  # of the slip speed, over which its arrow grows
@@ -58,8 +57,10 @@ class Scene:
         self.turn = np.array([[c, s], [-s, c]])  # from x, y to X, Y
         self.dampers = [self.turn @ away(angle) for angle in dampers_askew(slider).values()]
         self.scale = magnification(samples)
-        self.load = float(np.max(samples["normal_load"]))
-        self.limit = largest_friction(slider, samples)
+        friction, load = samples["friction"], samples["normal_load"]
+        self.limit = limit_coefficient(slider.law, friction, load)
+        largest = self.limit * max(ellipse(slider.law)[0], 1.0) * float(np.max(load))
+        self.newton = RADIUS / (max(largest, float(np.nanmax(friction))) or 1.0)
         self.fastest = float(np.nanmax(samples["slip_speed"]))
         self.slowest = slowest_slip(samples)
         self._prepare(ax)
@@ -175,17 +176,14 @@ class Scene:
 
     def _forces(self, state: dict[str, float]) -> tuple[Floats, Floats]:
         """Return the outline of the friction limit and the tip of the force, from the mass."""
-        law: Any = self.slider.law
-        ratio, angle = (law.ratio, law.angle) if isinstance(law, Anisotropic) else (1.0, 0.0)
-        radius = RADIUS / max(ratio, 1.0) * state["normal_load"] / self.load
+        ratio, angle = ellipse(self.slider.law)
         around = np.linspace(0.0, 2.0 * np.pi, 73)
-        axes = radius * np.column_stack([np.cos(around), ratio * np.sin(around)])
+        axes = np.column_stack([np.cos(around), ratio * np.sin(around)])
         c, s = cos(angle), sin(angle)
-        outline = axes @ np.array([[c, s], [-s, c]])
-        unit = RADIUS / max(ratio, 1.0) / (self.limit * self.load)
+        outline = self.limit * state["normal_load"] * axes @ np.array([[c, s], [-s, c]])
         psi = np.radians(np.nan_to_num(state["psi"]))
-        tip = -unit * state["friction"] * np.array([np.cos(psi), np.sin(psi)])
-        return outline, tip
+        tip = -state["friction"] * np.array([np.cos(psi), np.sin(psi)])
+        return self.newton * outline, self.newton * tip
 
     def _slip(self, state: dict[str, float]) -> Floats:
         """Return the arrow of the slip velocity: its length is logarithmic."""
@@ -216,11 +214,3 @@ def magnification(samples: ColumnTable) -> Floats:
 def slowest_slip(samples: ColumnTable) -> float:
     """Return the slip speed below which the mass is shown at rest, m/s."""
     return DEEPEST * float(np.nanmax(np.hypot(samples["drive_X"], samples["drive_Y"])))
-
-
-def largest_friction(slider: Slider, samples: ColumnTable) -> float:
-    """Return the friction limit over the load; of a law with state, the largest there was."""
-    ratio = samples["friction"] / samples["normal_load"]
-    found = float(np.max(ratio[np.isfinite(ratio)], initial=0.0))
-    law: Any = slider.law
-    return found if hasattr(law, "states") else max(static_coefficient(law), found, 1e-12)

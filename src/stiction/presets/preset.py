@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from stiction.arguments import name_arguments
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.validation import unknown_name
@@ -183,7 +183,7 @@ def find(name: str) -> Preset:
     """
     known = name.replace("_", "-")
     if known not in PRESETS:
-        raise DescriptionError([Fault("preset", unknown_name("preset", name, PRESETS))])
+        raise DescriptionError.of("preset", unknown_name("preset", name, PRESETS))
     return PRESETS[known]
 
 

@@ -173,7 +173,7 @@ def _tables(own: Path) -> dict[str, dict[str, Any]]:
         tables = ", ".join(f"[{section}]" for section in SECTIONS)
         what = "is a folder" if own.is_dir() else "no such file"
         message = f"{what}; write a file that says more of the record, with {tables}"
-        raise DescriptionError([Fault(str(own), message)])
+        raise DescriptionError.of(str(own), message)
     raw, wrong = read_toml(own), []
     allowed = {
         "columns": tuple(CHANNELS),

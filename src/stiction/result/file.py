@@ -26,7 +26,6 @@ from stiction.storage.isolation import apart
 from stiction.storage.kinds import HDF5, RESULT, use_of
 from stiction.storage.version import own_version
 
-CHANGED = "is damaged, or was changed: "
 STICK_GROUP = "sticks"  # group of a result file
 CHUNK = 2**16  # samples per checksum of HDF5
 ENDS = ("stick_start", "stick_end")
@@ -63,6 +62,16 @@ def write_table(group: Any, table: ColumnTable) -> None:
         column[...] = values
 
 
+class DamageError(ResultError):
+    """A result has changed since it was written; `lost` tells where."""
+
+    def __init__(self, path: str | Path, lost: Sequence[str]) -> None:
+        """Name the first places, and what computes the result again."""
+        self.lost = ", ".join(lost[:3])
+        again = f"compute it again with: stiction check {path} --repair"
+        super().__init__(f"{path}: is damaged, or was changed: {self.lost}; {again}")
+
+
 def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
     """Return samples and sticks of a result file.
 
@@ -81,7 +90,7 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
         _refuse_what_is_no_netcdf(path)
         whole = as_written(path)
     if whole is False:
-        raise _damage(path, ["its bytes have changed"])
+        raise DamageError(path, ["its bytes have changed"])
     if whole is None:  # HDF5 may crash on it
         apart(read_through, path)
     with opening(path, UNREADABLE):
@@ -90,7 +99,7 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
         sealed = data.attributes.get(SEAL)
         lost = damaged_parts(sealed, {"samples": data, "sticks": sticks}) if checked else []
     if lost:
-        raise _damage(path, lost)
+        raise DamageError(path, lost)
     about = {name: value for name, value in data.attributes.items() if name != SEAL}
     data = ColumnTable(data.columns, about)
     lacking = [*_lacking(data, VARIABLES), *_lacking(sticks, ENDS)]
@@ -103,13 +112,6 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
     if wrong:
         raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
     return data, sticks
-
-
-def _damage(path: str | Path, lost: Sequence[str]) -> ResultError:
-    return ResultError(
-        f"{path}: {CHANGED}{', '.join(lost[:3])}; compute it again with: "
-        f"stiction check {path} --repair"
-    )
 
 
 def _refuse_what_is_no_netcdf(path: str | Path) -> None:

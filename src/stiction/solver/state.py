@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.machine import shortage
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.compilation.stand_in import called_from_both
@@ -47,7 +47,7 @@ class Output:
             message = (
                 f"more than {sticks} sticks, of which each is recorded; room for twice as many"
             )
-            raise DescriptionError([Fault("run.duration", f"{message} {short}; shorten it")])
+            raise DescriptionError.of("run.duration", f"{message} {short}; shorten it")
         self.sticks = np.concatenate([self.sticks, np.empty_like(self.sticks)])
 
 

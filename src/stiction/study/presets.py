@@ -12,7 +12,7 @@ from math import pi
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.presets import nakano_popov_2020
 from stiction.study.plan.axes import Axis, Grid, Values
 from stiction.study.plan.study import Study
@@ -91,7 +91,7 @@ def preset(name: str) -> Study:
         If there is no study of this name.
     """
     if name not in PRESETS:
-        raise DescriptionError([Fault("preset", unknown_name("preset", name, PRESETS))])
+        raise DescriptionError.of("preset", unknown_name("preset", name, PRESETS))
     return PRESETS[name]()
 
 

@@ -239,7 +239,7 @@ def description_of(source: Description | str | Path) -> Description:
     """
     if isinstance(source, Slider):
         remedy = "make it one: st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
-        raise DescriptionError([Fault("description", f"a Slider has no duration; {remedy}")])
+        raise DescriptionError.of("description", f"a Slider has no duration; {remedy}")
     return source if isinstance(source, Description) else Description.from_toml(source)
 
 

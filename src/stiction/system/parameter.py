@@ -53,7 +53,7 @@ def unit(owner: Slider | Description, path: str) -> str:
         raise DescriptionError(faults)
     if len(set(found.values())) > 1:
         listed = ", ".join(f"{name} ({its or 'a number'})" for name, its in found.items())
-        raise DescriptionError([Fault(path, f"cannot share one value: {listed}; name one of them")])
+        raise DescriptionError.of(path, f"cannot share one value: {listed}; name one of them")
     return next(iter(found.values()))
 
 
@@ -75,7 +75,7 @@ def read(owner: Slider | Description, path: str) -> float:
     values = {name: _value(owner, name) for name in names(path)}
     if len(set(values.values())) > 1:
         listed = ", ".join(f"{name} is {value:g}" for name, value in values.items())
-        raise DescriptionError([Fault(path, f"has no one value: {listed}; set both first")])
+        raise DescriptionError.of(path, f"has no one value: {listed}; set both first")
     return next(iter(values.values()))
 
 
@@ -174,7 +174,7 @@ def _unit(owner: Slider | Description, name: str) -> str:
     value = _member(owner, part, field, name)
     its = _unit_of(part, rooms, field)
     if not _is_number(value) and (value is not None or not its):
-        raise DescriptionError([Fault(name, f"is not one number, it is {echo(value)}")])
+        raise DescriptionError.of(name, f"is not one number, it is {echo(value)}")
     return its
 
 
@@ -190,9 +190,9 @@ def _member(owner: Slider | Description, part: Any, key: str, name: str) -> Any:
     if isinstance(part, Slider) and part.springs and key in FROM_SPRINGS:
         own = ", ".join(f"springs.{each.slug}.{key}" for each in part.springs)
         message = f"follows from springs in series; change one of them: {own}"
-        raise DescriptionError([Fault(name, message)])
+        raise DescriptionError.of(name, message)
     if key not in _fields(part):
-        raise DescriptionError([Fault(name, unknown_name("parameter", name, units(owner)))])
+        raise DescriptionError.of(name, unknown_name("parameter", name, units(owner)))
     return _part(part, key)
 
 
@@ -215,7 +215,7 @@ def _value(owner: Slider | Description, name: str) -> float:
     for key in _keys(owner, name):
         part = _part(part, key)
     if part is None:
-        raise DescriptionError([Fault(name, "is not given")])
+        raise DescriptionError.of(name, "is not given")
     return float(part)
 
 

@@ -182,7 +182,7 @@ def _spring(value: Any) -> Spring:
     if isinstance(value, dict):
         return make(Spring, value)
     remedy = "write st.Spring('load cell', k_x='20 kN/m', k_y='rigid')"
-    raise DescriptionError([Fault("spring", f"{echo(value)} is not a spring; {remedy}")])
+    raise DescriptionError.of("spring", f"{echo(value)} is not a spring; {remedy}")
 
 
 def compliance(spring: Spring) -> Floats:

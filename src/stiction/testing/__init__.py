@@ -60,11 +60,11 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     >>> st.testing.check_law(st.Coulomb(mu_0=0.2))
     """
     if isinstance(law, type):
-        raise DescriptionError([Fault(law.__name__, f"is a class; write {law.__name__}(...)")])
+        raise DescriptionError.of(law.__name__, f"is a class; write {law.__name__}(...)")
     is_law(type(law), type(law).__name__)
     kind = type(law).__name__
     if said := endless(law):
-        raise DescriptionError([Fault(kind, f"{said}; {ENDING}")])
+        raise DescriptionError.of(kind, f"{said}; {ENDING}")
     found = [
         Fault(f"{kind}.{name}", message)
         for name, check in checks_of(law).items()

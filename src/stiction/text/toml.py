@@ -41,7 +41,7 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
     """
     if not isinstance(path, str | PathLike):
         message = f"{type(path).__name__} is not a description; give its file, or its text in TOML"
-        raise DescriptionError([Fault("path", message)])
+        raise DescriptionError.of("path", message)
     written = isinstance(path, str) and "\n" in path
     where = "the text" if written else str(path)
     try:
@@ -61,7 +61,7 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
     else:
         tame(raw, where)
         return tame(with_changes(raw, changes), where) if changes else raw
-    raise DescriptionError([Fault(where, message)])
+    raise DescriptionError.of(where, message)
 
 
 def _instead(path: str | Path, written: bool) -> str:
@@ -80,9 +80,9 @@ def read_json(text: str) -> dict[str, Any]:
     try:
         raw = json.loads(text)
     except (ValueError, RecursionError, TypeError) as error:
-        raise DescriptionError([Fault("description", f"is not JSON: {error}")]) from None
+        raise DescriptionError.of("description", f"is not JSON: {error}") from None
     if not isinstance(raw, dict):
-        raise DescriptionError([Fault("description", f"must be tables, is {echo(raw)}")])
+        raise DescriptionError.of("description", f"must be tables, is {echo(raw)}")
     return tame(raw, "description")
 
 
@@ -223,5 +223,5 @@ def choose(
     if not isinstance(name, str) or name not in known:
         listed = f"missing; known: {', '.join(known)}"
         message = listed if name is None else unknown_name(key, str(name), known)
-        raise DescriptionError([Fault(f"table.{key}", message)])
+        raise DescriptionError.of(f"table.{key}", message)
     return known[name](**table)

@@ -62,7 +62,7 @@ class Described(BaseModel, metaclass=_Presented):
         if unnamed:
             remedy = f"write {name}({next(iter(known))}=...)"
             told = f"its values have names, {echo(unnamed[0])} has none; {remedy}"
-            raise DescriptionError([Fault(name, told)])
+            raise DescriptionError.of(name, told)
         collect(name, super().__init__, known, values)
 
     def __eq__(self, other: object) -> bool:

@@ -113,6 +113,21 @@ def test_the_scene_shows_the_state(run):
     assert np.hypot(*away) == pytest.approx(np.hypot(*u), rel=1e-6)
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_on_a_grain_the_force_ends_on_the_limit_while_the_mass_slides(seed):
+    rng = np.random.default_rng(seed)
+    ratio, angle = float(np.exp(rng.uniform(-0.7, 0.7))), float(rng.uniform(-1.5, 1.5))
+    slider = PAPER.replace(friction=st.laws.Anisotropic(st.Coulomb(0.3), ratio, f"{angle} rad"))
+    samples = st.simulate(slider, 0.05, sample_rate=200.0).samples
+    scene = Scene(Figure().add_subplot(), slider, samples)
+    state = {name: float(values[-1]) for name, (_, values, _) in samples.columns.items()}
+    assert state["slip_speed"] > 0.0
+    outline, tip = scene._forces(state)
+    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
+    along, across = np.abs(turn @ outline.T).max(axis=1)  # 73 points: to 0.1 %
+    assert np.hypot(*(turn @ tip / [along, across])) == pytest.approx(1.0, abs=2e-3)
+
+
 def test_the_scene_turns_with_the_springs_and_shows_dampers_along_their_axes():
     from matplotlib.figure import Figure
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, echo
 from stiction.machine import shortage
 
 LARGEST = 2**26  # bytes of a file: more than a million rows of two columns
@@ -171,4 +171,4 @@ def _text(path: Path) -> str:
 
 def file_fault(message: str, path: str = "file") -> DescriptionError:
     """Return the error for a fault of a file, or of the entry of a piece that names it."""
-    return DescriptionError([Fault(path, message)])
+    return DescriptionError.of(path, message)

@@ -6,7 +6,7 @@ from typing import Annotated, Any, NamedTuple, cast
 
 from pydantic import AfterValidator, Field
 
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, echo
 from stiction.friction.law import FrictionLaw, Law, has_state
 from stiction.text.units import Angle, Read, reader
 from stiction.text.validation import validate
@@ -74,11 +74,16 @@ class Anisotropic(NamedTuple):
         return inner.slope(v)
 
 
+def ellipse(law: Law) -> tuple[float, float]:
+    """Return ratio and angle (rad, from X) of the friction limit; 1 and 0 for a circle."""
+    return (law.ratio, law.angle) if isinstance(law, Anisotropic) else (1.0, 0.0)
+
+
 def read_anisotropy(law: Law, table: Any) -> Law:
     """Read the table [friction.anisotropy]."""
     if not isinstance(table, dict) or "law" in table:
         message = f"must be a table with ratio and angle, is {echo(table)}"
-        raise DescriptionError([Fault("friction.anisotropy", message)])
+        raise DescriptionError.of("friction.anisotropy", message)
     try:
         made: Any = Anisotropic(law, **table)
         return cast(Law, made)

@@ -15,7 +15,7 @@ from math import inf, isfinite, nan
 from types import FrameType, ModuleType
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault, echo, one_line
+from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.law import has_state
 from stiction.friction.user.source import member
 from stiction.text.validation import unknown_name
@@ -112,7 +112,7 @@ def _in_python(kind: type) -> Iterator[set[str]]:
 
 def fault(message: str, key: str = "law") -> DescriptionError:
     """Return the error for a fault in the table [friction]."""
-    return DescriptionError([Fault(f"friction.{key}", message)])
+    return DescriptionError.of(f"friction.{key}", message)
 
 
 def law_in(module: ModuleType, kind: str, name: str) -> type[Any]:

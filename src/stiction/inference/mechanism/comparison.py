@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.errors import DescriptionError, ResultError
 from stiction.inference.fit import check
 from stiction.inference.library import bend_features
 from stiction.inference.mechanism.classifier import Classifier, Simulations, simulate, study
@@ -76,7 +76,7 @@ def mechanism(
     check(known)
     if known.slider.phi == 0.0 and "phi" not in known.priors:
         message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
-        raise DescriptionError([Fault("phi", message)])
+        raise DescriptionError.of("phi", message)
     seen = observe_all(records, known.slider)
     rivals = mechanisms(known, [each.conditions for each in seen])
     place = None if library is None else Path(library)

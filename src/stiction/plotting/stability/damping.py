@@ -17,7 +17,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from stiction import theory
 from stiction.arguments import is_list
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, echo
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, GREEN, style
 
@@ -93,7 +93,7 @@ def plot_damping(
     """
     for name, ends in (("A", A), ("theta", theta)):
         if not is_list(ends) or len(ends) != 2:
-            raise DescriptionError([Fault(name, f"{echo(ends)} is not a range; give its two ends")])
+            raise DescriptionError.of(name, f"{echo(ends)} is not a range; give its two ends")
     with style():
         ax = panel(ax, 2.7)
         draw_damping_map(ax, A, theta)

@@ -209,9 +209,9 @@ def _requested_width(study: Study, along: str, to: Quantity) -> float:
     try:
         width = number(to, study.coordinates[along].unit)
     except PydanticCustomError as error:
-        raise DescriptionError([Fault("to", error.message())]) from None
+        raise DescriptionError.of("to", error.message()) from None
     if not width > 0.0:
-        raise DescriptionError([Fault("to", f"must be greater than 0, is {echo(to)}")])
+        raise DescriptionError.of("to", f"must be greater than 0, is {echo(to)}")
     return width
 
 

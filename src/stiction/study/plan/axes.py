@@ -201,13 +201,13 @@ def read_axis(value: Any, name: str) -> Axis:
     path = f"axes.{name}"
     if not isinstance(value, Mapping):
         message = f"{echo(value)} is not an axis; write for example st.Grid('1 deg', '10 deg', 10)"
-        raise DescriptionError([Fault(path, message)])
+        raise DescriptionError.of(path, message)
     fields = {written: name for name, written in WRITTEN.items()}
     table = {fields.get(str(key), str(key)): each for key, each in value.items()}
     sampling = table.pop("sampling", "grid")
     if not isinstance(sampling, str) or sampling not in SAMPLINGS:
         message = unknown_name("sampling", str(sampling), SAMPLINGS)
-        raise DescriptionError([Fault(f"{path}.sampling", message)])
+        raise DescriptionError.of(f"{path}.sampling", message)
     kind = Values if "values" in table else SAMPLINGS[sampling]
     known = {WRITTEN.get(field, field) for field in kind.model_fields} | {"sampling"}
     strange = [WRITTEN.get(key, key) for key in table if key not in kind.model_fields]

@@ -266,4 +266,4 @@ def refuse_other(study: object) -> None:
     """Refuse what is no study."""
     if not isinstance(study, Study):
         remedy = "make one with st.Study(...) or read one with st.Study.from_toml(path)"
-        raise DescriptionError([Fault("study", f"{echo(study)} is not a Study; {remedy}")])
+        raise DescriptionError.of("study", f"{echo(study)} is not a Study; {remedy}")

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.arrays import xr
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError
 from stiction.plotting.maps import (
     Side,
     draw_changes,
@@ -265,7 +265,7 @@ def _points(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     known = view.study.coordinates
     if not set(DAMPING) <= known.keys() or REGIME not in view.data:
         lacking = f"needs samples of {' and '.join(DAMPING)}, and the measure 'regime'"
-        raise DescriptionError([Fault(str(dim), f"{lacking}; draw it from xarray.open_zarr")])
+        raise DescriptionError.of(str(dim), f"{lacking}; draw it from xarray.open_zarr")
     indices: list[Index] = [(i,) for i in range(view.data.sizes[dim])]
     sliders = (view.study.description(index).slider for index in indices)
     A = np.array([damping_number_of(each, each.motion.velocity) for each in sliders])

@@ -133,8 +133,8 @@ def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
             [Fault(name, unknown_name("measure", name, kept)) for name in strange]
         )
     if not kept:
-        raise DescriptionError(
-            [Fault("measures", "the study kept no measures; there is nothing to draw")]
+        raise DescriptionError.of(
+            "measures", "the study kept no measures; there is nothing to draw"
         )
     if measures:
         return list(measures)
