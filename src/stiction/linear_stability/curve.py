@@ -7,6 +7,7 @@ Yamamura, IEEE Trans. Circuits Syst. I 40 (1993), 448). The plane is the unit sq
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import cache
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
 from typing import Any
@@ -16,8 +17,8 @@ import numpy as np
 from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError
 from stiction.linear_stability.axis import Axis, axis, present_value
-from stiction.linear_stability.linear import growth_rate, steady_sliding
-from stiction.linear_stability.roots import sign_changes, signed_growth
+from stiction.linear_stability.linear import growth_rate
+from stiction.linear_stability.roots import leading_frequency, sign_changes, signed_growth
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
 
@@ -29,6 +30,7 @@ Growth = Callable[[Point], float]  # beyond an edge of the plane, its value at t
 LONGEST, SHORTEST = 0.02, 1e-4  # steps along the curve
 STRAIGHT = 0.3  # rad; where the curve turns more in a step, the step is shortened
 AHEAD = (0.4, 1.0, 1.6, 2.2)  # rad to both sides of straight ahead, searched in this order
+CLOSE = 1e-9  # rad: a point is sought to that, so it is accurate to 2e-11 of the ranges
 MOST = 4000  # steps along one curve
 
 
@@ -92,6 +94,7 @@ def boundary(
         inside = (min(max(each, 0.0), 1.0) for each in point)
         return up.on(across.on(slider, next(inside)), next(inside))
 
+    @cache
     def growth(point: Point) -> float:
         return growth_rate(at(point))
 
@@ -122,7 +125,7 @@ def table(
     """Return the curves as labelled arrays."""
     points = [(float(a), float(b)) for branch in branches for a, b in branch]
     count = [n for n, branch in enumerate(branches) for _ in branch]
-    frequency = [steady_sliding(at(point)).frequencies[0] for point in points]
+    frequency = [leading_frequency(at(point)) for point in points]
     columns = {
         x.path: ([x.value(a) for a, _ in points], x.unit or "1", x.path),
         y.path: ([y.value(b) for _, b in points], y.unit or "1", y.path),
@@ -216,7 +219,7 @@ def zero(growth: Growth, here: Point, step: float, low: float, high: float) -> f
     from scipy.optimize import brentq
 
     return float(
-        brentq(lambda angle: growth(beside(here, angle, step)), low, high, xtol=1e-11)  # type: ignore[no-untyped-call]
+        brentq(lambda angle: growth(beside(here, angle, step)), low, high, xtol=CLOSE)  # type: ignore[no-untyped-call]
     )
 
 

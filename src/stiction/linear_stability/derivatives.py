@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import cos, hypot, log, nan, sin
+from math import hypot, log, nan, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.friction import Anisotropic
+from stiction.friction import ellipse
 from stiction.system.slider import Slider
+from stiction.system.tensors import principal
 
 ROUNDING = float(np.finfo(np.float64).eps)
 SMALL = 4.0 * ROUNDING  # relative rounding error after a few operations
@@ -40,17 +41,12 @@ class Response(NamedTuple):
 
 def surface(slider: Slider) -> Floats:
     """Return N = M^2 of `stiction.friction.Anisotropic` in the slider's axes, (2, 2)."""
-    law: Any = slider.law
-    if not isinstance(law, Anisotropic):
-        return np.eye(2)
-    c, s = cos(slider.misalignment + law.angle), sin(slider.misalignment + law.angle)
-    axes = np.array([[c, -s], [s, c]])
-    tensor: Floats = axes @ np.diag([1.0, law.ratio**2]) @ axes.T
-    return tensor
+    ratio, angle = ellipse(slider.law)
+    return principal(1.0, ratio * ratio, slider.misalignment + angle)
 
 
-def set_valued(slider: Slider, slip: Floats) -> Response:
-    """Return the response of a law without internal state, from its own ``slope``.
+def set_valued(slider: Slider, slip: Floats) -> tuple[Floats, Floats]:
+    """Return friction (N) and its slopes by slip (N s/m) from the ``slope`` of a set-valued law.
 
     With v = |s|, N = M^2 and q = |M s|, F = mu(v) W N s/q has
 
@@ -60,19 +56,37 @@ def set_valued(slider: Slider, slip: Floats) -> Response:
     across it.
     """
     law: Any = slider.law
+    (a, b), (_, d) = surface(slider).tolist()
+    x, y = map(float, slip)
+    v = hypot(x, y)
+    push_x, push_y = a * x + b * y, b * x + d * y
+    q = sqrt(x * push_x + y * push_y)
+    friction = slider.normal_load * law.coefficient(v) / q
+    along = slider.normal_load * law.slope(v) / (q * v)
+    # (N s)(N s)^T/q^2 subtracted from N without cancellation: det(N)/q^2 t t^T
+    across = friction * (a * d - b * b) / (q * q)
+    mixed = across * x * y
+    slopes = [
+        [along * push_x * x + across * y * y, along * push_x * y - mixed],
+        [along * push_y * x - mixed, along * push_y * y + across * x * x],
+    ]
+    return np.array([friction * push_x, friction * push_y]), np.array(slopes)
+
+
+def response_of(slider: Slider, slip: Floats) -> Response:
+    """Return the response of a set-valued law, with the errors of its slopes from rounding."""
+    law: Any = slider.law
+    value, slopes = set_valued(slider, slip)
     v = hypot(*slip)
     N = surface(slider)
     push = N @ slip
     q = float(np.sqrt(slip @ push))
-    mu, slope = law.coefficient(v), law.slope(v)
-    along = np.outer(push, slip) * (slope / (q * v))
     turned = np.array([-slip[1], slip[0]])
-    # equal to N - (N s)(N s)^T/q^2, without its cancellation
-    across = float(np.linalg.det(N)) / q**2 * np.outer(turned, turned) * (mu / q)
-    slopes = slider.normal_load * (along + across)
-    doubt = np.abs(np.outer(push, slip)) * ((SMALL * abs(slope) + noise(law.slope, v, v)) / (q * v))
-    doubt += SMALL * np.abs(across)
-    return Response(slider.normal_load * mu / q * push, slopes, slider.normal_load * doubt)
+    doubt = np.abs(np.outer(push, slip)) * (
+        (SMALL * abs(law.slope(v)) + noise(law.slope, v, v)) / (q * v)
+    )
+    across = float(np.linalg.det(N)) / q**3 * law.coefficient(v) * np.outer(turned, turned)
+    return Response(value, slopes, slider.normal_load * (doubt + SMALL * np.abs(across)))
 
 
 def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:

@@ -13,16 +13,17 @@ from stiction.arrays import Complex, Floats
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import DescriptionError, Fault, StictionError
 from stiction.friction import has_state, states
-from stiction.linear_stability.derivatives import Response, set_valued, with_state
+from stiction.linear_stability.derivatives import Response, response_of, set_valued, with_state
 from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues
 from stiction.names import warn_renamed
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
+from stiction.system.tensors import damping_tensor, mobility_tensor
 
 STABLE, UNSTABLE = "stable", "unstable"
 BOUNDARY = "on the boundary of stability within its uncertainty"
 SETTLED = 1e-9  # largest relative error of friction from unsteady internal states
+NOT_SMOOTH = "friction: has no derivatives at {:g} m/s; see what check_law says of it"
 STEADY = "this needs a steady drive and load; remove the program"
 
 
@@ -192,12 +193,14 @@ def steady_sliding(slider: Slider) -> Linearisation:
     slip = drive_velocity(slider)
     state, response = steady_friction(slider, slip)
     if not np.isfinite(response.error).all():
-        message = f"has no derivatives at {hypot(*slip):g} m/s; see what check_law says of it"
-        raise StictionError(f"friction: {message}")
+        raise StictionError(NOT_SMOOTH.format(hypot(*slip)))
     K = np.array([slider.k_x, slider.k_y])
     names = ("u_x", "u_y", "v_x", "v_y", *(each.name for each in states(slider.law)))
     at = np.concatenate([response.value[:2] / K, [0.0, 0.0], state])
-    return Linearisation(slider, names, at, *system(slider, response))
+    matrix, error = system(slider, response.slopes), np.zeros((len(at), len(at)))
+    error[2:, 2:] = response.error
+    error[2:4] = np.abs(mobility_tensor(slider)) @ error[2:4]
+    return Linearisation(slider, names, at, matrix, error)
 
 
 def growth_rate(slider: Slider) -> float:
@@ -213,25 +216,34 @@ def growth_rate(slider: Slider) -> float:
     >>> [st.linear_stability.growth_rate(each) > 0 for each in (slider, turned)]
     [True, False]
     """
-    return float(np.linalg.eigvals(steady_sliding(slider).matrix).real.max())
+    return float(np.linalg.eigvals(disturbance(slider)).real.max())
 
 
-def system(slider: Slider, response: Response) -> tuple[Floats, Floats]:
-    """Return the matrix of a disturbance u, u', z, and an estimate of its error."""
-    n = len(response.value) - 2
-    K, C = stiffness_tensor(slider), damping_tensor(slider)
-    per_mass = np.linalg.inv(mass_tensor(slider))
-    answer = response.slopes.copy()
-    answer[:, :2] *= -1.0  # s = v_d - u'
-    answer[:2, :2] -= C
-    answer[:2] = per_mass @ answer[:2]
-    matrix, error = np.zeros((4 + n, 4 + n)), np.zeros((4 + n, 4 + n))
-    matrix[:2, 2:4] = np.eye(2)
-    matrix[2:4, :2] = -per_mass @ K
-    matrix[2:, 2:] = answer
-    error[2:, 2:] = response.error
-    error[2:4] = np.abs(per_mass) @ error[2:4]
-    return matrix, error
+def disturbance(slider: Slider) -> Floats:
+    """Return the matrix of `Linearisation`, without its errors where they cost the most."""
+    if has_state(slider.law):
+        return steady_sliding(slider).matrix
+    slip = drive_velocity(slider)
+    _, slopes = set_valued(slider, slip)
+    matrix = system(slider, slopes)
+    if not np.isfinite(matrix).all():
+        raise StictionError(NOT_SMOOTH.format(hypot(*slip)))
+    return matrix
+
+
+def system(slider: Slider, slopes: Floats) -> Floats:
+    """Return the matrix of a disturbance u, u', z, from the slopes of friction and states."""
+    n = len(slopes) - 2
+    (p, r), (_, q) = mobility_tensor(slider).tolist()
+    matrix = np.zeros((4 + n, 4 + n))
+    matrix[0, 2] = matrix[1, 3] = 1.0
+    matrix[2:, 2:] = slopes
+    matrix[2:, 2:4] *= -1.0  # s = v_d - u'
+    matrix[2:4, 2:4] -= damping_tensor(slider)
+    matrix[2:4, 2:] = [[p, r], [r, q]] @ matrix[2:4, 2:]
+    matrix[2:4, 0] = -p * slider.k_x, -r * slider.k_x
+    matrix[2:4, 1] = -r * slider.k_y, -q * slider.k_y
+    return matrix
 
 
 def drive_velocity(slider: Slider) -> Floats:
@@ -255,7 +267,7 @@ def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
     """Return the steady internal states, none for a set-valued law, and the response."""
     law: Any = slider.law
     if not has_state(law):
-        return np.zeros(0), set_valued(slider, slip)
+        return np.zeros(0), response_of(slider, slip)
     from scipy.optimize import root
 
     def change(state: Floats) -> Floats:

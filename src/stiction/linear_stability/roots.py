@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from itertools import pairwise
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
 
 from stiction.arrays import Floats
 from stiction.linear_stability.axis import axis
-from stiction.linear_stability.linear import BOUNDARY, steady_sliding
+from stiction.linear_stability.linear import BOUNDARY, disturbance, steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
 
@@ -105,7 +106,7 @@ def critical(
         return signed_growth(along.on(slider, fraction))
 
     crossings, stable = sign_changes(growth, points)
-    leading = [steady_sliding(along.on(slider, at)).frequencies[0] for at in crossings]
+    leading = [leading_frequency(along.on(slider, at)) for at in crossings]
     values, frequencies = np.array([along.value(at) for at in crossings]), np.array(leading)
     neutral = not any(growth(fraction) for fraction in (0.0, 0.5, 1.0)) and not any(stable)
     ends = along.low, along.high
@@ -116,12 +117,21 @@ def critical(
 
 def signed_growth(slider: Slider) -> float:
     """Return the growth rate (1/s); exactly zero if its sign is uncertain."""
-    linear = steady_sliding(slider)
-    values = np.linalg.eigvals(linear.matrix)
+    values = np.linalg.eigvals(disturbance(slider))
     growth = float(values.real.max())
     if abs(growth) > CLEAR * float(np.abs(values).max()):
         return growth
+    linear = steady_sliding(slider)
     return 0.0 if linear.verdict == BOUNDARY else linear.growth_rate
+
+
+def leading_frequency(slider: Slider) -> float:
+    """Return the frequency (Hz) of the mode that grows fastest."""
+    values = np.linalg.eigvals(disturbance(slider))
+    leading = values[np.argmax(values.real)]
+    if abs(leading) > CLEAR * float(np.abs(values).max()):
+        return float(abs(leading.imag)) / (2.0 * pi)
+    return float(steady_sliding(slider).frequencies[0])
 
 
 def sign_changes(

@@ -29,7 +29,7 @@ from stiction.drive import ConstantVelocity
 from stiction.friction import Anisotropic
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.system.tensors import damping_tensor, mass_tensor, principal, stiffness_tensor
+from stiction.system.tensors import damping_tensor, mobility_tensor, principal, stiffness_tensor
 
 TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
 DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding
@@ -160,7 +160,7 @@ def equations_of(slider: Slider) -> Equations:
     if isinstance(law, Anisotropic):
         surface = principal(1.0, law.ratio**2, slider.misalignment + law.angle)
         law = law.law
-    mobility, stiffness = np.linalg.inv(mass_tensor(slider)), stiffness_tensor(slider)
+    mobility, stiffness = mobility_tensor(slider), stiffness_tensor(slider)
     rate = float(np.sqrt(np.linalg.eigvals(mobility @ stiffness).real.max()))
     limit = law.coefficient(0.0) * slider.normal_load
     speeds = [*np.abs(drive), limit * np.linalg.eigvalsh(mobility).max() / rate]

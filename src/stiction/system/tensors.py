@@ -31,6 +31,13 @@ def mass_tensor(slider: Slider) -> Floats:
     return principal(along, across, slider.mass_angle - slider.turn)
 
 
+def mobility_tensor(slider: Slider) -> Floats:
+    """Return the inverse of the mass tensor, (2, 2), 1/kg."""
+    along = slider.mass
+    across = along if slider.mass_y is None else slider.mass_y
+    return principal(1.0 / along, 1.0 / across, slider.mass_angle - slider.turn)
+
+
 def stiffness_tensor(slider: Slider) -> Floats:
     """Return the stiffness tensor in the axes x and y, (2, 2), N/m; these are its own axes."""
     return np.diag([slider.k_x, slider.k_y])

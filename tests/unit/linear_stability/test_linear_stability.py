@@ -4,14 +4,17 @@ import math
 
 import numpy as np
 import pytest
+from benchmarks.explore.systems.general import general_system
 from tests.drawn import inside
 
 import stiction as st
 from stiction import theory
+from stiction.friction import has_state
 from stiction.linear_stability import boundary, critical, growth_rate, modes_over, steady_sliding
-from stiction.linear_stability.derivatives import derivative, set_valued, with_state
-from stiction.linear_stability.linear import drive_velocity
+from stiction.linear_stability.derivatives import derivative, response_of, surface, with_state
+from stiction.linear_stability.linear import disturbance, drive_velocity
 from stiction.system.parameter import change_unchecked
+from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
 PAPER = st.presets.nakano_popov_2020()
 V, W = 1e-3, 10.0
@@ -220,18 +223,50 @@ def test_derivatives_of_rate_and_state_are_those_on_paper():
 def test_derivatives_of_set_valued_laws(law):
     slider = PAPER.replace(friction=law, phi="20 deg")
     slip = drive_velocity(slider)
-    response = set_valued(slider, slip)
+    response = response_of(slider, slip)
     for i in range(2):
-        column, error = derivative(lambda s: set_valued(slider, s).value, slip, i, V / 2, V / 512)
+        column, error = derivative(lambda s: response_of(slider, s).value, slip, i, V / 2, V / 512)
         assert response.slopes[:, i] == pytest.approx(column, abs=10 * error.max())
         assert error.max() < 1e-8 * np.abs(response.slopes).max()
+
+
+def test_the_matrix_of_a_disturbance_is_that_of_the_equations_of_any_rig():
+    """M u'' + (C + dF/ds) u' + K u = 0, with differences of friction for dF/ds."""
+    systems = [general_system(7, number).slider for number in range(400)]
+    seen = 0
+    for slider in systems:
+        try:
+            slip = drive_velocity(slider)
+        except st.DescriptionError:  # not steady
+            continue
+        if has_state(slider.law):
+            continue
+        seen += 1
+
+        def friction(s, slider=slider):
+            push = surface(slider) @ s
+            limit = slider.normal_load * slider.law.coefficient(math.hypot(*s))
+            return limit / np.sqrt(s @ push) * push
+
+        v = math.hypot(*slip)
+        ends = v / 2, v / 512
+        columns = [derivative(lambda s: friction(np.array(s)), slip, i, *ends) for i in (0, 1)]
+        slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
+        M, K, C = mass_tensor(slider), stiffness_tensor(slider), damping_tensor(slider)
+        found = disturbance(slider)
+        assert (found[:2] == np.eye(4)[2:]).all()
+        assert M @ found[2:, :2] == pytest.approx(-K, rel=1e-12, abs=1e-12 * K.max())
+        size = np.abs(slopes).max() + np.abs(C).max()
+        left = M @ found[2:, 2:] + C + slopes
+        assert np.abs(left).max() <= 10 * error.max() + 1e-12 * size
+    assert seen > 80
 
 
 def test_the_ellipse_of_an_anisotropic_surface_turns_friction():
     """At the surface's own axis friction is that of the law, and across it `ratio` times."""
     for angle, ratio in (("0 deg", 1.0), ("90 deg", 1.3)):
         slider = PAPER.replace(friction=st.laws.Anisotropic(PAPER.law, 1.3, angle))
-        response = set_valued(slider, drive_velocity(slider))
+        response = response_of(slider, drive_velocity(slider))
         assert math.hypot(*response.value) == pytest.approx(ratio * PAPER.law.coefficient(V) * W)
 
 
