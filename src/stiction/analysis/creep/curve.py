@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.record import Record, as_record
-from stiction.analysis.signals.robust import trimmed_mean
+from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
 from stiction.trajectory import Trajectory
@@ -141,12 +141,12 @@ def mean_creep(curves: xr.Dataset) -> xr.Dataset:
     ['begin', 'end', 'force', 'phases', 'velocity', 'velocity_error']
     """
     seen = np.isfinite(curves["velocity"].values)
-    bins = np.flatnonzero(seen.any(axis=0))
-    table = np.stack([curves[name].values for name in CURVES])
-    columns = [table[:, seen[:, bin], bin] for bin in bins]
-    means = np.array([[trimmed_mean(row) for row in column] for column in columns])
-    middle, error = means.reshape(len(bins), len(CURVES), 2).T
-    count = seen[:, bins].sum(axis=0)
+    reached = seen.any(axis=0)
+    seen = seen[:, reached]
+    count = seen.sum(axis=0)
+    starts = np.cumsum(count) - count
+    columns = [curves[name].values[:, reached].T[seen.T] for name in CURVES]
+    middle, error = np.array([trimmed_means(column, starts) for column in columns]).swapaxes(0, 1)
     velocity_error = np.fmax(error[0], middle[1] / np.sqrt(count))
     values = [middle[0], velocity_error, *middle[2:]]
     found = xr.Dataset(
@@ -254,18 +254,18 @@ def _integral(time: Floats, values: Floats, at: Floats) -> Floats:
 
 def between_halves(record: Record, position: Floats, times: Floats, slip: float) -> Bins:
     """Average between `times` (s, descending) by the trimmed means of both halves of each bin."""
-    count = max(len(times) - 1, 0)
-    velocity, error, force = np.full((3, count), np.nan)
-    at = np.searchsorted(record.time, times)
-    for i in range(count):
-        first, last = at[i + 1], at[i]
-        middle = (first + last) // 2
-        if middle - first < 2:
-            continue
-        early, late = slice(first, middle), slice(middle, last)
-        passed = float(record.time[late].mean() - record.time[early].mean())
-        (place, off), (place_2, off_2) = (trimmed_mean(position[half]) for half in (early, late))
-        velocity[i] = (place_2 - place) / passed
-        error[i] = np.hypot(off, off_2) / passed
-        force[i] = trimmed_mean(record.force[first:last])[0]
+    velocity, error, force = np.full((3, max(len(times) - 1, 0)), np.nan)
+    at = np.searchsorted(record.time, times)[::-1]
+    middle = (at[:-1] + at[1:]) // 2
+    seen = middle - at[:-1] >= 2
+    if seen.any():
+        samples = at[0] + np.flatnonzero(np.repeat(seen, np.diff(at)))
+        halves = np.column_stack([middle - at[:-1], at[1:] - middle])[seen].ravel()
+        starts = np.cumsum(halves) - halves
+        places, off = trimmed_means(position[samples], starts)
+        passed = np.diff(np.add.reduceat(record.time[samples] - slip, starts) / halves)[::2]
+        forward = seen[::-1]
+        velocity[forward] = (np.diff(places)[::2] / passed)[::-1]
+        error[forward] = (np.hypot(off[::2], off[1::2]) / passed)[::-1]
+        force[forward] = trimmed_means(record.force[samples], starts[::2])[0][::-1]
     return Bins(velocity, error, force, slip - times[1:], slip - times[:-1])

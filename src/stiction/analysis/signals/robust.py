@@ -65,17 +65,37 @@ def trimmed_mean(values: Floats) -> Mean:
     values : ndarray
         (n,), in any order.
     """
-    count = len(values)
-    if count == 0:
+    if len(values) == 0:
         return Mean(np.nan, np.nan)
-    cut = int(CUT * count)
-    ordered = np.sort(values)
-    kept = ordered[cut : count - cut]
-    value = float(kept.mean())
-    if count == 1:
-        return Mean(value, np.nan)
-    back = np.clip(ordered, kept[0], kept[-1])
-    return Mean(value, float(back.std(ddof=1)) / (1.0 - 2.0 * cut / count) / count**0.5)
+    value, error = trimmed_means(values, np.zeros(1, np.intp))
+    return Mean(float(value[0]), float(error[0]))
+
+
+def trimmed_means(values: Floats, starts: Indices) -> tuple[Floats, Floats]:
+    """Return `trimmed_mean` of each part of some values, and its standard error.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,), one part after the other.
+    starts : ndarray
+        Where each part begins; none is empty.
+    """
+    count = np.diff(starts, append=len(values))
+    part = np.repeat(np.arange(len(starts)), count)
+    ordered = values[np.lexsort((values, part))]
+    middle = ordered[starts + count // 2]
+    ordered = ordered - middle[part]  # so that sums keep the digits of the differences
+    cut = (CUT * count).astype(np.intp)
+    first, last = starts + cut, starts + count - 1 - cut
+    at = np.arange(len(values))
+    kept = np.where((at >= first[part]) & (at <= last[part]), ordered, 0.0)
+    back = np.clip(ordered, ordered[first][part], ordered[last][part])
+    back -= (np.add.reduceat(back, starts) / count)[part]
+    with np.errstate(invalid="ignore"):  # of a single value
+        deviation = np.sqrt(np.add.reduceat(back**2, starts) / (count - 1))
+    mean = middle + np.add.reduceat(kept, starts) / (last - first + 1)
+    return mean, deviation / (1.0 - 2.0 * cut / count) / np.sqrt(count)
 
 
 def without_outliers(values: Floats) -> Floats:

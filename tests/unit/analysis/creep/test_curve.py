@@ -12,7 +12,7 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.creep.curve import between_rests, bin_edges
 from stiction.analysis.creep.findings import MISSED
-from stiction.analysis.signals.robust import trimmed_mean
+from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.page.canvas import figure_of
 
@@ -176,6 +176,26 @@ def test_a_trimmed_mean_and_its_error():
     assert many[:, 0].std() == pytest.approx(many[:, 1].mean(), rel=0.05)
     assert trimmed_mean(np.array([3.0])).value == 3.0
     assert np.isnan(trimmed_mean(np.zeros(0)).value)
+
+
+def test_trimmed_means_of_parts_are_those_of_their_sorted_values():
+    draw = np.random.default_rng(1)
+    for _ in range(200):
+        parts = [
+            draw.normal(draw.normal(), 1.0, draw.integers(1, 45)).round(draw.integers(1, 6))
+            for _ in range(draw.integers(1, 8))
+        ]
+        starts = np.cumsum([0, *map(len, parts[:-1])])
+        means, errors = trimmed_means(np.concatenate(parts), starts)
+        for part, mean, error in zip(parts, means, errors, strict=True):
+            cut = int(0.1 * len(part))
+            kept = np.sort(part)[cut : len(part) - cut]
+            assert mean == pytest.approx(kept.mean(), rel=1e-12, abs=1e-12)
+            winsorised = np.clip(part, kept[0], kept[-1])
+            with np.errstate(invalid="ignore"):
+                deviation = np.sqrt(((winsorised - winsorised.mean()) ** 2).sum() / (len(part) - 1))
+            wanted = deviation / (1.0 - 2.0 * cut / len(part)) / len(part) ** 0.5
+            assert error == pytest.approx(wanted, rel=1e-9, abs=1e-12, nan_ok=True)
 
 
 def test_no_slip_still_creeps(slider):
