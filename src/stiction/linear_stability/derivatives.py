@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import hypot, log, nan, sqrt
 from typing import Any, NamedTuple
 
@@ -18,6 +18,8 @@ SMALL = 4.0 * ROUNDING  # relative rounding error after a few operations
 NEIGHBOUR = 1e-9  # relative distance of neighbours; functions are linear but for rounding
 FIRST, COLUMNS = 2, 6  # of Richardson's scheme: errors of order six to twelve in the step
 RATIO = 2.0  # of successive steps
+SMOOTH = 2.0  # narrowest steps of derivatives: the step of a law that is smooth
+CLOSE = 1e-7  # relative difference of orders four and six; the error of six is far smaller
 SHARE = 1.0 / 16.0  # error as a share of the last change; at sixth order, the next change is 1/64
 
 
@@ -91,25 +93,72 @@ def response_of(slider: Slider, slip: Floats) -> Response:
 
 def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
     """Return the response of a law with internal state, by numerical differentiation."""
-    law: Any = slider.law
+    response, at = answer_of(slider), np.concatenate([slip, state])
+    columns = [derivative(response, at, i, *steps) for i, steps in enumerate(steps_of(at))]
+    slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
+    return Response(np.array(response(at.tolist()), dtype=np.float64), slopes, error)
 
+
+def slopes_with_state(slider: Slider, slip: Floats, state: Floats) -> tuple[Floats, Floats]:
+    """Return value and slopes of `with_state`, at few places where the law is smooth.
+
+    A slope is NaN where the law has none.
+    """
+    response, at = answer_of(slider), np.concatenate([slip, state])
+    columns = []
+    for i, (widest, narrowest) in enumerate(steps_of(at)):
+        found = smooth_derivative(response, at, i, min(SMOOTH * narrowest, widest))
+        if found is None:
+            found, error = derivative(response, at, i, widest, narrowest)
+            found = np.where(np.isfinite(error), found, nan)
+        columns.append(found)
+    return np.array(response(at.tolist()), dtype=np.float64), np.column_stack(columns)
+
+
+def answer_of(slider: Slider) -> Callable[[list[float]], Sequence[float]]:
+    """Return friction (N) and the rates of the states as a function of slip and states."""
+    law: Any = slider.law
     load = slider.normal_load
 
     def response(at: list[float]) -> Sequence[float]:
         where = (at[0], at[1]), load, tuple(at[2:])
         return *law.force(*where), *law.change(*where)
 
-    at = np.concatenate([slip, state])
-    speed = hypot(*slip)
-    columns = [derivative(response, at, i, 0.5 * speed, 2.0**-9 * speed) for i in range(2)]
-    for i in range(2, len(at)):
-        # steps from about one, or the state's own size if larger, down to far below it;
-        # the rounding error of a logarithm, ln 1, does not count as a size
-        size = abs(float(at[i]))
-        least = size if size > SMALL else 1e-4
-        columns.append(derivative(response, at, i, 0.5 * max(size, 1.0), 2.0**-13 * least))
-    slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
-    return Response(np.array(response(at.tolist()), dtype=np.float64), slopes, error)
+    return response
+
+
+def steps_of(at: Floats) -> Iterator[tuple[float, float]]:
+    """Yield the widest and the narrowest step by which to differentiate, for slip and states.
+
+    Those of a state are from about one, or the state's own size if larger, down to far below it;
+    the rounding error of a logarithm, ln 1, does not count as a size.
+    """
+    speed = hypot(*at[:2])
+    yield from [(0.5 * speed, 2.0**-9 * speed)] * 2
+    for size in np.abs(at[2:]).tolist():
+        yield 0.5 * max(size, 1.0), 2.0**-13 * (size if size > SMALL else 1e-4)
+
+
+def smooth_derivative(
+    function: Callable[[list[float]], Sequence[float] | Floats], at: Floats, i: int, h: float
+) -> Floats | None:
+    """Return the derivative of a vector function by variable `i`, None where `h` is too coarse.
+
+    From six values `h` apart, to order six in the step. That of order four, from the inner four of
+    them, differs by far more than the error.
+    """
+    others, here = at.tolist(), float(at[i])
+    values = [
+        value_or_nan(lambda x: function([*others[:i], x, *others[i + 1 :]]), here + k * h, len(at))
+        for k in (1, -1, 2, -2, 3, -3)
+    ]
+    near = np.array(values, dtype=np.float64)
+    one, two, three = near[::2] - near[1::2]
+    fine = (45.0 * one - 9.0 * two + three) / (60.0 * h)
+    coarse = (8.0 * one - two) / (12.0 * h)
+    rounding = ROUNDING * np.abs(near).max(axis=0) / h
+    clear = np.abs(fine - coarse) <= CLOSE * np.abs(fine) + 64.0 * rounding
+    return fine if clear.all() else None
 
 
 def derivative(

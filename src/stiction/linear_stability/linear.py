@@ -13,7 +13,13 @@ from stiction.arrays import Complex, Floats
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import DescriptionError, Fault, StictionError
 from stiction.friction import has_state, states
-from stiction.linear_stability.derivatives import Response, response_of, set_valued, with_state
+from stiction.linear_stability.derivatives import (
+    Response,
+    response_of,
+    set_valued,
+    slopes_with_state,
+    with_state,
+)
 from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues
 from stiction.names import warn_renamed
 from stiction.system.initial import Initial
@@ -220,12 +226,9 @@ def growth_rate(slider: Slider) -> float:
 
 
 def disturbance(slider: Slider) -> Floats:
-    """Return the matrix of `Linearisation`, without its errors where they cost the most."""
-    if has_state(slider.law):
-        return steady_sliding(slider).matrix
+    """Return the matrix of `Linearisation`, without its errors, which cost the most."""
     slip = drive_velocity(slider)
-    _, slopes = set_valued(slider, slip)
-    matrix = system(slider, slopes)
+    matrix = system(slider, steady_slopes(slider, slip))
     if not np.isfinite(matrix).all():
         raise StictionError(NOT_SMOOTH.format(hypot(*slip)))
     return matrix
@@ -265,25 +268,48 @@ def drive_velocity(slider: Slider) -> Floats:
 
 def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
     """Return the steady internal states, none for a set-valued law, and the response."""
-    law: Any = slider.law
-    if not has_state(law):
+    if not has_state(slider.law):
         return np.zeros(0), response_of(slider, slip)
+    state = settled_state(slider, slip)
+    response = with_state(slider, slip, state)
+    refuse_unsettled(response.value, response.slopes, slip)
+    return state, response
+
+
+def steady_slopes(slider: Slider, slip: Floats) -> Floats:
+    """Return the slopes of `steady_friction` without their errors, which cost the most."""
+    if not has_state(slider.law):
+        return set_valued(slider, slip)[1]
+    value, slopes = slopes_with_state(slider, slip, settled_state(slider, slip))
+    if np.isfinite(slopes).all():
+        refuse_unsettled(value, slopes, slip)
+    return slopes
+
+
+def settled_state(slider: Slider, slip: Floats) -> Floats:
+    """Return the internal states that do not change at a slip velocity."""
     from scipy.optimize import root
+
+    law: Any = slider.law
 
     def change(state: Floats) -> Floats:
         where = (float(slip[0]), float(slip[1])), slider.normal_load, tuple(map(float, state))
         return np.array(law.change(*where), dtype=np.float64)
 
     start = law.settled(hypot(*slip))
-    state: Floats = root(change, start, tol=1e-13).x  # type: ignore[no-untyped-call]
-    response = with_state(slider, slip, state)
-    # do not trust the root finder's verdict: how much would another Newton step change friction?
-    F, (F_z, G_z) = response.value, (response.slopes[:2, 2:], response.slopes[2:, 2:])
+    found: Floats = root(change, start, tol=1e-13).x  # type: ignore[no-untyped-call]
+    return found
+
+
+def refuse_unsettled(value: Floats, slopes: Floats, slip: Floats) -> None:
+    """Refuse states of which another Newton step would change friction.
+
+    The root finder's own verdict is not trusted.
+    """
     try:
-        left = F_z @ np.linalg.solve(G_z, F[2:])
+        left = slopes[:2, 2:] @ np.linalg.solve(slopes[2:, 2:], value[2:])
     except np.linalg.LinAlgError:
         left = np.full(2, np.inf)
-    if not hypot(*left) <= SETTLED * hypot(*F[:2]):
+    if not hypot(*left) <= SETTLED * hypot(*value[:2]):
         message = f"its states come to no steady sliding at {hypot(*slip):g} m/s"
         raise StictionError(f"friction: {message}; see what check_law says of it")
-    return state, response

@@ -5,13 +5,20 @@ import math
 import numpy as np
 import pytest
 from benchmarks.explore.systems.general import general_system
+from benchmarks.explore.systems.with_state import state_system
 from tests.drawn import inside
 
 import stiction as st
 from stiction import theory
 from stiction.friction import has_state
 from stiction.linear_stability import boundary, critical, growth_rate, modes_over, steady_sliding
-from stiction.linear_stability.derivatives import derivative, response_of, surface, with_state
+from stiction.linear_stability.derivatives import (
+    derivative,
+    response_of,
+    smooth_derivative,
+    surface,
+    with_state,
+)
 from stiction.linear_stability.linear import disturbance, drive_velocity
 from stiction.system.parameter import change_unchecked
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
@@ -260,6 +267,31 @@ def test_the_matrix_of_a_disturbance_is_that_of_the_equations_of_any_rig():
         left = M @ found[2:, 2:] + C + slopes
         assert np.abs(left).max() <= 10 * error.max() + 1e-12 * size
     assert seen > 80
+
+
+def test_slopes_at_few_places_are_those_at_many():
+    """A law's derivatives for growth rates, and those that find their own steps."""
+    seen = 0
+    for number in range(80):
+        slider = state_system(11, number).slider
+        try:
+            linear = steady_sliding(slider)
+        except st.StictionError:  # not steady
+            continue
+        seen += 1
+        scale = np.abs(linear.matrix).max(axis=1, keepdims=True)
+        assert (np.abs(disturbance(slider) - linear.matrix) <= 1e-9 * scale + linear.error).all()
+        left = growth_rate(slider) - linear.growth_rate
+        assert abs(left) <= 1e-9 * np.abs(linear.eigenvalues).max() + linear.growth_uncertainty
+    assert seen > 40
+
+
+def test_a_kink_within_the_steps_is_told():
+    for place in (0.9, 2.2):  # between the inner values, and between the outer ones
+        kink = smooth_derivative(lambda at, p=place: [abs(at[0] - p)], np.zeros(1), 0, 1.0)
+        assert kink is None
+    wave = smooth_derivative(lambda at: [math.sin(at[0]), 1.0], np.array([0.3]), 0, 2.0**-7)
+    assert wave == pytest.approx([math.cos(0.3), 0.0], rel=1e-13, abs=1e-13)
 
 
 def test_the_ellipse_of_an_anisotropic_surface_turns_friction():
