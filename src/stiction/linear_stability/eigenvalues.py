@@ -44,14 +44,17 @@ def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
     values, left, right = eig(balanced, left=True, right=True)
     doubt = error * scale[None, :] / scale[:, None] + ROUNDING * np.abs(balanced)
     refined, bounds, shapes = [], [], []
-    for k, value in enumerate(values):
+    for k in np.flatnonzero(values.imag >= 0.0):
+        value = values[k]
         gap = float(np.abs(np.delete(values, k) - value).min())
         found, vector = refine(balanced, value, right[:, k], gap)
         adjoint = refine(balanced.T, value.conjugate(), left[:, k], gap)[1]
-        refined.append(found)
-        bounds.append(bound(balanced, doubt, found, vector, adjoint, gap))
-        shape = vector * scale
-        shapes.append(shape / np.linalg.norm(shape))
+        both = bound(balanced, doubt, found, vector, adjoint, gap)
+        shape = vector * scale / np.linalg.norm(vector * scale)
+        pair = value.imag > 0.0  # that of the conjugate is the conjugate
+        refined += [found, found.conjugate()] if pair else [found]
+        bounds += [both, both] if pair else [both]
+        shapes += [shape, shape.conj()] if pair else [shape]
     values = np.array(refined)
     order = np.lexsort((-values.imag, -values.real))
     uncertainty, growth = np.array(bounds)[order].T
