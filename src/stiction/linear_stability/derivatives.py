@@ -99,20 +99,23 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
     return Response(np.array(response(at.tolist()), dtype=np.float64), slopes, error)
 
 
-def slopes_with_state(slider: Slider, slip: Floats, state: Floats) -> tuple[Floats, Floats]:
-    """Return value and slopes of `with_state`, at few places where the law is smooth.
-
-    A slope is NaN where the law has none.
-    """
+def quickly_with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
+    """Return what `with_state` does, from few places where the law is smooth."""
     response, at = answer_of(slider), np.concatenate([slip, state])
-    columns = []
-    for i, (widest, narrowest) in enumerate(steps_of(at)):
-        found = smooth_derivative(response, at, i, min(SMOOTH * narrowest, widest))
-        if found is None:
-            found, error = derivative(response, at, i, widest, narrowest)
-            found = np.where(np.isfinite(error), found, nan)
-        columns.append(found)
-    return np.array(response(at.tolist()), dtype=np.float64), np.column_stack(columns)
+    value = np.array(response(at.tolist()), dtype=np.float64)
+    steps = [
+        (min(SMOOTH * narrowest, widest), widest, narrowest) for widest, narrowest in steps_of(at)
+    ]
+    columns = [
+        smooth_derivative(response, at, i, h) or derivative(response, at, i, *ends)
+        for i, (h, *ends) in enumerate(steps)
+    ]
+    slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
+    # what rounds is as large as each unknown's share of a value, also where all add up to nothing
+    sizes = np.where(np.abs(at) > SMALL, np.abs(at), 1.0)
+    sizes[:2] = hypot(*slip)
+    terms = np.abs(value) + np.abs(slopes) @ sizes
+    return Response(value, slopes, error + SMALL * terms[:, None] / [h for h, *_ in steps])
 
 
 def answer_of(slider: Slider) -> Callable[[list[float]], Sequence[float]]:
@@ -141,8 +144,8 @@ def steps_of(at: Floats) -> Iterator[tuple[float, float]]:
 
 def smooth_derivative(
     function: Callable[[list[float]], Sequence[float] | Floats], at: Floats, i: int, h: float
-) -> Floats | None:
-    """Return the derivative of a vector function by variable `i`, None where `h` is too coarse.
+) -> tuple[Floats, Floats] | None:
+    """Return a `derivative` and its error but for rounding; None where `h` is too coarse.
 
     From six values `h` apart, to order six in the step. That of order four, from the inner four of
     them, differs by far more than the error.
@@ -157,8 +160,9 @@ def smooth_derivative(
     fine = (45.0 * one - 9.0 * two + three) / (60.0 * h)
     coarse = (8.0 * one - two) / (12.0 * h)
     rounding = ROUNDING * np.abs(near).max(axis=0) / h
-    clear = np.abs(fine - coarse) <= CLOSE * np.abs(fine) + 64.0 * rounding
-    return fine if clear.all() else None
+    change = np.abs(fine - coarse)
+    clear = change <= CLOSE * np.abs(fine) + 64.0 * rounding
+    return (fine, SHARE * change) if clear.all() else None
 
 
 def derivative(

@@ -38,10 +38,7 @@ def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
     ----------
     J. J. Dongarra, C. B. Moler & J. H. Wilkinson, SIAM J. Numer. Anal. 20 (1983), 23.
     """
-    from scipy.linalg import eig, matrix_balance
-
-    balanced, (scale, _) = matrix_balance(matrix, permute=False, separate=True)
-    values, left, right = eig(balanced, left=True, right=True)
+    balanced, scale, values, left, right = balanced_modes(matrix)
     doubt = error * scale[None, :] / scale[:, None] + ROUNDING * np.abs(balanced)
     refined, bounds, shapes = [], [], []
     for k in np.flatnonzero(values.imag >= 0.0):
@@ -59,6 +56,29 @@ def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
     order = np.lexsort((-values.imag, -values.real))
     uncertainty, growth = np.array(bounds)[order].T
     return Eigenvalues(values[order], np.array(shapes).T[:, order], uncertainty, growth)
+
+
+def balanced_modes(matrix: Floats) -> tuple[Floats, Floats, Complex, Complex, Complex]:
+    """Return a balanced matrix, its scale, and its eigenvalues with left and right vectors."""
+    from scipy.linalg import eig, matrix_balance
+
+    balanced, (scale, _) = matrix_balance(matrix, permute=False, separate=True)
+    return balanced, scale, *eig(balanced, left=True, right=True)
+
+
+def leading_growth(matrix: Floats, error: Floats) -> tuple[float, float]:
+    """Return the largest real part of the eigenvalues, not refined, and a bound of its error."""
+    balanced, scale, values, left, right = balanced_modes(matrix)
+    # of a matrix that differs by rounding of the largest entry, everywhere
+    rounding = len(values) * ROUNDING * float(np.abs(balanced).max())
+    doubt = error * scale[None, :] / scale[:, None] + rounding
+    uncertain = np.zeros(len(values))
+    for k, value in enumerate(values):
+        gap = float(np.abs(np.delete(values, k) - value).min())
+        uncertain[k] = bound(balanced, doubt, value, right[:, k], left[:, k], gap)[1]
+    first = int(np.argmax(values.real))
+    growth = float(values.real[first])
+    return growth, float(max(uncertain[first], (values.real + uncertain).max() - growth))
 
 
 def refine(matrix: Floats, value: complex, vector: Complex, gap: float) -> tuple[complex, Complex]:

@@ -15,9 +15,9 @@ from stiction.errors import DescriptionError, Fault, StictionError
 from stiction.friction import has_state, states
 from stiction.linear_stability.derivatives import (
     Response,
+    quickly_with_state,
     response_of,
     set_valued,
-    slopes_with_state,
     with_state,
 )
 from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues
@@ -203,10 +203,8 @@ def steady_sliding(slider: Slider) -> Linearisation:
     K = np.array([slider.k_x, slider.k_y])
     names = ("u_x", "u_y", "v_x", "v_y", *(each.name for each in states(slider.law)))
     at = np.concatenate([response.value[:2] / K, [0.0, 0.0], state])
-    matrix, error = system(slider, response.slopes), np.zeros((len(at), len(at)))
-    error[2:, 2:] = response.error
-    error[2:4] = np.abs(mobility_tensor(slider)) @ error[2:4]
-    return Linearisation(slider, names, at, matrix, error)
+    error = errors_of(slider, response.error)
+    return Linearisation(slider, names, at, system(slider, response.slopes), error)
 
 
 def growth_rate(slider: Slider) -> float:
@@ -222,16 +220,17 @@ def growth_rate(slider: Slider) -> float:
     >>> [st.linear_stability.growth_rate(each) > 0 for each in (slider, turned)]
     [True, False]
     """
-    return float(np.linalg.eigvals(disturbance(slider)).real.max())
+    return float(np.linalg.eigvals(disturbance(slider)[0]).real.max())
 
 
-def disturbance(slider: Slider) -> Floats:
-    """Return the matrix of `Linearisation`, without its errors, which cost the most."""
+def disturbance(slider: Slider) -> tuple[Floats, Floats]:
+    """Return matrix and errors of `Linearisation` at little cost; NaN for errors that cost more."""
     slip = drive_velocity(slider)
-    matrix = system(slider, steady_slopes(slider, slip))
-    if not np.isfinite(matrix).all():
+    response = quick_response(slider, slip)
+    matrix = system(slider, response.slopes)
+    if not np.isfinite(matrix).all() or np.isinf(response.error).any():
         raise StictionError(NOT_SMOOTH.format(hypot(*slip)))
-    return matrix
+    return matrix, errors_of(slider, response.error)
 
 
 def system(slider: Slider, slopes: Floats) -> Floats:
@@ -247,6 +246,14 @@ def system(slider: Slider, slopes: Floats) -> Floats:
     matrix[2:4, 0] = -p * slider.k_x, -r * slider.k_x
     matrix[2:4, 1] = -r * slider.k_y, -q * slider.k_y
     return matrix
+
+
+def errors_of(slider: Slider, error: Floats) -> Floats:
+    """Return the errors of the entries of `system`, from those of the slopes."""
+    found = np.zeros((2 + len(error), 2 + len(error)))
+    found[2:, 2:] = error
+    found[2:4] = np.abs(mobility_tensor(slider)) @ found[2:4]
+    return found
 
 
 def drive_velocity(slider: Slider) -> Floats:
@@ -276,14 +283,15 @@ def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
     return state, response
 
 
-def steady_slopes(slider: Slider, slip: Floats) -> Floats:
-    """Return the slopes of `steady_friction` without their errors, which cost the most."""
+def quick_response(slider: Slider, slip: Floats) -> Response:
+    """Return the response of `steady_friction` at little cost; NaN for errors that cost more."""
     if not has_state(slider.law):
-        return set_valued(slider, slip)[1]
-    value, slopes = slopes_with_state(slider, slip, settled_state(slider, slip))
-    if np.isfinite(slopes).all():
-        refuse_unsettled(value, slopes, slip)
-    return slopes
+        value, slopes = set_valued(slider, slip)
+        return Response(value, slopes, np.full((2, 2), np.nan))
+    response = quickly_with_state(slider, slip, settled_state(slider, slip))
+    if np.isfinite(response.error).all():
+        refuse_unsettled(response.value, response.slopes, slip)
+    return response
 
 
 def settled_state(slider: Slider, slip: Floats) -> Floats:

@@ -11,6 +11,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.linear_stability.axis import axis
+from stiction.linear_stability.eigenvalues import leading_growth
 from stiction.linear_stability.linear import BOUNDARY, disturbance, steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
@@ -117,9 +118,13 @@ def critical(
 
 def signed_growth(slider: Slider) -> float:
     """Return the growth rate (1/s); exactly zero if its sign is uncertain."""
-    values = np.linalg.eigvals(disturbance(slider))
+    matrix, error = disturbance(slider)
+    values = np.linalg.eigvals(matrix)
     growth = float(values.real.max())
     if abs(growth) > CLEAR * float(np.abs(values).max()):
+        return growth
+    growth, uncertainty = leading_growth(matrix, error)
+    if abs(growth) > uncertainty:
         return growth
     linear = steady_sliding(slider)
     return 0.0 if linear.verdict == BOUNDARY else linear.growth_rate
@@ -127,7 +132,7 @@ def signed_growth(slider: Slider) -> float:
 
 def leading_frequency(slider: Slider) -> float:
     """Return the frequency (Hz) of the mode that grows fastest."""
-    values = np.linalg.eigvals(disturbance(slider))
+    values = np.linalg.eigvals(disturbance(slider)[0])
     leading = values[np.argmax(values.real)]
     if abs(leading) > CLEAR * float(np.abs(values).max()):
         return float(abs(leading.imag)) / (2.0 * pi)
