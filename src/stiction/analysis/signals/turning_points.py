@@ -90,13 +90,17 @@ def widest_gap(heights: ArrayLike, step: float, most: float) -> Gap:
     octaves = np.log2(size[-1] / lowest)
     edges = np.geomspace(lowest, size[-1], int(np.ceil(PER_OCTAVE * octaves)) + 1)
     edges[-1] = size[-1]
-    low, high = np.triu_indices(len(edges), 1)
     # counted one step lower, so that the steps of a digitised signal are not taken for gaps
-    above_low = (len(size) - np.searchsorted(size, edges - step))[low]
-    above_high = (len(size) - np.searchsorted(size, edges))[high]
+    above_low = len(size) - np.searchsorted(size, edges - step)
+    above_high = len(size) - np.searchsorted(size, edges)
+    few = np.flatnonzero(above_low[:-1] <= most)
+    if not few.size:
+        return NO_GAP
+    first = few[0]  # from there on all are few enough
+    low, high = first + np.array(np.triu_indices(len(edges) - first, 1))
     share = ((edges[low] + OVERSHOOT * step) / (edges[high] + OVERSHOOT * step)) ** 2
-    worth = _surprise(above_high, above_low, share)
-    worth[(above_low > most) | (worth < EACH * above_high)] = 0.0
+    worth = _surprise(above_high[high], above_low[low], share)
+    worth[worth < EACH * above_high[high]] = 0.0
     best = int(np.argmax(worth))
     return Gap(float(edges[low[best]]), float(edges[high[best]]), float(worth[best]))
 
