@@ -31,12 +31,11 @@ from stiction.system.parameter import change_parameter, change_parameters, quant
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
 from stiction.text.paths import canonical
 from stiction.text.toml import folder_of, gather, read_toml
-from stiction.text.units import Kind, to_si
+from stiction.text.units import Kind, split_uncertain, to_si
 
 NORMAL = {"value", "uncertainty"}
 UNIFORM = {"low", "high"}
 SCALES = ("linear", "log")
-BOTH = re.compile(r"\s*\(?\s*(.+?)\s*(?:\+-|\+/-|±)\s*([^)\s]+)\s*\)?\s*(.*)")
 EDGE = 1e-12  # shares beyond which a quantile would be infinite
 
 
@@ -208,11 +207,8 @@ def spread(value: Any) -> dict[str, Any] | None:
         keys = set(value)
         ours = keys >= NORMAL or keys >= UNIFORM
         return dict(value) if ours else None
-    found = BOTH.fullmatch(value) if isinstance(value, str) else None
-    if found is None:
-        return None
-    middle, width, its = found.groups()
-    return {"value": f"{middle} {its}".strip(), "uncertainty": f"{width} {its}".strip()}
+    both = split_uncertain(value)
+    return None if both is None else {"value": both[0], "uncertainty": both[1]}
 
 
 def read_priors(slider: Slider, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Prior]:

@@ -198,7 +198,7 @@ def _measurement(
         if its is None:
             continue
         sensor = asked.sensors.get(name)
-        channels[name] = its if sensor is None else sensor.value(its)
+        channels[name] = its if sensor is None else sensor.value(its, time)
         if name in DISPLACEMENTS:
             channels[name] = _unwrap(channels[name], time, asked.reading.wrap, name, notes)
         sensors[name] = _with_noise(sensor, channels[name], name)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from importlib import import_module
-from math import ceil, comb, inf, log2, sqrt
+from math import ceil, comb, hypot, inf, log2, sqrt
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
@@ -14,14 +14,22 @@ from pydantic_core import PydanticCustomError
 
 from stiction.arrays import Floats
 from stiction.errors import Fault, ResultError, echo
-from stiction.text.units import Kind, Number, Rate, to_si
+from stiction.text.units import Kind, Number, Rate, split_uncertain, to_si
 from stiction.text.validation import Described, faulty
 
 LEVELS = ("zero", "zero_uncertainty", "quantisation", "noise")  # in the unit of the channel
+RATES = ("zero_drift", "zero_drift_uncertainty")  # in this unit over time
+OF = "_uncertainty"  # ending of the name of a standard uncertainty
+UNCERTAIN = ("gain", "zero", "zero_drift")  # may be written with their uncertainty: "0 +- 3 mN"
 KINDS = {
     "N": Kind("a force", "N", "3 mN"),
     "m": Kind("a length", "m", "1 um"),
     "m/s": Kind("a velocity", "m/s", "1 mm/s"),
+}
+KINDS_OF_RATES = {
+    "N": Kind("a force over time", "N/s", "5 mN/min"),
+    "m": Kind("a length over time", "m/s", "1 um/min"),
+    "m/s": Kind("a velocity over time", "m/s^2", "1 um/s^2"),
 }
 FASTEST = 0.4  # of the sample rate: a faster filter cannot be distinguished from none
 AtLeastZero = Annotated[Number, Field(ge=0)]
@@ -46,15 +54,20 @@ class LowPass(NamedTuple):
 class Sensor(Described):
     """The way from a quantity to the samples of a record.
 
-    ``reading = gain * value + zero``, delayed by the cell's bandwidth and by the anti-alias filter,
-    with white noise, rounded to steps of the quantisation.
+    ``reading = gain * value + zero + zero_drift * time``, time being that since the first sample of
+    the record; delayed by the cell's bandwidth and by the anti-alias filter, with white noise,
+    rounded to steps of the quantisation.
 
     Parameters
     ----------
     gain, gain_uncertainty : float, optional
         Reading over value, and its standard uncertainty.
     zero, zero_uncertainty : float or str, optional
-        Reading at zero, and its standard uncertainty, in `unit` or with a unit: ``"3 mN"``.
+        Reading at zero, and its standard uncertainty, in `unit` or with a unit: ``"3 mN"``. Gain,
+        zero and drift may have theirs in one text: ``"3 +- 1 mN"``.
+    zero_drift, zero_drift_uncertainty : float or str, optional
+        Change of the zero over time, `unit` over s, and its standard uncertainty: of a load cell of
+        which no more is known, ``"0 +- 5 mN/min"``. `zero` is then that of the first sample.
     bandwidth : float or str, optional
         Of cell and amplifier, Hz: where a first-order response has fallen by 3 dB.
     filter, filter_order : float or str, int, optional
@@ -71,12 +84,16 @@ class Sensor(Described):
     >>> import stiction as st
     >>> st.Sensor(noise="2 mN", quantisation="0.5 mN", bandwidth="1 kHz")
     st.Sensor(bandwidth=1000.0, quantisation=0.0005, noise=0.002)
+    >>> st.Sensor(zero="3 mN", zero_drift="0 +- 6 mN/min")
+    st.Sensor(zero=0.003, zero_drift_uncertainty=0.0001)
     """
 
     gain: Number = 1.0
     gain_uncertainty: AtLeastZero = 0.0
     zero: Number = 0.0
     zero_uncertainty: AtLeastZero = 0.0
+    zero_drift: Number = 0.0
+    zero_drift_uncertainty: AtLeastZero = 0.0
     bandwidth: Rate | None = None
     filter: Rate | None = None
     filter_order: Order = 4
@@ -87,20 +104,23 @@ class Sensor(Described):
     @model_validator(mode="before")
     @classmethod
     def _to_si(cls, given: Any) -> Any:
-        """Return the arguments with levels that carry a unit in SI."""
-        read, wrong = dict(given), []
-        kind = KINDS.get(str(read.get("unit", "N")))
-        if kind is None:
+        """Return the arguments with levels and rates that carry a unit in SI."""
+        unit = str(given.get("unit", "N"))
+        if unit not in KINDS:
             raise faulty(
-                [Fault("unit", f"is {echo(read['unit'])}; write one of {', '.join(KINDS)}")]
+                [Fault("unit", f"is {echo(given['unit'])}; write one of {', '.join(KINDS)}")]
             )
-        for name in LEVELS:
+        read, wrong = _split(given)
+        kinds = dict.fromkeys(LEVELS, KINDS[unit]) | dict.fromkeys(RATES, KINDS_OF_RATES[unit])
+        for name, kind in kinds.items():
             if not isinstance(read.get(name), str):
                 continue
             try:
                 read[name] = to_si(read[name], kind)
             except PydanticCustomError as error:
-                wrong.append(Fault(name, error.message()))
+                wrong.append(
+                    Fault(name if name in given else name.removesuffix(OF), error.message())
+                )
         if wrong:
             raise faulty(wrong)
         return read
@@ -111,9 +131,32 @@ class Sensor(Described):
             raise ValueError("gain is 0: such a sensor shows nothing; give reading over value")
         return self
 
-    def value(self, readings: Floats) -> Floats:
-        """Return the values behind readings, by gain and zero."""
-        return (readings - self.zero) / self.gain
+    def value(self, readings: Floats, time: Floats | None = None) -> Floats:
+        """Return the values behind readings, by gain and zero; `time` (n,), s, is that of each."""
+        return (readings - self.zeros(time)) / self.gain
+
+    def zeros(self, time: Floats | None) -> Floats | float:
+        """Return the zero at times (n,), s, the first of which is the start of the record.
+
+        Raises
+        ------
+        ResultError
+            If the zero drifts and no times are given.
+
+        Examples
+        --------
+        >>> import numpy as np, stiction as st
+        >>> st.Sensor(zero="3 mN", zero_drift="60 mN/min").zeros(np.array([5.0, 7.0]))
+        array([0.003, 0.005])
+        """
+        if self.zero_drift == 0.0:
+            return self.zero
+        if time is None:
+            raise ResultError(
+                f"zero_drift is {self.zero_drift:g} {self.unit}/s, so that the zero depends on the "
+                "time; give the times of the samples too: time=record.time"
+            )
+        return self.zero + self.zero_drift * (time - time[:1])
 
     def response(self, values: Floats, rate: float) -> Floats:
         """Return values as bandwidth and anti-alias filter leave them, before sampling.
@@ -147,9 +190,14 @@ class Sensor(Described):
         """The lowest frequency of which less than half of the power passes, Hz."""
         return min((each.cut for each in self.filters), default=inf)
 
-    def readings(self, values: Floats, seed: int | np.random.SeedSequence) -> Floats:
-        """Return sampled values with gain, zero, noise and quantisation; the same for one seed."""
-        found = self.gain * values + self.zero
+    def readings(
+        self, values: Floats, seed: int | np.random.SeedSequence, time: Floats | None = None
+    ) -> Floats:
+        """Return sampled values with gain, zero, noise and quantisation; the same for one seed.
+
+        `time` (n,), s, is that of each value, for a zero that drifts.
+        """
+        found = self.gain * values + self.zeros(time)
         if self.noise:
             found = found + self.noise * np.random.default_rng(seed).standard_normal(len(found))
         if self.quantisation:
@@ -160,10 +208,41 @@ class Sensor(Described):
         """Return the sensor of a channel whose readings have been turned into values."""
         its = {name: getattr(self, name) for name in type(self).model_fields}
         scale = abs(self.gain)
-        levels = ("zero_uncertainty", "quantisation", "noise")
+        levels = ("zero_uncertainty", "zero_drift_uncertainty", "quantisation", "noise")
         in_values = {name: its[name] / scale for name in levels}
         rest = {"gain": 1.0, "zero": 0.0, "gain_uncertainty": self.gain_uncertainty / scale}
-        return Sensor(**(its | in_values | rest))
+        return Sensor(**(its | in_values | rest | {"zero_drift": 0.0}))
+
+    def later(self, elapsed: float) -> Sensor:
+        """Return the sensor of the part of a record that begins `elapsed` seconds after its start.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> st.Sensor(zero_uncertainty=0.3, zero_drift_uncertainty=0.1).later(4.0).zero_uncertainty
+        0.5
+        """
+        zero = self.zero + self.zero_drift * elapsed
+        error = hypot(self.zero_uncertainty, self.zero_drift_uncertainty * elapsed)
+        return self.model_copy(update={"zero": zero, "zero_uncertainty": error})
+
+
+def _split(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
+    """Return the arguments of a sensor with each uncertainty apart, and what is stated twice."""
+    read, wrong = dict(given), []
+    for name in UNCERTAIN:
+        both = split_uncertain(read.get(name))
+        if both is None:
+            continue
+        if name + OF in read:
+            wrong.append(
+                Fault(name, f"has an uncertainty, and {name + OF} is another; leave out one")
+            )
+        elif both[1].startswith(("-", "−")):
+            wrong.append(Fault(name, f"its uncertainty must not be below 0, is {echo(both[1])}"))
+        else:
+            read[name], read[name + OF] = both
+    return read, wrong
 
 
 def low_pass(values: Floats, filters: Iterable[LowPass], rate: float) -> Floats:

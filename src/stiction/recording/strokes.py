@@ -93,6 +93,8 @@ def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
         for key, values in found.channels.items()
     }
     time = channels["time"]
+    elapsed = float(time[0] - found.channels["time"][0])
+    sensors = {name: sensor.later(elapsed) for name, sensor in found.sensors.items()}
     back = "; on this way back, forces and displacements were turned round" if way < 0.0 else ""
     note = (
         f"stroke {number} of {len(parts)}, from {in_words(float(time[0]), 's')} to "
@@ -111,4 +113,4 @@ def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
         rate=rate_of(time),
         notes=(note, *found.origin.notes),
     )
-    return found._replace(channels=channels, origin=origin, stroke=None)
+    return found._replace(channels=channels, sensors=sensors, origin=origin, stroke=None)

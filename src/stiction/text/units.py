@@ -88,6 +88,7 @@ QUANTITY = re.compile(
 
 
 UNCERTAIN = re.compile(r"\+-|\+/-|±")
+BOTH = re.compile(rf"\s*\(?\s*(.+?)\s*(?:{UNCERTAIN.pattern})\s*([^)\s]+)\s*\)?\s*(.*)")
 OF_PRIORS = {"uncertainty", "low"}  # keys of an uncertain value
 
 
@@ -144,6 +145,19 @@ def _uncertain(value: object, kind: Kind) -> Exception:
         f"{echo(value)} is uncertain, which 'stiction fit', 'design' and 'audit' read; write one "
         f"value here, for example {kind.example!r}"
     )
+
+
+def split_uncertain(value: object) -> tuple[str, str] | None:
+    """Return value and uncertainty of a text with both, each with the unit; None for all else.
+
+    >>> split_uncertain("2 +- 1 deg"), split_uncertain("2 deg")
+    (('2 deg', '1 deg'), None)
+    """
+    found = BOTH.fullmatch(value) if isinstance(value, str) else None
+    if found is None:
+        return None
+    middle, width, its = found.groups()
+    return f"{middle} {its}".strip(), f"{width} {its}".strip()
 
 
 def as_float(value: Any) -> float:

@@ -108,3 +108,14 @@ def test_a_spring_that_is_loaded_backwards_after_a_turn_is_no_zero_that_is_off()
     said = " ".join(st.analyse(st.Record(time=time, force=force + noise)).warnings)
     assert "give zero='-0.2" in said
     assert "just after a turn of the drive it is not" in said
+
+
+def test_the_zero_of_a_later_stroke_is_less_certain_if_it_drifts(path):
+    path.with_suffix(".toml").write_text(
+        '[sensors.force]\nzero_uncertainty = "30 mN"\nzero_drift = "0 +- 10 mN/s"\n'
+    )
+    first, second = (st.read_record(path, stroke=number).sensors["force"] for number in (1, 2))
+    assert first.zero_uncertainty == pytest.approx(0.03, rel=0.001)
+    # the stage turns at 4 s, which is known to 2 % of the stroke
+    assert second.zero_uncertainty == pytest.approx(0.05, rel=0.02)
+    assert first.zero_drift_uncertainty == second.zero_drift_uncertainty == 0.01

@@ -86,7 +86,7 @@ def measure(
         if name not in sensors:
             continue
         slow = sensors[name].response(values[name], plain.sample_rate)
-        found[name] = sensors[name].readings(np.interp(time, plain.time, slow), stream)
+        found[name] = sensors[name].readings(np.interp(time, plain.time, slow), stream, time)
     known = ("normal_load", "stiffness", "drive_velocity", "mass")
     return Record(
         time=time,

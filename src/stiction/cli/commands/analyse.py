@@ -95,6 +95,8 @@ def import_(
         normal_load = "10 N"
         [sensors.force]
         noise = "2 mN"
+        zero = "3 +- 1 mN"          # at the first sample
+        zero_drift = "0 +- 5 mN/min"
 
     For example:
 
