@@ -5,8 +5,9 @@ channels and each seed of held-out records, coverage of 95 % intervals, the p-va
 uniform ones (simulation-based calibration: S. Talts et al., arXiv:1804.06788), and widths of the
 posterior. Records have 20 cycles, friction that differs by 0.1 % to 3 % from cycle to cycle, noise
 of 0.2 % of the friction force at rest and, on the displacement, of 0.2 % of the slip length. One
-rig is measured once more with a load cell that smears its slips. FOLDER holds the simulations, so
-that a second call only compares.
+rig is measured again with load cells that smear its slips, or whose zero drifts by 5 % or 10 % of
+the friction force over a record (standard deviation). FOLDER holds the simulations, so that a
+second call only compares.
 """
 
 from __future__ import annotations
@@ -61,6 +62,8 @@ RIGS = {  # two that differ in stiffness, friction and drive
 }  # fmt: skip
 RIGS["pin on plate, filter at 20 Hz"] = RIGS["pin on plate"]
 FILTERS = {"pin on plate, filter at 20 Hz": (LowPass(20.0, 4),)}  # of the load cell
+DRIFTS = {"pin on plate, zero drifts by 5 %": 0.05, "pin on plate, zero drifts by 10 %": 0.1}
+RIGS |= dict.fromkeys(DRIFTS, RIGS["pin on plate"])
 CYCLES, PER_CYCLE = 20, 200
 NOISE = 0.002
 SHOWN = ("phi", "friction.mu_0", "friction.mu_inf", "friction.v_f", "k_x", "k_y", "jitter")
@@ -84,13 +87,14 @@ def rig_of(name: str) -> tuple[Rig, Conditions]:
     velocity = slider.motion.rate(0.0)[0]
     cycle = 0.6 * slider.F_0 / (slider.k_x * velocity)
     level = float(f"{NOISE * slider.F_0:.2g}")
+    filters, drift = FILTERS.get(name, ()), DRIFTS.get(name, 0.0) * slider.F_0 / (CYCLES * cycle)
     noise = {
-        "force": Noise(level, gain=0.01, zero=5 * level, filters=FILTERS.get(name, ())),
-        "force_across": Noise(level, gain=0.01, filters=FILTERS.get(name, ())),
+        "force": Noise(level, 0.01, 5 * level, filters, drift),
+        "force_across": Noise(level, 0.01, 0.0, filters, drift),
         "position": Noise(level / slider.k_x),
     }
-    step = cycle / PER_CYCLE
-    conditions = Conditions(velocity, slider.normal_load, 0.0, step, CYCLES, cycle, noise)
+    step, lead = cycle / PER_CYCLE, cycle if drift else 0.0
+    conditions = Conditions(velocity, slider.normal_load, 0.0, step, CYCLES, cycle, noise, lead)
     jitter = {"jitter": Uniform(1e-3, 0.03, "log")}
     return Rig(slider, {**rig.priors, **jitter}), conditions
 
@@ -132,7 +136,7 @@ def spread(known: Library, name: str, sample: Sample, index: int) -> float:
 def report(trial: Trial) -> None:
     """Print a line for each parameter."""
     for i, name in enumerate(trial.names):
-        if name in SHOWN or name in ("gain", "zero"):
+        if name in SHOWN or name in ("gain", "zero", "zero_drift"):
             p = kstest(trial.ranks[:, i], "uniform").pvalue
             width = trial.widths[:, i]
             sd = f"{width.mean():.3f} (median {np.median(width):.3f})" if name in WIDTHS else ""
@@ -149,8 +153,9 @@ def main() -> None:
     parser.add_argument("--records", type=int, default=500)
     parser.add_argument("--seeds", type=int, nargs="+", default=[1, 2])
     parser.add_argument("--library", type=Path)
+    parser.add_argument("--rigs", nargs="+", choices=RIGS, default=[*RIGS], metavar="NAME")
     options = parser.parse_args()
-    for name in RIGS:
+    for name in options.rigs:
         start = perf_counter()
         known = library_of(name, options.simulations, 0, options.library)
         took = perf_counter() - start

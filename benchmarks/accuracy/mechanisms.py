@@ -32,11 +32,11 @@ from stiction.inference.library import (
     simulate_all,
 )
 from stiction.inference.mechanism.classifier import Classifier, Simulations, simulate, study
-from stiction.inference.mechanism.likeness import Reference, trend
-from stiction.inference.mechanism.odds import CLAIM, TREND, UNLIKE
+from stiction.inference.mechanism.likeness import Reference
+from stiction.inference.mechanism.odds import CLAIM, UNLIKE
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.next_test.advice import whole
-from stiction.inference.observation import Conditions
+from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
 from stiction.inference.priors import Prior, Rig, Uniform
 from stiction.system.parameter import change_unchecked
@@ -151,7 +151,8 @@ def found_when_known(known: Part, other: Part) -> float:
 def trends(of: Plan, count: int, seed: int) -> Floats:
     """Return the probability of such a trend by chance, of each record that has cycles."""
     made = (next(draw(of, number, seed)[1]) for number in range(count))
-    return np.array([trend([(its.channels["force"], its.cycles)]) for its in made if its])
+    pairs = (trend(its.channels["force"], its.cycles) for its in made if its)
+    return np.array([steadiness(pair) for pair in pairs])
 
 
 def report(

@@ -252,9 +252,10 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
     lines = []
     if not found.like:
         lines.append(
-            "Look at drift and hum, which are not simulated, and at filters that no sensor states; "
-            "at the zero of the force, and the stated stiffness, mass, load and velocity (stiction "
-            "analyse); at the law of friction; and whether the priors are too narrow."
+            "Look at hum, which is not simulated, and at filters and drifts of the zero that no "
+            "sensor states; at the zero of the force, and the stated stiffness, mass, load and "
+            "velocity (stiction analyse); at the law of friction; and whether the priors are too "
+            "narrow."
         )
     if found.absent:
         listed = " and ".join(NAMES.get(name, name) for name in found.absent)

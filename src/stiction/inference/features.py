@@ -41,12 +41,15 @@ class FeatureScale(NamedTuple):
         Of the mass on the spring along the drive, s.
     velocity : float
         Of the drive, m/s.
+    drift : float
+        Of the load cell's zero, N/s, as it is stated; without it trends are no features.
     """
 
     force: float
     loading: float
     period: float
     velocity: float
+    drift: float = 0.0
 
 
 class Cycles(NamedTuple):
@@ -116,6 +119,8 @@ def parts(
     yield FeatureGroup("loading", force, of_loading(step, channels["force"], scale, loadings))
     yield FeatureGroup(BEND, force, of_bend(channels["force"], loadings))
     yield FeatureGroup("slip", force, of_slip(step, channels["force"], scale, cycles))
+    if scale.drift:
+        yield FeatureGroup("trend", force, of_trend(step, channels["force"], scale, cycles))
     if across:
         yield FeatureGroup("force across", across, of_force_across(step, channels, scale, loadings))
     if position:
@@ -233,6 +238,13 @@ def of_slip(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> 
         *change(cycles.peak, cycles.after, SLIP),
         *change(cycles.before, cycles.peak, REBOUND),
     ]  # fmt: skip
+
+
+def of_trend(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> list[float]:
+    """Return the trend of peaks, and that of drops, which a zero that drifts leaves as they are."""
+    peak = force[cycles.peak]
+    trends = np.stack([peak, peak - force[cycles.after]], axis=1)
+    return [*np.polyfit(step * cycles.peak, trends, 1)[0] / scale.drift]
 
 
 def of_force_across(

@@ -130,4 +130,4 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
     place = None if folder is None else folder / f"learned-{library.wanted}.npz"
     learned = study(library.features, library.scores, place)
     (sample,) = learned.posteriors(observed[None])
-    return Fit.of(library, sample, observed, learned)
+    return Fit.of(library, sample, seen, learned)

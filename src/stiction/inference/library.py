@@ -31,7 +31,7 @@ BLOCK = 32  # simulations that are stored together
 SPARE = 2  # cycles simulated beyond those that are used: the first begins from rest
 LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
-NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero"}  # names of priors
+NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names of priors
 FORMAT = 5  # of stored simulations and of what is learned from them
 
 
@@ -43,8 +43,9 @@ class Plan(NamedTuple):
     slider : Slider
         The rig in the middle of its priors.
     priors : dict of str to Normal or Uniform
-        Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force, and
-        ``drift``, the change of the coefficients' logarithm over a record.
+        Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force, the
+        drift of this zero in the first record, ``zero_drift`` (N/s), and ``drift``, the change of
+        the coefficients' logarithm over a record.
     conditions : tuple of Conditions
         Of each record.
     basis : Slider, optional
@@ -93,6 +94,8 @@ def plan(slider: Slider, priors: Mapping[str, Prior], conditions: Sequence[Condi
         own["gain"] = Normal(1.0, force.gain, low=0.0)
     if force.zero:
         own["zero"] = Normal(0.0, force.zero)
+    if force.drift:
+        own["zero_drift"] = Normal(0.0, force.drift)
     return Plan(
         slider, {**priors, **{k: v for k, v in own.items() if k not in priors}}, tuple(conditions)
     )
@@ -188,6 +191,7 @@ def synthesise(
         times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
         motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
         channels = measure(conditions, rig, motion, values, random)
+        values.pop("zero_drift", None)  # a zero drifts differently in each record
         found = find_cycles(channels["force"])
         enough = min(len(found.peak), len(motion.troughs)) >= conditions.cycles  # not of noise
         last = Cycles(*(each[-conditions.cycles :] for each in found))
@@ -214,10 +218,20 @@ def measure(
         gain, zero = random.standard_normal(2) * (noise.gain, noise.zero) + (1.0, 0.0)
         if name == "force":
             gain, zero = values.get("gain", 1.0), values.get("zero", 0.0)
+        if noise.drift:
+            drift = noise.drift * random.standard_normal()
+            drift = values.get("zero_drift", drift) if name == "force" else drift
+            zero = zero + drift * (motion.time - start_time(motion, exact["force"], conditions))
         shown = [each for each in noise.filters if each.cut * conditions.step <= FASTEST]
         values_of = gain * low_pass(exact[name], shown, 1.0 / conditions.step) + zero
         found[name] = values_of + noise.level * random.standard_normal(len(values_of))
     return found
+
+
+def start_time(motion: SampledMotion, force: Floats, conditions: Conditions) -> float:
+    """Return when a record with the cycles that are used would have begun, s."""
+    used = find_cycles(force).before[-conditions.cycles :]
+    return (float(motion.time[used[0]]) if len(used) else 0.0) - conditions.lead
 
 
 def features_from(

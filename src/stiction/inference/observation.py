@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from math import floor, log10
 from typing import Any, NamedTuple
 
@@ -29,6 +29,8 @@ PER_CYCLE = 200  # samples: more are averaged
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
+TREND = 0.01  # probability below which cycles do not stay the same
+SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 
 
@@ -43,12 +45,15 @@ class Noise(NamedTuple):
         Uncertainty of its gain and of its zero.
     filters : tuple
         Its bandwidth and its anti-alias filter, as `LowPass`.
+    drift : float
+        Uncertainty of its zero's drift, in its unit over s.
     """
 
     level: float
     gain: float = 0.0
     zero: float = 0.0
     filters: tuple[LowPass, ...] = ()
+    drift: float = 0.0
 
 
 class Conditions(NamedTuple):
@@ -66,6 +71,8 @@ class Conditions(NamedTuple):
         Their mean length, s.
     noise : dict of str to Noise
         Of each channel.
+    lead : float
+        Time from the start of the record to its first whole cycle, s, where a zero drifts.
     """
 
     velocity: float
@@ -75,6 +82,7 @@ class Conditions(NamedTuple):
     cycles: int
     cycle: float
     noise: dict[str, Noise]
+    lead: float = 0.0
 
     def slider_of(self, slider: Slider) -> Slider:
         """Return a slider under these conditions."""
@@ -87,8 +95,18 @@ class Conditions(NamedTuple):
         rig = self.slider_of(slider)
         return FeatureScale(
             rig.F_0, rig.k_x * abs(self.velocity), 1.0 / rig.natural_frequencies[0],
-            abs(self.velocity),
+            abs(self.velocity), self.noise["force"].drift if self.noise else 0.0,
         )  # fmt: skip
+
+
+class Trend(NamedTuple):
+    """How probable as clear a trend from cycle to cycle is where there is none.
+
+    Of the peaks of a force, and of its drops, which the zero of a load cell leaves as they are.
+    """
+
+    peaks: float
+    drops: float
 
 
 class Observation(NamedTuple):
@@ -98,6 +116,47 @@ class Observation(NamedTuple):
     features: Floats
     force: Floats
     cycles: Cycles
+
+    @property
+    def trend(self) -> Trend:
+        """How clear a trend the cycles have beyond the stated drift of the zero."""
+        drift = self.conditions.noise["force"].drift * self.conditions.step
+        return trend(self.force, self.cycles, SURE * drift)
+
+
+def trend(force: Floats, cycles: Cycles, drift: float = 0.0) -> Trend:
+    """Return how probable as clear a trend of peaks and of drops is where there is none.
+
+    By Kendall's rank correlation with the number of the cycle (M. G. Kendall, Biometrika 30, 81
+    (1938)). From the peaks a line is subtracted first: that of P. K. Sen (J. Am. Stat. Assoc. 63,
+    1379 (1968)), but no steeper than `drift`, the change of the zero from sample to sample that is
+    expected at most.
+
+    Examples
+    --------
+    >>> saw = np.concatenate([np.r_[0.0:1.0:9j, 0.5] + 0.05 * n for n in range(12)])
+    >>> cycles = find_cycles(saw)
+    >>> trend(saw, cycles).peaks < 1e-3, trend(saw, cycles, drift=0.01).peaks > 0.01
+    (True, True)
+    """
+    from scipy.stats import kendalltau, theilslopes
+
+    peaks, drops = force[cycles.peak], force[cycles.peak] - force[cycles.after]
+    if drift:
+        slope = float(theilslopes(peaks, cycles.peak).slope)
+        peaks = peaks - min(max(slope, -drift), drift) * cycles.peak
+    found = (float(kendalltau(np.arange(len(x)), x).pvalue) for x in (peaks, drops))
+    return Trend(*(its if np.isfinite(its) else 1.0 for its in found))  # all the same
+
+
+def steadiness(probabilities: Iterable[float]) -> float:
+    """Return how probable the least of several probabilities is, which is that times their number.
+
+    >>> steadiness([0.25, 0.5]), steadiness([0.75, 1.0])
+    (0.5, 1.0)
+    """
+    each = [*probabilities]
+    return min(1.0, min(each, default=1.0) * len(each))
 
 
 def observe(record: Record, slider: Slider, name: str = "the record") -> Observation:
@@ -141,9 +200,11 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     stated = record.drive_velocity
     if stated is not None and abs(stated / abs(velocity) - 1.0) > SAME:
         velocity = np.copysign(stated, velocity)
+    drifts = any(each.drift for each in noise.values())
     conditions = Conditions(
         float(velocity), float(record.normal_load or slider.normal_load), 0.0,
         step * block, number, cycle, thin_noise,
+        lead=step * block * int(found.before[0]) if drifts else 0.0,
     )  # fmt: skip
     seen = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, seen, thin["force"], found)
@@ -164,7 +225,8 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
     level = level or white_noise(values)
     if sensor is None:
         return Noise(level)
-    return Noise(level, sensor.gain_uncertainty, sensor.zero_uncertainty, sensor.filters)
+    errors = sensor.gain_uncertainty, sensor.zero_uncertainty
+    return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty)
 
 
 def block_means(values: Floats, block: int) -> Floats:

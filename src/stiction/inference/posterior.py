@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -13,6 +14,7 @@ from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
 from stiction.inference.calibration import Learned
 from stiction.inference.library import Library, Plan
+from stiction.inference.observation import TREND, Observation, Trend, steadiness
 from stiction.inference.regression_abc import Sample, quantiles
 from stiction.names import draw
 from stiction.storage.files import NETCDF, placeable, whole
@@ -27,11 +29,16 @@ INTERVAL = 0.95
 RARE = 0.05  # share of simulations below which a record is not like them
 TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
 NARROWER = 0.75  # of the prior's standard deviation, as normal scores: what counts as identified
-OWN_UNITS = {"jitter": "", "gain": "", "zero": "N"}
+STATE_DRIFT = (
+    "A zero of the load cell that drifts can be stated, as a record without contact shows it, in "
+    'the file beside the record, under [sensors.force]: zero_drift = "0 +- 5 mN/min".'
+)
+OWN_UNITS = {"jitter": "", "gain": "", "zero": "N", "zero_drift": "N/s"}
 MEANINGS = {
     "jitter": "spread of friction from cycle to cycle",
     "gain": "gain of the load cell",
     "zero": "zero of the load cell",
+    "zero_drift": "drift of the zero of the load cell",
 }
 
 
@@ -85,6 +92,8 @@ class Fit:
         (n, p), the draws of `data` as normal scores.
     farther : float
         Share of the simulated records that lie farther from the others than the measured one.
+    trend : Trend
+        How probable as clear a trend from cycle to cycle is in records that have none.
     """
 
     plan: Plan
@@ -96,10 +105,16 @@ class Fit:
     ranks: Floats = field(compare=False)
     scores: Floats = field(compare=False)
     farther: float = field(compare=False)
+    trend: Trend = field(compare=False)
 
     @classmethod
-    def of(cls, library: Library, sample: Sample, observed: Floats, learned: Learned) -> Self:
+    def of(
+        cls, library: Library, sample: Sample, seen: Sequence[Observation], learned: Learned
+    ) -> Self:
         """Return the fit of a weighted sample of normal scores, from what a library taught."""
+        observed = np.concatenate([each.features for each in seen])
+        pairs = zip(*(each.trend for each in seen), strict=True)
+        trend = Trend(*map(steadiness, pairs))  # of all records
         plan = library.plan
         scores, coverage = resample(sample), learned.coverage(INTERVAL)
         before = np.random.default_rng(0).standard_normal((DRAWS, len(plan.priors)))
@@ -112,7 +127,7 @@ class Fit:
             after[last_part(its.name)].attrs["coverage_of_95_percent_intervals"] = its.coverage
         farther = learned.summary.farther(observed)
         count, ranks = len(library.scores), learned.ranks
-        return cls(plan, after, prior, estimates, count, observed, ranks, scores, farther)
+        return cls(plan, after, prior, estimates, count, observed, ranks, scores, farther, trend)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -183,7 +198,17 @@ class Fit:
                 f"At an end of its prior, beyond which the records point: {names}; "
                 "correct the rig's description, or widen its prior."
             )
+        if found and self.drifts:
+            found.append(
+                f"The peaks have a trend from cycle to cycle, the drops have none. {STATE_DRIFT}"
+            )
         return found
+
+    @property
+    def drifts(self) -> bool:
+        """Whether the force has a trend as that of a zero, and no drift of it is stated."""
+        stated = any(each.noise["force"].drift for each in self.plan.conditions)
+        return not stated and self.trend.peaks < TREND <= self.trend.drops
 
     @property
     def sign_unseen(self) -> bool:

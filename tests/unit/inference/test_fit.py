@@ -10,11 +10,12 @@ from tests.uncertain import SIMULATIONS, record_of
 
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
-from stiction.inference.features import find_cycles
+from stiction.inference.features import features, find_cycles, of_trend
 from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, move, stretch
-from stiction.inference.library import build, draw
-from stiction.inference.observation import Noise, observe
+from stiction.inference.library import build, draw, synthesise
+from stiction.inference.observation import Noise, Trend, observe, trend
+from stiction.inference.priors import Normal
 from stiction.recording.sensor import LowPass, low_pass
 
 
@@ -139,6 +140,91 @@ def test_simulated_records_pass_the_filters_that_show_between_their_samples(rig,
     assert np.array_equal(filtered["position"], plain["position"])
     assert np.array_equal(filtered["force"], low_pass(plain["force"], [slow], rate))
     assert np.ptp(filtered["force"] - plain["force"]) > 0.05  # N: it smears the slips
+
+
+def test_the_drift_of_a_zero_belongs_to_the_conditions_of_a_record(rig, record):
+    sensor = st.Sensor(zero_drift="0 +- 6 mN/min", noise="4 mN")
+    drifting = record.model_copy(update={"sensors": {"force": sensor}})
+    plain, seen = (observe(each, rig.slider) for each in (record, drifting))
+    assert (plain.conditions.noise["force"].drift, plain.conditions.lead) == (0.0, 0.0)
+    assert seen.conditions.noise["force"].drift == 1e-4
+    assert seen.conditions.lead == seen.conditions.step * seen.cycles.before[0] > 0.0
+    priors = plan_for(rig, [seen.conditions]).priors
+    assert priors["zero_drift"] == Normal(0.0, 1e-4)
+    assert "zero_drift" not in plan_for(rig, [plain.conditions]).priors
+
+
+def test_simulated_records_drift_as_the_zero_of_the_sensor_may(rig, record):
+    """The zero is as stated a lead before the first cycle; a second record drifts by itself."""
+    still = observe(record, rig.slider).conditions._replace(noise={"force": Noise(0.0)})
+    still = still._replace(cycles=6)
+    drifting = still._replace(noise={"force": Noise(0.0, drift=0.01)}, lead=2.5)
+    plans = [plan_for(rig, [each, each]) for each in (still, drifting)]
+    slopes = []
+    for seed in range(3):
+        scores = np.random.default_rng(seed).standard_normal(len(plans[1].priors))
+        scores[:-2] = 0.0  # of a rig with cycles
+        made = [
+            list(synthesise(plan, own, np.random.default_rng(seed)))
+            for plan, own in zip(plans, (scores[:-1], scores), strict=True)
+        ]
+        (plain, _), (first, second) = made
+        apart = first.channels["force"] - plain.channels["force"]
+        time = still.step * np.arange(len(apart))
+        slope, start = np.polyfit(time, apart, 1)
+        drift = plans[1].parameters(scores)["zero_drift"]
+        assert drift == pytest.approx(0.01 * scores[-1], rel=1e-9)
+        assert slope == pytest.approx(drift, rel=1e-9)
+        begins = time[plain.cycles.before[0]] - 2.5
+        assert -start / slope == pytest.approx(begins, abs=1e-9)
+        scale = drifting.scale(rig.slider)
+        of_each = (plain, first, second)
+        rises, drops = np.transpose(
+            [of_trend(still.step, x.channels["force"], scale, x.cycles) for x in of_each]
+        )
+        assert rises[1] - rises[0] == pytest.approx(scores[-1], rel=1e-9)
+        assert drops[1] == pytest.approx(drops[0], abs=0.01)  # a slip takes 2 % of a cycle
+        slopes.append((slope, 0.01 * rises[2]))
+    assert all(abs(own - other) > 1e-4 for own, other in slopes)
+
+
+def test_trends_are_features_only_of_a_record_whose_zero_may_drift(rig, record):
+    sensor = st.Sensor(zero_drift="0 +- 6 mN/min", noise="4 mN")
+    seen = observe(record.model_copy(update={"sensors": {"force": sensor}}), rig.slider)
+    still = seen.conditions._replace(noise={"force": Noise(0.004)}, lead=0.0)
+    channels = {"force": seen.force}
+    plain = features(still.step, channels, still.scale(rig.slider), seen.cycles)
+    assert len(seen.features) == len(plain) + 2
+    assert np.array_equal(seen.features[: len(plain)], plain)
+
+
+def test_a_trend_is_that_of_the_zero_only_as_far_as_it_is_stated():
+    """Peaks of 15 cycles of 10 samples: a line of 1 % of their size, and scatter of 0.2 %."""
+    random, rise = np.random.default_rng(4), np.r_[0.0:1.0:9j, 0.5]
+    for slope in random.uniform(0.005, 0.02, 6) * random.choice([-1.0, 1.0], 6):
+        sizes = 1.0 + 0.002 * random.standard_normal(15)
+        zero = np.concatenate([rise * size for size in sizes]) + slope * np.arange(150) / 10.0
+        friction = np.concatenate([rise * size * (1.0 + slope * n) for n, size in enumerate(sizes)])
+        for force in (zero, friction):
+            cycles = find_cycles(force)
+            assert trend(force, cycles).peaks < 0.01
+            assert trend(force, cycles, 0.11 * abs(slope)).peaks > 0.05
+            assert trend(force, cycles, 0.05 * abs(slope)).peaks < 0.01  # it may drift by half
+        assert trend(zero, find_cycles(zero)).drops > 0.001
+        assert trend(friction, find_cycles(friction), 1.0).drops < 0.01
+
+
+def test_a_trend_that_may_be_of_the_zero_is_named_where_a_record_is_unlike(found):
+    rising = replace(found, trend=Trend(1e-3, 0.5))
+    assert rising.doubts == []  # it is like the simulations
+    said = replace(rising, farther=0.02).doubts
+    assert 'under [sensors.force]: zero_drift = "0 +- 5 mN/min"' in said[-1]
+    for other in (found.trend, Trend(1e-3, 1e-3)):  # no trend, or one of the friction
+        assert len(replace(found, farther=0.02, trend=other).doubts) == 1
+    (conditions,) = found.plan.conditions
+    stated = conditions._replace(noise={"force": Noise(0.004, drift=1e-4)})
+    plan = found.plan._replace(conditions=(stated,))
+    assert len(replace(rising, farther=0.02, plan=plan).doubts) == 1
 
 
 def test_each_cycle_has_friction_of_its_own(rig):

@@ -26,10 +26,10 @@ from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, laws, move
 from stiction.inference.library import bend_features
 from stiction.inference.mechanism.classifier import Simulations, simulate, study
-from stiction.inference.mechanism.likeness import CURVES, Likeness, Reference, trend
+from stiction.inference.mechanism.likeness import CURVES, Likeness, Reference
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
-from stiction.inference.observation import observe
+from stiction.inference.observation import observe, steadiness, trend
 from stiction.plotting import plot_mechanism
 
 SIMULATIONS = 96  # of each mechanism: enough to tell these records apart
@@ -70,7 +70,7 @@ def test_a_record_of_static_friction_is_called_so(rig, folder):
 def test_drifting_friction_has_a_trend(rig, rotating):
     drifting = record_of(rig.slider.replace(phi="2.5 deg"), 9, drift=-0.02)
     found = [observe(each, rig.slider) for each in (rotating, drifting)]
-    steady, falling = (trend([(each.force, each.cycles)]) for each in found)
+    steady, falling = (steadiness(each.trend) for each in found)
     assert steady > 0.05
     assert falling < 0.01
 
@@ -305,7 +305,7 @@ def test_trends_are_found_where_there_are_some_and_only_there():
         for _ in range(200):
             sizes = 1.0 + slope * np.arange(15) + 0.03 * random.standard_normal(15)
             saw = np.concatenate([rise * size for size in sizes])
-            ps.append(trend([(saw, find_cycles(saw))]))
+            ps.append(steadiness(trend(saw, find_cycles(saw))))
         found.append(np.mean(np.array(ps) < 0.01))
     assert found[0] <= 0.01 + 3.0 * (0.01 / 200) ** 0.5
     assert found[1] > 0.9

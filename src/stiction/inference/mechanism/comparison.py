@@ -15,10 +15,10 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.fit import check
 from stiction.inference.library import bend_features
 from stiction.inference.mechanism.classifier import Classifier, Simulations, simulate, study
-from stiction.inference.mechanism.likeness import Reference, trend
+from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
-from stiction.inference.observation import Observation, observe_all
+from stiction.inference.observation import Observation, observe_all, steadiness
 from stiction.inference.priors import Rig
 
 SIMULATIONS = 1000  # of each mechanism, by default
@@ -114,7 +114,7 @@ def compare(
             for own in places
         ),
         bend=observed[bend],
-        steady=trend((each.force, each.cycles) for each in seen),
+        steady=steadiness(p for each in seen for p in each.trend),
         counts=tuple(int(own.sum()) for own in places),
         absent=simulated.absent,
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),

@@ -11,7 +11,8 @@ from stiction.arrays import Floats, xr
 from stiction.inference.features import EDGES
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rivals import LUGRE, RATE_AND_STATE, ROTATION, STATIC
-from stiction.inference.posterior import RARE
+from stiction.inference.observation import TREND
+from stiction.inference.posterior import RARE, STATE_DRIFT
 from stiction.names import draw
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
@@ -20,7 +21,6 @@ CLAIM = 0.9  # probability from which on a mechanism is claimed
 # share below which a record is unlike simulations in one of two ways: a mechanism's own records are
 # refused by both together in 5 % of cases at most (O. J. Dunn, J. Am. Stat. Assoc. 56, 52 (1961))
 UNLIKE = 0.5 * RARE
-TREND = 0.01  # probability below which cycles do not stay the same
 UNDECIDED = "undecided"
 EXPLAINED = (
     "The odds before were even. Farther: the share of the mechanism's simulated records that lie "
@@ -119,7 +119,7 @@ class Odds:
             found.append(
                 "Friction drifts: peaks or drops have a trend from cycle to cycle (probability "
                 f"{self.steady:.1g} without one), which is not simulated. Take cycles after "
-                "running in."
+                f"running in. {STATE_DRIFT}"
             )
         return found
 
