@@ -200,7 +200,7 @@ class Fit:
             )
         if found and self.drifts:
             found.append(
-                f"The peaks have a trend from cycle to cycle, the drops have none. {STATE_DRIFT}"
+                f"The peaks have a trend from cycle to cycle, the drops show none. {STATE_DRIFT}"
             )
         return found
 
