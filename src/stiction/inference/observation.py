@@ -29,6 +29,7 @@ PER_CYCLE = 200  # samples: more are averaged
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
+DIGITS = 4  # of the sampling interval: times of many records differ by rounding
 TREND = 0.01  # probability below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
@@ -178,7 +179,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         for each in USED
         if (values := getattr(record, each, None)) is not None
     }
-    step = grid.step
+    step = float(f"{grid.step:.{DIGITS}g}")
     found = find_cycles(channels["force"])
     count = len(found.peak)
     if count < LEAST_CYCLES:
@@ -186,7 +187,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
             f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
             "record for longer, or slower"
         )
-    cycle = float(np.mean(found.after - found.before)) * step
+    cycle = near(float(np.mean(found.after - found.before)) * step)
     block = max(round(cycle / step / PER_CYCLE), 1)
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
     thin = {each: block_means(values, block) for each, values in channels.items()}
@@ -204,7 +205,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     conditions = Conditions(
         float(velocity), float(record.normal_load or slider.normal_load), 0.0,
         step * block, number, cycle, thin_noise,
-        lead=step * block * int(found.before[0]) if drifts else 0.0,
+        lead=near(step * block * int(found.before[0])) if drifts else 0.0,
     )  # fmt: skip
     seen = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, seen, thin["force"], found)
@@ -234,6 +235,19 @@ def block_means(values: Floats, block: int) -> Floats:
     whole = len(values) // block * block
     means: Floats = values[:whole].reshape(-1, block).mean(axis=1)
     return means
+
+
+def near(value: float) -> float:
+    """Return a value to a tenth, on a scale of few: a time that many records share.
+
+    >>> near(0.0123), near(9.8), near(0.0)
+    (0.012, 10.0, 0.0)
+    """
+    if value <= 0.0:
+        return 0.0
+    power = floor(log10(value))
+    mantissa = value / 10.0**power
+    return float(f"{min(MANTISSAS, key=lambda each: abs(log10(each / mantissa)))}e{power}")
 
 
 def round_up(value: float) -> float:

@@ -198,9 +198,10 @@ class Fit:
                 f"At an end of its prior, beyond which the records point: {names}; "
                 "correct the rig's description, or widen its prior."
             )
-        if found and self.drifts:
+        if self.drifts:
             found.append(
-                f"The peaks have a trend from cycle to cycle, the drops show none. {STATE_DRIFT}"
+                "The peaks have a trend from cycle to cycle, the drops show none, as where a zero "
+                f"drifts: mu_0 and mu_inf are then uncertain by more. {STATE_DRIFT}"
             )
         return found
 
