@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
+from stiction.analysis.signals.robust import inner_product
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
@@ -315,7 +316,7 @@ class Record(Described):
         if self.load is None or not len(self):
             return 0.0
         differences = np.diff(self.load, 4)
-        noise = float(differences @ differences) / 70.0 / max(len(differences), 1)
+        noise = inner_product(differences, differences) / 70.0 / max(len(differences), 1)
         rest = float(self.load.var()) - noise
         sure = rest > CERTAIN * (2.0 / len(self)) ** 0.5 * noise
         return float((8.0 * rest) ** 0.5 / self.load.mean()) if sure else 0.0

@@ -11,7 +11,7 @@ from stiction.analysis.motion.vibration import COUPLED, OWN, irregularity
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
-from stiction.analysis.signals.robust import part_means, part_starts
+from stiction.analysis.signals.robust import inner_product, part_means, part_starts
 from stiction.analysis.signals.turning_points import turning_points
 from stiction.arrays import Floats
 
@@ -179,8 +179,8 @@ def _quick(force: Floats, length: int) -> Floats:
 
 def _amplitude(force: Floats, line: Floats) -> float:
     """Return the root mean square of a line as far as a force has it."""
-    size = float(line @ line)
-    return abs(float(force @ line)) / (size * len(line)) ** 0.5 if size > 0.0 else 0.0
+    size = inner_product(line, line)
+    return abs(inner_product(force, line)) / (size * len(line)) ** 0.5 if size > 0.0 else 0.0
 
 
 def _end_of_loading(time: Floats, force: Floats, least: float) -> int | None:

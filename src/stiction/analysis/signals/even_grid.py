@@ -14,6 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.signals.robust import inner_product
 from stiction.arrays import Floats
 from stiction.text.quantity_text import percent
 
@@ -129,8 +130,8 @@ def even_grid(time: Floats) -> EvenGrid | None:
     if plain.exact:
         return plain
     number = np.arange(n, dtype=np.float64)
-    step, start = np.polyfit(number, time - time[0], 1)
-    each = EvenGrid(time, float(time[0] + start), float(step), n)
+    start, step = _fit_line(number, time)
+    each = EvenGrid(time, start, step, n)
     if np.abs(each.places - number).max() < OWN:  # a clock that jitters, or times that are rounded
         return each
     start, step = _fit_grid(time)
@@ -159,15 +160,20 @@ def _fit_grid(time: Floats) -> tuple[float, float]:
             if np.count_nonzero(near) < 2:
                 return start, step
             number = np.rint(place[near])
-            mean = number.mean()
-            spread = number - mean
-            if not spread.any():
+            if number[0] == number[-1]:
                 return start, step
-            slope = float(spread @ part[near] / (spread @ spread))
-            step, start = slope, float(part[near].mean() - slope * mean)
+            start, step = _fit_line(number, part[near])
         if around >= len(time):
             return start, step
         around *= 2
+
+
+def _fit_line(number: Floats, time: Floats) -> tuple[float, float]:
+    """Return start and step of the line through times by number."""
+    mean, middle = float(number.mean()), float(time.mean())
+    spread = number - mean
+    step = inner_product(spread, time - middle) / inner_product(spread, spread)
+    return middle - step * mean, step
 
 
 def why_not(grid: EvenGrid | None) -> str:

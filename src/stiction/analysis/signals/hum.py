@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
-from stiction.analysis.signals.robust import median
+from stiction.analysis.signals.robust import inner_product, median
 from stiction.arrays import Complex, Floats
 
 PERIODS = 16  # of a line that a record has at least
@@ -131,8 +131,8 @@ def _measure_line(
 
 def _gain(force: Floats, line: Floats) -> float:
     """Return by which factor a line fits a force best."""
-    size = float(line @ line)
-    return float(force @ line) / size if size > 0.0 else 1.0
+    size = inner_product(line, line)
+    return inner_product(force, line) / size if size > 0.0 else 1.0
 
 
 def _between(grid: EvenGrid, values: NDArray[Any]) -> NDArray[Any]:

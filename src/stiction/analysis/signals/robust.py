@@ -42,6 +42,18 @@ def median(values: NDArray[np.float64] | NDArray[np.int64]) -> float:
     return 0.5 * (float(ordered[low]) + float(ordered[half]))
 
 
+def inner_product(first: Floats, second: Floats) -> float:
+    """Return the sum of products of two long arrays, on one processor.
+
+    For ``first @ second`` of more than 10 000 samples BLAS starts threads, which take a hundred
+    times as long where other work keeps the processors busy.
+
+    >>> inner_product(np.array([1.0, 2.0]), np.array([3.0, 4.0]))
+    11.0
+    """
+    return float((first * second).sum())
+
+
 def part_starts(size: int, parts: int) -> Indices:
     """Return where equal parts of so many samples begin: fewer parts, if some would be empty."""
     return np.linspace(0, size, min(parts, size), endpoint=False).astype(np.intp)

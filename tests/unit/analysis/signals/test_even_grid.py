@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
+from tests.drawn import inside
 
 import stiction as st
 from stiction.analysis.measured_line import strongest_line
-from stiction.analysis.signals.even_grid import even_grid, why_not
+from stiction.analysis.signals.even_grid import _fit_line, even_grid, why_not
 from stiction.analysis.signals.hum import narrow_lines
 
 N, STEP = 10_000, 1e-4
@@ -143,3 +144,11 @@ def test_a_missing_sample_is_seen_wherever_it_is(seed):
     grid = even_grid(np.delete(np.arange(size) / 300.0, left_out))
     assert grid.size == size
     assert np.flatnonzero(grid.missing).tolist() == [left_out]
+
+
+@pytest.mark.parametrize(("step", "jitter"), inside(12, (1e-4, 1.0), (0.0, 3.0)))
+def test_the_grid_is_the_line_of_least_squares_through_the_times(step, jitter):
+    number = np.arange(40_000.0)
+    time = np.sort(step * (number + jitter * np.sin(number**2))) + 7.0
+    slope, start = np.polyfit(number, time, 1)
+    assert _fit_line(number, time) == pytest.approx((start, slope), rel=1e-12)
