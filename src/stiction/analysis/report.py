@@ -16,7 +16,12 @@ from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_columns import summary
 from stiction.analysis.motion.cycles import Swings, swings
-from stiction.analysis.motion.doubts import subtracted_lines, turns_round, unsteady, warnings
+from stiction.analysis.motion.doubts.warnings import (
+    subtracted_lines,
+    turns_round,
+    unsteady,
+    warnings,
+)
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import LOADING_RATE, StatedQuantity, compare_metadata
 from stiction.analysis.motion.regime.classify import regime_of

@@ -120,6 +120,7 @@ def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) ->
         gap = longest > UNSEEN * columns["period"]
         seen = ~gap | (longest < JUMP * np.median(np.diff(record.time)))
         seen &= (columns["rise_share"] > 0.0) & (columns["rise_share"] < 1.0)
+        seen &= columns["drop"] > 0.0  # on a steep slow motion a force may not fall at all
         columns = {name: values[seen] for name, values in columns.items()}
     return CycleTable(columns, least)
 

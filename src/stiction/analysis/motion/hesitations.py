@@ -9,6 +9,10 @@ minority, only a fall far below the others is a hesitation.
 Where the force moves slowly beside the cycles, as over each turn of a disc, the swing up and the
 swing down differ; that motion is subtracted first.
 
+A few falls far above all others, as of a knock or of a rare slip in a vibration, are cycles among
+the others, and no measure of them. But if the force rises between them as far as they fall, they
+are the slips, and the others hesitate.
+
 Only reversals that stand apart from noise and ripple are considered: in a measured force those
 above about 5 % of a drop, 10 % under noise.
 
@@ -37,6 +41,11 @@ ALIKE = 0.23
 # Legs, two cycles, over which a slow motion goes on and before which it went on, and by how much at
 # least, in swings: no hesitating cycle moves by so much to the same side twice
 AWAY, GOES_ON = 4, 0.5
+# Falls far above all others: times the largest of these, and one in so many falls at most
+FAR_ABOVE, RARE = 3.0, 20
+# A loading leads to them if the peaks rise by so much of their heights in all, as estimated from so
+# many equal parts for each of them, by the median part
+LOADED, PIECES = 0.25, 6
 
 
 class Hesitations(NamedTuple):
@@ -88,14 +97,54 @@ def take_out(values: Floats) -> Hesitations:
         (n,) alternating peaks and troughs. The first and last value are extremes before and after
         them, lower bounds of the movements that the record cuts.
     """
-    found = _below(values, HALF)
+    most = largest_leg(values)
+    found = _below(values, HALF, most)
     change = np.diff(values[found.kept])
     fall = -change[change < 0.0]
-    if _alike(fall):
+    if _alike(np.minimum(fall, most)):
         return found
-    shallow = _below(values, LEAST)
+    shallow = _below(values, LEAST, most)
     deep = (len(shallow.kept) - len(found.kept)) // 2
-    return found if deep >= OFTEN * len(fall) > 0 or _is_divided(values) else shallow
+    return found if deep >= OFTEN * len(fall) > 0 or _is_divided(values, most) else shallow
+
+
+def largest_leg(values: Floats) -> float:
+    """Return the size beyond which no leg says what is typical; infinity if all of them do.
+
+    There is one if a few falls, or rises, are far above all others, unless a loading leads to
+    these falls.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,) alternating peaks and troughs, as for `take_out`.
+    """
+    change = np.diff(values[1:-1])
+    few = len(change) // (2 * RARE)
+    if few == 0:
+        return np.inf
+    falls, rises = np.maximum(-change, 0.0), np.maximum(change, 0.0)
+    usual = [float(np.partition(size, -few - 1)[-few - 1]) for size in (falls, rises)]
+    far = FAR_ABOVE * np.array(usual)
+    if not (falls.max() > far[0] or rises.max() > far[1]):
+        return np.inf
+    fall = np.append(np.where(falls > far[0], falls, 0.0), 0.0)
+    return np.inf if fall.any() and _is_loaded(values[1:-1], fall) else min(usual)
+
+
+def _is_loaded(values: Floats, fall: Floats) -> bool:
+    """Return whether a force rises most of the time by what it loses in a few falls.
+
+    Parameters
+    ----------
+    values, fall : ndarray
+        (n,) peaks and troughs in turn, and the height of such a fall from each of them, or 0.
+    """
+    passed = np.cumsum(fall) - fall
+    peaks = (values + passed)[int(values[0] < values[1]) :: 2]
+    places = np.linspace(0, len(peaks) - 1, PIECES * (np.count_nonzero(fall) + 1) + 1)
+    rises = np.diff(np.interp(places, np.arange(len(peaks)), peaks))
+    return float(np.median(rises)) * len(rises) > LOADED * float(fall.sum())
 
 
 def level(values: Floats, time: Floats) -> Floats:
@@ -111,7 +160,7 @@ def level(values: Floats, time: Floats) -> Floats:
     inner, last = values[1:-1], len(values) - 3
     if last < 2 * AWAY:
         return values
-    size = typical(np.abs(np.diff(inner)))
+    size = typical(np.minimum(np.abs(np.diff(inner)), largest_leg(values)))
     middle = np.clip(np.arange(last + 1), AWAY, last - AWAY)
     before, after = inner[middle] - inner[middle - AWAY], inner[middle + AWAY] - inner[middle]
     moves = np.minimum(np.abs(before), np.abs(after)) * (before * after > 0.0)
@@ -124,14 +173,19 @@ def level(values: Floats, time: Floats) -> Floats:
     return np.asarray(values - np.append(slow, slow[-1]))
 
 
-def _below(values: Floats, share: float) -> Hesitations:
-    """Take out reversals below a share of the swing, the smallest first."""
+def _below(values: Floats, share: float, most: float = np.inf) -> Hesitations:
+    """Take out reversals below a share of the swing, the smallest first.
+
+    Legs that are larger than `most` count as no more in what is typical.
+    """
     points = np.arange(len(values))
     at, depth = [np.zeros(0, np.intp)], [np.zeros(0)]
     while len(points) > 4:
         legs = np.abs(np.diff(values[points]))
         inner = legs[1:-1]
-        small = (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < share * swing(legs)[1:-1])
+        small = (
+            (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < share * swing(legs, most)[1:-1])
+        )
         found = np.flatnonzero(small) + 1  # never two neighbours: one of them is not the smaller
         if not len(found):
             break
@@ -140,12 +194,14 @@ def _below(values: Floats, share: float) -> Hesitations:
         points = np.delete(points, np.concatenate([found, found + 1]))
     places = np.concatenate(at)
     order = np.argsort(places)
-    return Hesitations(_whole(values, points, share), places[order], np.concatenate(depth)[order])
+    return Hesitations(
+        _whole(values, points, share, most), places[order], np.concatenate(depth)[order]
+    )
 
 
-def _is_divided(values: Floats) -> bool:
+def _is_divided(values: Floats, most: float = np.inf) -> bool:
     """Return whether falls and reversals lie on either side of half the swing, none about it."""
-    least, most = (len(_below(values, share).kept) for share in ABOUT_HALF)
+    least, most = (len(_below(values, share, most).kept) for share in ABOUT_HALF)
     return least == most > 2 * FEW
 
 
@@ -158,13 +214,13 @@ def _alike(fall: Floats) -> bool:
     return bool(spread * (1.0 + (2.0 / len(fall)) ** 0.5) < ALIKE)
 
 
-def swing(legs: Floats) -> Floats:
-    """Return the typical size of legs in the same direction around each leg.
+def swing(legs: Floats, most: float = np.inf) -> Floats:
+    """Return the typical size of legs in the same direction around each leg, `most` at most.
 
     Rises are compared with rises and falls with falls: where the force drifts they differ. The
     first leg and the last may be cut, and do not count.
     """
-    found = np.zeros(len(legs))
+    found, legs = np.zeros(len(legs)), np.minimum(legs, most)
     for first in (1, 2):
         if len(legs) - 1 > first:
             found[first:-1:2] = typical(legs[first:-1:2])
@@ -188,12 +244,12 @@ def _weighted_median(rows: Floats) -> Floats:
     return np.asarray(np.take_along_axis(ordered, middle[:, None], axis=1)[:, 0])
 
 
-def _whole(values: Floats, points: Indices, share: float) -> Indices:
+def _whole(values: Floats, points: Indices, share: float, most: float = np.inf) -> Indices:
     """Leave out the ends and cut hesitations: small legs before a large one."""
     inner = points[1:-1]
     for _ in range(2):
         legs = np.abs(np.diff(values[np.concatenate([points[:1], inner, points[-1:]])]))
-        legs, limit = legs[1:-1], share * swing(legs)[1:-1]
+        legs, limit = legs[1:-1], share * swing(legs, most)[1:-1]
         largest = np.maximum.accumulate(legs)
         jump = (largest[:-1] < limit[:-1]) & (largest[:-1] < LEAST * legs[1:])
         inner = inner[np.flatnonzero(jump)[-1] + 1 if jump.any() else 0 :]

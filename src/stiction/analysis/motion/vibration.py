@@ -20,6 +20,7 @@ OWN = 1.2  # times that period: up to there a vibration is that of the mass on i
 # Rayleigh's distribution have, 0.7 to 1.5 where records are short; a measured vibration of one size
 # has 0.57.
 REGULAR, EVEN = 0.25, 0.75
+FAR_ABOVE, RARE = 3.0, 20  # times the median, and one in so many: such swings are other events
 SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of either
 # That span of irregular vibrations, and of harmonic ones, measured among them, whose swings differ
 # by noise or slowly: the typical one, and the standard deviation of its logarithm
@@ -38,9 +39,11 @@ def irregularity(period: Floats, drop: Floats) -> float:
     By periods: whether more swings would exceed the spread `REGULAR`. By drops: their spread is
     drawn from one of two distributions, of which that of irregular swings narrows with the number
     of swings; where both overlap, `EVEN` decides. Sizes in order grow or shrink; they say nothing.
+    Nor do a few swings far above all others, such as a knock.
     """
     from scipy.special import expit, ndtr
 
+    period, drop = _without_rare(period, drop)
     count, likely = len(drop), 0.0
     if count < MANY or abs(order(period)) < -ORDERED:
         spread = float(period.std() / period.mean()) / REGULAR
@@ -56,6 +59,14 @@ def irregularity(period: Floats, drop: Floats) -> float:
         )
     )
     return max(likely, max(drops, 0.5) if spread > EVEN else min(drops, 0.5))
+
+
+def _without_rare(period: Floats, drop: Floats) -> tuple[Floats, Floats]:
+    """Leave out swings far longer or higher than the median, if these are rare."""
+    usual = (period < FAR_ABOVE * np.median(period)) & (drop < FAR_ABOVE * np.median(drop))
+    if np.count_nonzero(~usual) * RARE > len(usual):
+        return period, drop
+    return period[usual], drop[usual]
 
 
 def _log_density(value: float, typical: float, spread: float) -> float:

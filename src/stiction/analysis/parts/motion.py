@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.doubts import turns_round
+from stiction.analysis.motion.doubts.warnings import turns_round
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from tests.drawn import inside
 
 import stiction as st
 from stiction.analysis.motion.friction import find_friction
@@ -443,3 +444,28 @@ def test_a_cycle_in_which_the_drive_pauses_is_named(pause):
     assert len(said) == (pause == 10.0)
     if said:
         assert "The cycle from 9 s on takes 11 s, 11 times the median, 1 s" in said[0]
+
+
+KNOCKS = inside(12, (60.0, 400.0), (1.0, 2.3), (0.2, 3.0), (0.1, 0.9), (0.55, 0.99))
+
+
+@pytest.mark.parametrize(("cycles", "decades", "recovers", "at", "rises"), KNOCKS)
+def test_one_giant_fall_is_named_and_leaves_all_other_cycles(cycles, decades, recovers, at, rises):
+    """Of a vibration or of stick-slip, by the share of its period in which the force rises."""
+    time = np.arange(0.0, int(cycles), 0.025)
+    phase = time % 1.0
+    force = 300.0 + np.where(phase < rises, phase / rises, (1.0 - phase) / (1.0 - rises))
+    noise = 0.005 * np.random.default_rng(1).standard_normal(len(time))
+    quiet = st.Record(time=time, force=force + noise)
+    since = time - at * time[-1]
+    left = np.clip(since / 0.3, 0.0, 1.0) * np.exp(-np.maximum(since - 0.3, 0.0) / recovers)
+    record = quiet.model_copy(update={"force": quiet.force - 10**decades * left})
+    found, without = st.analyse(record), st.analysis.classify(quiet)
+    assert found.regime.kind == without.kind
+    lost = recovers * np.log(2.0 * 10**decades / recovers)
+    assert found.cycles.sizes["cycle"] > int(cycles) - lost - 5
+    assert float(found.cycles["drop"].min()) > 0.0
+    said = [each for each in found.warnings if "times the median of all falls" in each]
+    assert len(said) == 1
+    fell = float(re.search(r"falls by ([\d.]+) N", said[0])[1])
+    assert fell == pytest.approx(10**decades, abs=2.0)

@@ -180,3 +180,36 @@ def test_too_few_corners_are_no_cycle():
     for n in range(3):
         found = hesitations.cycle_corners(np.ones(n), np.arange(n), (0.0, 0.0), trough=True)
         assert len(found.kept) < 2
+
+
+GIANTS = inside(40, (25.0, 700.0), (0.5, 2.5), (0.0, 1.0), (0.2, 5.0), (0.2, 0.8), (0.0, 0.3))
+
+
+@pytest.mark.parametrize(("cycles", "decades", "few", "recovers", "at", "scatter"), GIANTS)
+def test_a_few_giant_falls_take_no_cycles_out(cycles, decades, few, recovers, at, scatter):
+    """Of which the force recovers within so many cycles: those beside them alone may be lost."""
+    count = int(cycles)
+    number = max(int(few * count / 40), 1)  # of giant falls
+    places = ((np.arange(number) + at) * count // number).astype(int)
+    size = 1.0 + scatter * np.sin(7.0 * np.arange(2 * count) ** 2)
+    values = np.where(np.arange(2 * count) % 2, 0.5, -0.5) * size
+    time = np.arange(2.0 * count)
+    for place in 2 * places + 2:
+        left = np.exp(-np.maximum(time - place, 0.0) / (2.0 * recovers))
+        values -= np.where(time < place, 0.0, 10**decades * left)
+    found = hesitations.cycle_corners(values, time, (0.0, 0.0), trough=True)
+    lost = number * recovers * np.log(2.0 * 10**decades / recovers)
+    assert len(found.kept) > 2 * (count - 2.0 * lost - 4.0)
+
+
+@pytest.mark.parametrize(
+    ("slips", "each", "depth", "creeps"), inside(20, (2, 9), (21, 60), (0.05, 0.3), (0.0, 1.0))
+)
+def test_falls_to_which_a_loading_leads_are_the_slips_however_rare(slips, each, depth, creeps):
+    """They count as they are, although the others are far more."""
+    slips, each = int(slips), int(each)
+    load = np.arange(each) / each
+    load += 0.3 * creeps * np.sin(np.pi * load)  # faster first
+    dips = np.stack([load, load - depth], axis=1).ravel()[1:]
+    values = np.concatenate([[0.0], np.tile(np.append(dips, 1.0), slips), [-1.0]])
+    assert hesitations.largest_leg(values) == np.inf

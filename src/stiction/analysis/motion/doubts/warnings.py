@@ -3,17 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from math import inf, log10, pi
+from math import log10, pi
 
 import numpy as np
 
-from stiction.analysis.motion.course import QUIET, change_of_period
+from stiction.analysis.motion.doubts.cycles import (
+    doubt_highest_fall,
+    doubt_longest_cycle,
+    doubt_mean_period,
+    doubt_quiet,
+)
+from stiction.analysis.motion.doubts.sampling import (
+    doubt_few_samples,
+    doubt_filter,
+    doubt_repeats,
+    doubt_times,
+)
 from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import FEW, LOADING_RATE, SWING, StatedQuantity
+from stiction.analysis.motion.metadata import LOADING_RATE, SWING, StatedQuantity
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
-from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.arrays import xr
@@ -29,12 +39,7 @@ THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is 
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
 AT_REST = 0.02  # of the largest force
 FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
-ENOUGH_VALUES = 16  # that are all repeated as often
 TIMES = 3  # that a force stays at its least value: at rest it does so once
-QUIET_SHARE = 0.15  # of the record
-# A cycle in which the drive may have paused: over the median period, and over the span of periods,
-# a tenth left out at each end; of measured stick-slip without a pause it comes to 1.4 spans
-PAUSED, BEYOND, FEWEST_CYCLES = 3.0, 5.0, 10
 VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 # By which power of 1000 the rate of a force is off in another unit: quantity, unit, remedy
@@ -47,12 +52,8 @@ CAUSES = {
     1: (("force", "millinewtons", "force_unit='mN'"),),
     2: (("force", "micronewtons", "force_unit='uN'"),),
 }
-FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
 STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
 NOISE = 5.0  # standard deviations
-# Periods of the cut-off in a fall of the force: with more, creep before a slip comes out to a tenth
-# or two, drops to 0.3 %; with one, drops to 7 % and slip speeds to a third (Butterworth, order 4)
-SHARP = 5.0
 
 
 def warnings(
@@ -68,18 +69,19 @@ def warnings(
         *_doubt_load(record),
         *_implausible_friction(record, friction, cycles),
         *_doubt_clipping(record),
-        *_doubt_mean_period(cycles),
-        *_doubt_longest_cycle(cycles),
-        *_doubt_quiet(record, friction, cycles),
+        *doubt_mean_period(cycles),
+        *doubt_longest_cycle(cycles),
+        *doubt_highest_fall(cycles),
+        *doubt_quiet(record, friction, cycles),
         *_loading_too_fast(wrong.get(LOADING_RATE)),
         *_mass(wrong.get(SWING), kind),
         *_mains(kind, cycles),
-        *_coarse(record, cycles),
-        *_smear(record, cycles),
+        *doubt_few_samples(record, cycles),
+        *doubt_filter(record, cycles),
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
-        *_doubt_times(record),
-        *_doubt_repeats(record),
+        *doubt_times(record),
+        *doubt_repeats(record),
     ]
     return tuple(found)
 
@@ -136,66 +138,6 @@ def _varies(run: Trajectory, columns: tuple[str, ...]) -> bool:
     return any(bool(np.ptp(run.samples[name]) > 0.0) for name in columns)
 
 
-def _doubt_times(record: Record) -> Iterator[str]:
-    """Name gaps, jitter and equal times, and how spectra deal with them."""
-    if record.same_time:
-        yield (
-            f"{_samples(record.same_time)} the same time as the one before: such samples are "
-            "spread evenly up to the next time."
-        )
-    grid = even_grid(record.time)
-    if grid is None or grid.exact:
-        return
-    if not grid.serves:
-        yield (
-            f"Neither hum nor a fast oscillation can be found: {why_not(grid)}. Cycles with a gap "
-            "of a quarter of their period are left out."
-        )
-        return
-    if grid.coarse:
-        yield (
-            "The samples stand at random times: for spectra, and to find hum, the force is "
-            f"interpolated by straight lines at even times, {in_words(grid.step, 's')} apart. An "
-            f"oscillation of more than {in_words(0.25 / grid.step, 'Hz')} may not be seen."
-        )
-        return
-    filled = "For spectra, and to find hum, straight lines lead over them"
-    missing, off = int(np.count_nonzero(grid.missing)), int(np.count_nonzero(grid.off_grid))
-    if missing:
-        longest = in_words(float(np.diff(record.time).max()), "s")
-        gaps = (
-            f"in {grid.gaps} gaps of up to {longest}" if grid.gaps > 1 else f"in one of {longest}"
-        )
-        yield f"{missing} of {grid.size} samples are missing, {gaps}. {filled}."
-    if off:
-        some = f"{off} of {len(record)} samples" if off > 1 else "One sample"
-        weaker = (
-            " An oscillation of a quarter of the sample rate then seems smaller, by up to a fifth, "
-            "and a faster one by more."
-        )
-        yield (
-            f"{some} lie{'s' * (off == 1)} more than a tenth of an interval off even times: for "
-            "spectra, and to find hum, the force is interpolated there by straight lines."
-            f"{weaker if off > FEW_OFF * len(record) else ''}"
-        )
-
-
-def _doubt_repeats(record: Record) -> Iterator[str]:
-    """Doubt a sample rate of which each value is recorded several times."""
-    lasts = np.diff(np.flatnonzero(np.diff(record.force, prepend=np.nan) != 0.0))[1:]
-    if len(lasts) < ENOUGH_VALUES or lasts.max() < 2 or np.ptp(lasts) > 1 or lasts.min() < 2:
-        return
-    times = int(np.median(lasts))
-    yield (
-        f"Each value is recorded {times} times: the sensor gives {record.sample_rate / times:.3g} "
-        f"values a second, fewer than the record has. Analyse time[::{times}] and force[::{times}]."
-    )
-
-
-def _samples(count: int) -> str:
-    return f"{count} samples have" if count > 1 else "One sample has"
-
-
 def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
     """Doubt a vibration at the mains frequency: nothing distinguishes it from hum."""
     if kind != HARMONIC:
@@ -234,56 +176,6 @@ def _doubt_clipping(record: Record) -> Iterator[str]:
         yield (
             f"The force stays at exactly {in_words(value, 'N')} for up to {longest} samples, its "
             f"{name} value: if that is the end of the load cell's range, {then}."
-        )
-
-
-def _doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt one mean over cycles of which the later have another period than the earlier."""
-    period = cycles["period"].values
-    k = change_of_period(period)
-    if k is None:
-        return
-    at = in_words(float(cycles["start"].values[k]), "s")
-    first, second = (in_words(float(np.median(part)), "s") for part in (period[:k], period[k:]))
-    yield (
-        f"From {at} on the cycles take {second}, before {first}: if the drive or the load changed "
-        "there, analyse the two parts by themselves; means over both mean little."
-    )
-
-
-def _doubt_longest_cycle(cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt means over cycles of which one takes far longer than the others, as in a pause."""
-    period = cycles["period"].values
-    if len(period) < FEWEST_CYCLES:
-        return
-    low, middle, high = np.percentile(period, (10.0, 50.0, 90.0))
-    longest = float(period.max())
-    if longest < PAUSED * middle or longest - middle < BEYOND * (high - low):
-        return
-    at = in_words(float(cycles["start"].values[period.argmax()]), "s")
-    yield (
-        f"The cycle from {at} on takes {in_words(longest, 's')}, {longest / middle:.2g} times the "
-        f"median, {in_words(float(middle), 's')}: if the drive paused, analyse the parts before "
-        "and after by themselves; means over all cycles, such as of period and creep, mean little."
-    )
-
-
-def _doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
-    """Name long parts of a record without cycles, before the first or after the last of them."""
-    if not cycles.sizes["cycle"]:
-        return
-    least = max(QUIET * float(cycles["period"].max()), QUIET_SHARE * record.duration)
-    first, last = float(cycles["start"][0]), float(cycles["trough_time"][-1])
-    parts = {}
-    if first - record.time[0] > least and friction.break_away is None:
-        parts[f"Before {in_words(first, 's')}"] = record.time <= first
-    if record.time[-1] - last > least:
-        parts[f"After {in_words(last, 's')}"] = record.time >= last
-    for when, inside in parts.items():
-        lasts = in_words(float(np.ptp(record.time[inside])), "s")
-        yield (
-            f"{when} the force has no such cycles, for {lasts}: the report is of the cycles. "
-            "Analyse that part by itself."
         )
 
 
@@ -343,33 +235,6 @@ def _remedy_of_mass(ratio: float) -> str:
     if THOUSAND * 1e-6 < ratio < 1e-6 / THOUSAND:
         return "is the time in milliseconds? Give time_unit='ms'; or check mass and stiffness"
     return "check mass and stiffness"
-
-
-def _usual_fall(cycles: xr.Dataset) -> float:
-    """Return how long a fall of the force takes, s; infinite without cycles."""
-    falls = cycles["trough_time"].values - cycles["peak_time"].values
-    return float(np.median(falls)) if len(falls) else inf
-
-
-def _coarse(record: Record, cycles: xr.Dataset) -> Iterator[str]:
-    fall = _usual_fall(cycles)
-    samples = fall * record.sample_rate
-    if samples < FEW:
-        yield (
-            f"A fall of the force takes {samples:.1f} samples: peaks and troughs are cut off. "
-            f"Sample at {in_words(10.0 / max(fall, 1.0 / record.sample_rate), 'Hz')} or more."
-        )
-
-
-def _smear(record: Record, cycles: xr.Dataset) -> Iterator[str]:
-    sensor, fall = (record.sensors or {}).get("force"), _usual_fall(cycles)
-    if sensor is not None and fall * sensor.cut_off < SHARP:
-        yield (
-            f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
-            f"slower than {in_words(sensor.cut_off, 'Hz')}: drops, slip speeds and the creep just "
-            "before a slip are those of the smeared force. "
-            f"Filter at {in_words(2.0 * SHARP / fall, 'Hz')} or more."
-        )
 
 
 def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:

@@ -1,0 +1,109 @@
+"""Doubts about what the samples of a record show."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import inf
+
+import numpy as np
+
+from stiction.analysis.motion.metadata import FEW
+from stiction.analysis.record import Record
+from stiction.analysis.signals.even_grid import even_grid, why_not
+from stiction.arrays import xr
+from stiction.text.units import in_words
+
+ENOUGH_VALUES = 16  # that are all repeated as often
+FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
+# Periods of the cut-off in a fall of the force: with more, creep before a slip comes out to a tenth
+# or two, drops to 0.3 %; with one, drops to 7 % and slip speeds to a third (Butterworth, order 4)
+SHARP = 5.0
+
+
+def doubt_times(record: Record) -> Iterator[str]:
+    """Name gaps, jitter and equal times, and how spectra deal with them."""
+    if record.same_time:
+        yield (
+            f"{_samples(record.same_time)} the same time as the one before: such samples are "
+            "spread evenly up to the next time."
+        )
+    grid = even_grid(record.time)
+    if grid is None or grid.exact:
+        return
+    if not grid.serves:
+        yield (
+            f"Neither hum nor a fast oscillation can be found: {why_not(grid)}. Cycles with a gap "
+            "of a quarter of their period are left out."
+        )
+        return
+    if grid.coarse:
+        yield (
+            "The samples stand at random times: for spectra, and to find hum, the force is "
+            f"interpolated by straight lines at even times, {in_words(grid.step, 's')} apart. An "
+            f"oscillation of more than {in_words(0.25 / grid.step, 'Hz')} may not be seen."
+        )
+        return
+    filled = "For spectra, and to find hum, straight lines lead over them"
+    missing, off = int(np.count_nonzero(grid.missing)), int(np.count_nonzero(grid.off_grid))
+    if missing:
+        longest = in_words(float(np.diff(record.time).max()), "s")
+        gaps = (
+            f"in {grid.gaps} gaps of up to {longest}" if grid.gaps > 1 else f"in one of {longest}"
+        )
+        yield f"{missing} of {grid.size} samples are missing, {gaps}. {filled}."
+    if off:
+        some = f"{off} of {len(record)} samples" if off > 1 else "One sample"
+        weaker = (
+            " An oscillation of a quarter of the sample rate then seems smaller, by up to a fifth, "
+            "and a faster one by more."
+        )
+        yield (
+            f"{some} lie{'s' * (off == 1)} more than a tenth of an interval off even times: for "
+            "spectra, and to find hum, the force is interpolated there by straight lines."
+            f"{weaker if off > FEW_OFF * len(record) else ''}"
+        )
+
+
+def doubt_repeats(record: Record) -> Iterator[str]:
+    """Doubt a sample rate of which each value is recorded several times."""
+    lasts = np.diff(np.flatnonzero(np.diff(record.force, prepend=np.nan) != 0.0))[1:]
+    if len(lasts) < ENOUGH_VALUES or lasts.max() < 2 or np.ptp(lasts) > 1 or lasts.min() < 2:
+        return
+    times = int(np.median(lasts))
+    yield (
+        f"Each value is recorded {times} times: the sensor gives {record.sample_rate / times:.3g} "
+        f"values a second, fewer than the record has. Analyse time[::{times}] and force[::{times}]."
+    )
+
+
+def _samples(count: int) -> str:
+    return f"{count} samples have" if count > 1 else "One sample has"
+
+
+def _usual_fall(cycles: xr.Dataset) -> float:
+    """Return how long a fall of the force takes, s; infinite without cycles."""
+    falls = cycles["trough_time"].values - cycles["peak_time"].values
+    return float(np.median(falls)) if len(falls) else inf
+
+
+def doubt_few_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt falls of the force of few samples."""
+    fall = _usual_fall(cycles)
+    samples = fall * record.sample_rate
+    if samples < FEW:
+        yield (
+            f"A fall of the force takes {samples:.1f} samples: peaks and troughs are cut off. "
+            f"Sample at {in_words(10.0 / max(fall, 1.0 / record.sample_rate), 'Hz')} or more."
+        )
+
+
+def doubt_filter(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt falls of the force that are quicker than what a stated filter passes."""
+    sensor, fall = (record.sensors or {}).get("force"), _usual_fall(cycles)
+    if sensor is not None and fall * sensor.cut_off < SHARP:
+        yield (
+            f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
+            f"slower than {in_words(sensor.cut_off, 'Hz')}: drops, slip speeds and the creep just "
+            "before a slip are those of the smeared force. "
+            f"Filter at {in_words(2.0 * SHARP / fall, 'Hz')} or more."
+        )
