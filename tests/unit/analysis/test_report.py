@@ -4,6 +4,7 @@ from math import degrees
 
 import numpy as np
 import pytest
+from tests.drawn import inside
 
 import stiction as st
 from stiction.analysis.creep.findings import calibrate
@@ -268,3 +269,23 @@ def test_a_mass_that_rests_throughout_has_no_figure_of_creep() -> None:
     run = st.simulate(RIG.replace(friction=st.Coulomb(mu_0=0.9)), "20 ms", sample_rate="10 kHz")
     assert run.sticks.sizes["stick"] == 1
     assert "creep" not in figures(st.analyse(run))
+
+
+NOISY = inside(24, (3e3, 2e4), (12.0, 60.0), (0.5, 4.0), (0.0, 0.4))
+
+
+@pytest.mark.parametrize(("samples", "period", "noise", "loads"), NOISY)
+def test_the_motion_agrees_with_the_oscillation_in_noise(samples, period, noise, loads):
+    """A vibration that begins with sliding, in noise of half its amplitude to four times that."""
+    number = np.arange(int(samples))
+    force = 10.0 * np.minimum(number / (loads * samples + 1.0), 1.0)
+    swings = np.sin(2.0 * np.pi * number / period) * (force == 10.0)
+    scatter = noise * np.random.default_rng(1).standard_normal(len(number))
+    found = st.analyse(st.Record(time=1e-3 * number, force=force + swings + scatter))
+    said = str(found).split("Motion\n")[1].split("\n")[0]
+    seen = found.oscillation["frequency"].values
+    if np.isfinite(seen).mean() > 0.5 and abs(1e3 / period / 50.0 % 1.0) > 0.01:
+        assert "swings" in said or "vibrates" in said or found.cycles.sizes["cycle"]
+    if "hidden" in found.regime.evidence:
+        assert 1e-3 * period * found.regime.evidence["hidden"] == pytest.approx(1.0, rel=0.01)
+        assert found.regime.evidence["hidden_height"] == pytest.approx(2.0, rel=0.4)

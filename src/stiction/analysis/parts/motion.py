@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from stiction.analysis.motion.doubts.warnings import turns_round
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -17,7 +19,9 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
 )
 from stiction.analysis.motion.rest import comes_to_rest, stuck_share
+from stiction.analysis.oscillation import stands_out
 from stiction.analysis.parts.wording import number
+from stiction.analysis.signals.hum import of_mains
 from stiction.recording.units import with_other_sign
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
@@ -154,8 +158,8 @@ def _describe_course(found: Analysis) -> str:
     slides = found.friction.kinetic
     at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
     plain = {
-        STEADY: _slides(found.regime.evidence, at),
-        SETTLING: _settles(found, at),
+        STEADY: f"{_slides(found.regime.evidence, at)}{_besides(found)}",
+        SETTLING: f"{_settles(found, at)}{_besides(found)}",
         STUCK: "The mass does not slip, it rests or creeps: the force only rises."
         if found.regime.runner_up != STEADY
         else "The force only rises: either the mass sticks, or it slides and the force drifts.",
@@ -227,6 +231,27 @@ def _slides(evidence: dict[str, float], at: str) -> str:
             f"{in_words(fall, 'N')}: a single slip, or a knock."
         )
     return f"The mass slides steadily{at}."
+
+
+def _besides(found: Analysis) -> str:
+    """Return at what frequency a force swings beside its course, if its spectrum shows it."""
+    evidence, seen = found.regime.evidence, found.oscillation
+    if "hidden" in evidence:
+        swings, height = in_words(evidence["hidden"], "Hz"), evidence["hidden_height"]
+        return (
+            f" Besides, the force swings at {swings}, by {in_words(height, 'N')} from crest to "
+            "trough, which noise hides."
+        )
+    if isinstance(found.source, Trajectory) or seen is None or not stands_out(seen):
+        return ""
+    frequency, share = seen["frequency"].values, np.isfinite(seen["frequency"].values)
+    middle, height = float(np.median(frequency[share])), float(np.median(seen["amplitude"][share]))
+    if of_mains(middle):
+        return ""
+    return (
+        f" Besides, in {percent(float(share.mean()))} of the time the force swings at about "
+        f"{in_words(middle, 'Hz')}, by {in_words(2.0 * height, 'N')} from crest to trough."
+    )
 
 
 def _each_time(found: Analysis) -> str:

@@ -7,7 +7,13 @@ import numpy as np
 from stiction.analysis.motion.course import UNLOADED, course, lone_fall
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.disturbance import RESIDUE
-from stiction.analysis.motion.regime.band import EIGHTHS, SUSPECTED, highest_hump, remaining
+from stiction.analysis.motion.regime.band import (
+    EIGHTHS,
+    SUSPECTED,
+    Hump,
+    highest_hump,
+    remaining,
+)
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -20,7 +26,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid
-from stiction.analysis.signals.hum import beat_frequency, narrow_lines, of_mains
+from stiction.analysis.signals.hum import Line, beat_frequency, narrow_lines, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.analysis.signals.turning_points import CLEAR
 
@@ -35,6 +41,9 @@ SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the dr
 # Of the scatter about the course: swings that stand out in the spectrum may be stick-slip if they
 # are as high, which is 3 % of the variance
 HIDDEN = 0.5
+# Of the power of a hump: a line of so much is one vibration, in noise. In fewer periods an
+# irregular vibration has such a line, too
+MOST, MANY_PERIODS = 0.5, 100.0
 RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
 
 
@@ -65,10 +74,14 @@ def by_course(record: Record, found: Swings) -> Regime:
         evidence |= {"hump": hump.frequency, "hump_height": hump.height}
         if beat := beat_frequency(record.time, record.force):
             return Regime(HARMONIC, vibrates, evidence | {"beat": beat}, STEADY)
+        line = _hidden_line(record, begin, least)
+        if line is not None and _is_whole(line, hump, record):
+            return Regime(UNDETERMINED, 0.0, evidence | _as_evidence(line))
         return Regime(IRREGULAR, vibrates, evidence, STEADY)
     if late <= SETTLED:
         sure = (1.0 - late / (2.0 * SETTLED)) * (1.0 - vibrates)
-        return Regime(SETTLING, sure, evidence | {"late_share": late})
+        settles = Regime(SETTLING, sure, evidence | {"late_share": late})
+        return _unless_hidden(record, begin, least, settles)
     if slides:
         # the nearer to cycles it came, the less sure it is that there are none
         sure = (1.0 - 0.5 * found.clearness / CLEAR) * (1.0 - vibrates)
@@ -76,7 +89,7 @@ def by_course(record: Record, found: Swings) -> Regime:
         vibrates = few.likelihood if few.rms > least else 0.0
         if vibrates > 0.5:
             return Regime(UNDETERMINED, 0.0, evidence | {"few_periods": few.frequency})
-        return _steady(record, found, sure * (1.0 - vibrates), evidence)
+        return _steady(record, found, least, sure * (1.0 - vibrates), evidence)
     kept = way.late_rate / way.early_rate
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept
@@ -88,22 +101,57 @@ def by_course(record: Record, found: Swings) -> Regime:
     return Regime(UNDETERMINED, 0.0, evidence)
 
 
-def _steady(record: Record, found: Swings, sure: float, evidence: dict[str, float]) -> Regime:
+def _steady(
+    record: Record, found: Swings, ripple: float, sure: float, evidence: dict[str, float]
+) -> Regime:
     """Return steady sliding, or as likely stick-slip whose cycles are longer than the record.
 
     Nothing is determined if swings stand out in the spectrum that noise hides.
     """
     if record.slip_speed is not None:
         return Regime(STEADY, sure, evidence)
-    least = max(SMOOTH * evidence["scatter"], VARIES * abs(float(np.mean(found.force))))
-    if evidence["span"] > least:
+    wanders = max(SMOOTH * evidence["scatter"], VARIES * abs(float(np.mean(found.force))))
+    if evidence["span"] > wanders:
         return Regime(STEADY, 0.5 * sure, evidence | {"wanders": evidence["span"]}, STICK_SLIP)
-    lines = narrow_lines(even_grid(record.time), record.force)
-    line = next((line for line in lines if not of_mains(line.frequency)), None)
-    if line is not None:
-        evidence |= {"hidden": line.frequency, "hidden_height": line.height}
-        if line.height > HIDDEN * evidence["scatter"]:
-            return Regime(UNDETERMINED, 0.0, evidence)
-        return Regime(STEADY, sure * (1.0 - line.height / evidence["scatter"]), evidence)
     fall = lone_fall(record.time, found.force)
-    return Regime(STEADY, sure, evidence | dict(zip(LONE_FALL, fall or (), strict=False)))
+    steady = Regime(STEADY, sure, evidence | dict(zip(LONE_FALL, fall or (), strict=False)))
+    return _unless_hidden(record, 0, ripple, steady)
+
+
+def _unless_hidden(record: Record, begin: int, least: float, seen: Regime) -> Regime:
+    """Return a kind of motion, less sure if swings stand out in the spectrum from a sample on.
+
+    Nothing is determined if they are so high that they may be what the mass does.
+    """
+    line = None if record.slip_speed is not None else _hidden_line(record, begin, least)
+    if line is None:
+        return seen
+    scatter = course(record.time[begin:], record.force[begin:]).scatter
+    evidence = seen.evidence | _as_evidence(line)
+    if line.height > HIDDEN * scatter:
+        return Regime(UNDETERMINED, 0.0, evidence)
+    sure = seen.confidence * (1.0 - line.height / scatter)
+    return Regime(seen.kind, sure, evidence, seen.runner_up)
+
+
+def _hidden_line(record: Record, begin: int, least: float) -> Line | None:
+    """Return the clearest lasting line in a force from a sample on, other than the mains'.
+
+    Its root mean square is `least` (N) or more.
+    """
+    time, force = record.time[begin:], record.force[begin:]
+    for line in narrow_lines(even_grid(time), force):
+        lasts = not of_mains(line.frequency) and line.height > 8.0**0.5 * least
+        if lasts and remaining(time, line.values, line.frequency) == 1.0:
+            return line
+    return None
+
+
+def _is_whole(line: Line, hump: Hump, record: Record) -> bool:
+    """Return whether a line is the whole vibration of a hump, in a record that can tell."""
+    known = line.frequency * record.duration > MANY_PERIODS
+    return known and line.height**2 > MOST * 8.0 * hump.rms**2
+
+
+def _as_evidence(line: Line) -> dict[str, float]:
+    return {"hidden": line.frequency, "hidden_height": line.height}
