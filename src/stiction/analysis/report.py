@@ -23,7 +23,12 @@ from stiction.analysis.motion.doubts.warnings import (
     warnings,
 )
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
-from stiction.analysis.motion.metadata import LOADING_RATE, StatedQuantity, compare_metadata
+from stiction.analysis.motion.metadata import (
+    LOADING_RATE,
+    StatedQuantity,
+    compare_metadata,
+    other_velocity,
+)
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import (
@@ -179,6 +184,10 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     doubts = (
         warnings(record, regime.kind, cycles, friction, stated) if run is None else unsteady(run)
     ) + subtracted_lines(found.lines)
+    other = other_velocity(stated, cycles["start"].values)
+    if other.any() and record.position is None:
+        given = {name: cycles[name].where(~other) for name in BY_STIFFNESS}
+        cycles, sticking = cycles.assign(given), sticking.isel(cycle=~other)
     cycles = _blank_meaningless(record, cycles, regime, stated, missing)
     if turns and cycles.sizes["cycle"]:
         missing["mu_kinetic"] = turns

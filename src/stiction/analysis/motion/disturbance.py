@@ -29,6 +29,7 @@ PARTS = 400  # means of a record in which its first loading is sought
 LOADED = 0.5  # of its rise: until then the mass goes at half the drive's speed or less
 SLIDES = 0.5  # of the rate of loading: afterwards the force rises more slowly, if at all
 PERIODS = 5.0  # of the line while the spring is loaded, and afterwards
+ELSEWHERE = 3.0  # times as large as beside the swings
 RESIDUE = 0.05  # of a line's height: so much of it may be left where it was subtracted
 AS_LARGE = 0.6  # the smaller amplitude over the larger one, while it is loaded and afterwards
 
@@ -44,11 +45,24 @@ def is_beside(line: Line, table: CycleTable, record: Record) -> bool:
     period, drop, rise = (table[name] for name in ("period", "drop", "rise_share"))
     motion = (drop > HIGHER * line.height) | (rest_share(rise) >= STICKING)
     aside = (period * line.frequency > SLOWER) & motion
-    if len(aside) < 2 or np.median(aside) < 1.0:
+    if len(aside) < 2 or np.median(aside) < 1.0 or _is_elsewhere(line, table, record):
         return False
     if of_mains(line.frequency) or _sticks(table):
         return True
     return not _is_own(line, record) and irregularity(period, drop) <= 0.5
+
+
+def _is_elsewhere(line: Line, table: CycleTable, record: Record) -> bool:
+    """Return whether a line is much larger where the swings without it have not begun, or ended.
+
+    Then it is the motion in that part, as after a step of the velocity.
+    """
+    first, last = np.searchsorted(record.time, [table["start"][0], table["trough_time"][-1]])
+    during, other = line.values[first:last], np.delete(line.values, np.s_[first:last])
+    least = PERIODS / line.frequency / record.duration * len(record)
+    if len(other) < least or len(during) < least:
+        return False
+    return float(np.std(other)) > ELSEWHERE * float(np.std(during))
 
 
 def _is_own(line: Line, record: Record) -> bool:

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from math import isfinite, nan, pi
+from collections.abc import Sequence
+from math import inf, isfinite, nan, pi
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
+from stiction.analysis.motion.course import change_of_period
 from stiction.analysis.motion.drift import find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
 from stiction.arrays import Floats, xr
+from stiction.text.units import in_words
 
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
 LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
@@ -33,7 +37,8 @@ class StatedQuantity(NamedTuple):
 
     NaN where it is not known. The error is that of the scatter; a value that is found in a rough
     way, such as k/m by the duration of slips, may be farther off than that. `low` and `high` bound
-    the ratio of both where they agree.
+    the ratio of both where they agree. Where the cycles change once, it is of some of them, a
+    `part` of the record in words: those that start from `begin` on and before `end`, s.
     """
 
     quantity: str
@@ -44,6 +49,14 @@ class StatedQuantity(NamedTuple):
     low: float
     high: float
     how: str
+    part: str = ""
+    begin: float = -inf
+    end: float = inf
+
+    @property
+    def name(self) -> str:
+        """The quantity, and the part of the record."""
+        return f"{self.quantity} {self.part}" if self.part else self.quantity
 
     @property
     def ratio(self) -> float:
@@ -70,7 +83,7 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Sta
     """
     found = (
         _stiffness_over_mass(record, kind, cycles),
-        _loading_rate(record, kind, cycles),
+        *_loading_rates(record, kind, cycles),
         _drive_velocity(record),
         _normal_load(record),
         _transverse_frequency(record),
@@ -80,14 +93,48 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Sta
     return tuple(each for each in found if each is not None)
 
 
-def _loading_rate(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
-    """Compare the rate of loading while the mass sticks with stiffness times drive velocity."""
+def _loading_rates(record: Record, kind: str, cycles: xr.Dataset) -> list[StatedQuantity]:
+    """Compare the rate of loading while the mass sticks with stiffness times drive velocity.
+
+    Where the cycles change once, as after a step of the velocity, each part has its own rate. If
+    one of them is as stated, nothing is stated of the other.
+    """
     if kind not in (STICK_SLIP, TRANSITIONAL):
-        return None
-    slopes = cycles["stick_slope"].values
+        return []
+    slopes, starts = cycles["stick_slope"].values, cycles["start"].values
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
-    seen, error = float(np.median(slopes)), _error(slopes)
-    return StatedQuantity(LOADING_RATE, "N/s", seen, error, stated, SLOWER, FASTER, BY_RISE)
+    whole = StatedQuantity(LOADING_RATE, "N/s", *_typical(slopes), stated, SLOWER, FASTER, BY_RISE)
+    k = change_of_period(cycles["period"].values)
+    if k is None:
+        return [whole]
+    (early, early_error), (late, late_error) = _typical(slopes[:k]), _typical(slopes[k:])
+    at, when = float(starts[k]), in_words(float(starts[k]), "s")
+    parts = [
+        whole._replace(found=early, error=early_error, part=f"until {when}", end=at),
+        whole._replace(found=late, error=late_error, part=f"from {when} on", begin=at),
+    ]
+    if parts[0].agrees == parts[1].agrees:
+        return parts
+    return [each if each.agrees else each._replace(stated=nan) for each in parts]
+
+
+def _typical(values: Floats) -> tuple[float, float]:
+    """Return the median of some values, and its error."""
+    return float(np.median(values)), _error(values)
+
+
+def other_velocity(stated: Sequence[StatedQuantity], start: Floats) -> NDArray[np.bool_]:
+    """Return which cycles, by their starts (s), are loaded at another rate than the stated one.
+
+    None are, if no cycles are loaded at the stated rate.
+    """
+    rates = [each for each in stated if each.quantity == LOADING_RATE]
+    found = np.zeros(len(start), bool)
+    if any(each.agrees for each in rates):
+        for each in rates:
+            if not each.agrees:
+                found |= (start >= each.begin) & (start < each.end)
+    return found
 
 
 def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:

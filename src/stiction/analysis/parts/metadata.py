@@ -52,7 +52,8 @@ def section(found: Analysis) -> Section | None:
         else f"The record does not contradict the {'stated value' if len(known) == 1 else those}."
     ]
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
-    lines += [ROUGH[x.how] for x in its if x.how in ROUGH and verdict(x) in (ALLOWED, "")]
+    rough = [x.how for x in its if verdict(x) in ((ALLOWED,) if x.part else (ALLOWED, ""))]
+    lines += [ROUGH[how] for how in dict.fromkeys(rough) if how in ROUGH]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
 
@@ -81,7 +82,7 @@ def _sentence(each: StatedQuantity) -> str:
 def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
     return [
         (
-            each.quantity,
+            each.name,
             with_error(each.found, each.error, each.unit),
             in_words(each.stated, each.unit) if isfinite(each.stated) else "",
             verdict(each),
@@ -96,7 +97,7 @@ def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     columns = {name: ("quantity", [getattr(each, name) for each in its]) for name in NUMBERS}
     texts = {name: ("quantity", [getattr(each, name) for each in its]) for name in ("unit", "how")}
-    rows = {"quantity": ("quantity", [each.quantity for each in its])}
+    rows = {"quantity": ("quantity", [each.name for each in its])}
     return {"metadata": xr.Dataset({**columns, **texts}, rows) if its else None}
 
 
@@ -105,7 +106,7 @@ def numbers(found: Analysis) -> dict[str, Any]:
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     return {
         "metadata": {
-            each.quantity: {name: number(getattr(each, name)) for name in NUMBERS}
+            each.name: {name: number(getattr(each, name)) for name in NUMBERS}
             | {"unit": each.unit, "agrees": each.agrees, "by": each.how}
             for each in its
         }

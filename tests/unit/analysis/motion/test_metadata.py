@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from tests.drawn import inside
 from tests.measured import read_measured
 
 import stiction as st
@@ -181,3 +182,41 @@ def test_a_channel_of_the_load_is_not_confirmed_by_its_own_mean(tmp_path):
         (load,) = (x for x in st.analyse(record).parts["metadata"] if x.quantity == "normal load")
         assert load.stated == 20.0
         assert load.agrees is False
+
+
+def steps_of_velocity(ratio, share, noise):
+    """Return time and force of stick-slip at 1 mm/s, then at so many times that, on 1 kN/m."""
+    rates = np.where(np.arange(60) < 60 * share, 1.0, ratio)  # N/s
+    lasts = np.stack([0.5 / rates, np.full(60, 0.04)], axis=1).ravel()
+    corners = np.concatenate([[0.0], np.cumsum(lasts)])
+    time = np.arange(0.0, corners[-1], 4e-3)
+    force = np.interp(time, corners, np.append(np.tile([1.0, 1.5], 60), 1.0))
+    return time, force + noise * np.random.default_rng(1).standard_normal(len(time))
+
+
+STEPS = inside(8, (-1.0, 1.0), (0.25, 0.75), (0.0, 0.01))
+
+
+@pytest.mark.parametrize("stated", ["first", "last", "neither"])
+@pytest.mark.parametrize(("decade", "share", "noise"), STEPS)
+def test_a_step_of_the_velocity_is_doubted_by_its_parts(decade, share, noise, stated):
+    """What is stated of one part contradicts nothing, and is not used in the other."""
+    ratio = 10**decade if abs(decade) > 0.35 else 3.0
+    time, force = steps_of_velocity(ratio, share, noise)
+    speed = {"first": 1e-3, "last": 1e-3 * ratio, "neither": 5e-3 * max(1.0, ratio)}[stated]
+    found = st.analyse(st.Record(time=time, force=force, stiffness=1e3, drive_velocity=speed))
+    rates = [each for each in found.parts["metadata"] if "velocity" in each.quantity]
+    assert len(rates) == 2
+    assert [each.found for each in rates] == pytest.approx([1.0, ratio], rel=0.02)
+    contradicts = [each for each in found.warnings if "check stiffness and drive" in each]
+    slips = found.cycles["slip_distance"].values
+    if stated == "neither":
+        assert len(contradicts) == 2
+        assert np.isnan(slips).all()
+        return
+    assert contradicts == []
+    assert "contradict the record" not in str(found)
+    own = (found.cycles["start"].values < rates[0].end) == (stated == "first")
+    assert np.isfinite(slips[own]).all()
+    assert np.isnan(slips[~own]).all()
+    assert any("of the former only" in each for each in found.warnings)

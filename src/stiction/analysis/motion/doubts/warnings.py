@@ -73,7 +73,7 @@ def warnings(
         *doubt_longest_cycle(cycles),
         *doubt_highest_fall(cycles),
         *doubt_quiet(record, friction, cycles),
-        *_loading_too_fast(wrong.get(LOADING_RATE)),
+        *_loading([each for each in stated if each.quantity == LOADING_RATE]),
         *_mass(wrong.get(SWING), kind),
         *_mains(kind, cycles),
         *doubt_few_samples(record, cycles),
@@ -198,13 +198,26 @@ def _implausible_friction(record: Record, friction: Friction, cycles: xr.Dataset
     yield f"A friction coefficient of {mu:.3g} is implausible: {its}check the normal load, {load}."
 
 
-def _loading_too_fast(its: StatedQuantity | None) -> Iterator[str]:
-    if its is None:
+def _loading(its: Sequence[StatedQuantity]) -> Iterator[str]:
+    """Doubt the rate of loading as stated, by the whole record or by the parts of a change."""
+    if len(its) == 2 and any(each.agrees for each in its):
+        good, other = sorted(its, key=lambda each: not each.agrees)
+        if other.agrees is None:
+            yield (
+                f"{good.part.capitalize()} the force rises with stiffness times drive velocity as "
+                f"stated, {in_words(good.stated, 'N/s')}; {other.part} at "
+                f"{in_words(other.found, 'N/s')}, {other.found / good.stated:.3g} times that: "
+                "what needs the velocity is given of the former only. Analyse the latter by "
+                "itself, with its own velocity."
+            )
         return
-    yield (
-        f"The force rises at {in_words(its.found, 'N/s')}, {its.ratio:.3g} times stiffness times "
-        f"drive velocity as stated, {in_words(its.stated, 'N/s')}: {_remedy(its.ratio)}."
-    )
+    for each in its:
+        if each.agrees is False:
+            yield (
+                f"{f'{each.part} the'.strip().capitalize()} force rises at "
+                f"{in_words(each.found, 'N/s')}, {each.ratio:.3g} times stiffness times "
+                f"drive velocity as stated, {in_words(each.stated, 'N/s')}: {_remedy(each.ratio)}."
+            )
 
 
 def _remedy(ratio: float) -> str:
