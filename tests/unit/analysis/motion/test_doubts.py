@@ -469,3 +469,31 @@ def test_one_giant_fall_is_named_and_leaves_all_other_cycles(cycles, decades, re
     assert len(said) == 1
     fell = float(re.search(r"falls by ([\d.]+) N", said[0])[1])
     assert fell == pytest.approx(10**decades, abs=2.0)
+
+
+def slips_of_few_samples(samples, place, rests):
+    """Return a record of slips that take so many samples, and their largest slip speed, m/s."""
+    step, rise = 1.0 / samples, rests * samples
+    time = (np.arange(30 * int(rise + samples)) + place) * step
+    phase = time % (rise * step + 1.0)
+    slipped = np.clip(phase - rise * step, 0.0, 1.0)
+    force = np.where(slipped > 0.0, 0.5 * rise * step * (1.0 + np.cos(np.pi * slipped)), phase)
+    record = st.Record(time=time, force=force, stiffness=1e3, drive_velocity=1e-3)
+    return record, 1e-3 * (1.0 + 0.5 * np.pi * rise * step)
+
+
+@pytest.mark.parametrize(
+    ("samples", "place", "rests"), inside(24, (0.6, 12.0), (0.0, 1.0), (6.0, 30.0))
+)
+def test_slip_speeds_of_few_samples_are_named_with_their_error(samples, place, rests):
+    record, true = slips_of_few_samples(samples, place, rests)
+    found = st.analyse(record)
+    low = 1.0 - float(found.cycles["peak_slip_speed"].mean()) / true
+    said = " ".join(found.warnings)
+    if match := re.search(r"slip speeds are too low by about ([\d.]+) %", said):
+        assert 0.01 * float(match[1]) == pytest.approx(low, abs=0.12)
+    elif "slip speeds are lower bounds" in said:
+        assert low > 0.3
+    else:
+        assert low < 0.05
+    assert ("samples:" in said) == (samples < 5.5) or 4.5 < samples < 6.5

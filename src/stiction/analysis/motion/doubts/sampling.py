@@ -11,9 +11,15 @@ from stiction.analysis.motion.metadata import FEW
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.arrays import xr
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 ENOUGH_VALUES = 16  # that are all repeated as often
+# Samples in a fall as they are seen, about one more than it lasts, and by which share the largest
+# rate of half a sine between straight lines is too low that cubics through five samples have; the
+# mean over all places of the samples
+SEEN_SAMPLES = (2.3, 2.9, 3.4, 3.9, 4.7, 6.0)
+TOO_LOW = (0.50, 0.33, 0.20, 0.10, 0.05, 0.02)
 FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
 # Periods of the cut-off in a fall of the force: with more, creep before a slip comes out to a tenth
 # or two, drops to 0.3 %; with one, drops to 7 % and slip speeds to a third (Butterworth, order 4)
@@ -87,14 +93,26 @@ def _usual_fall(cycles: xr.Dataset) -> float:
 
 
 def doubt_few_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt falls of the force of few samples."""
+    """Doubt falls of the force of few samples, and the slip speeds that they give."""
     fall = _usual_fall(cycles)
     samples = fall * record.sample_rate
-    if samples < FEW:
-        yield (
-            f"A fall of the force takes {samples:.1f} samples: peaks and troughs are cut off. "
-            f"Sample at {in_words(10.0 / max(fall, 1.0 / record.sample_rate), 'Hz')} or more."
-        )
+    if not samples < FEW:
+        return
+    yield (
+        f"A fall of the force takes {samples:.1f} samples: peaks and troughs are cut off"
+        f"{_slow_slips(record, cycles, samples)}. "
+        f"Sample at {in_words(10.0 / max(fall, 1.0 / record.sample_rate), 'Hz')} or more."
+    )
+
+
+def _slow_slips(record: Record, cycles: xr.Dataset, samples: float) -> str:
+    """Return by how much slip speeds are too low that come from so many samples a fall."""
+    if record.slip_speed is not None or not np.isfinite(cycles["peak_slip_speed"].values).any():
+        return ""
+    if samples < SEEN_SAMPLES[0]:
+        return ", and the largest slip speeds are lower bounds: they may be many times as high"
+    low = float(np.interp(samples, SEEN_SAMPLES, TOO_LOW))
+    return f", and the largest slip speeds are too low by about {percent(low)}, as of half a sine"
 
 
 def doubt_filter(record: Record, cycles: xr.Dataset) -> Iterator[str]:
