@@ -192,9 +192,11 @@ def _on_a_wave(found: Analysis) -> str:
     wave = found.regime.evidence.get("wave")
     if wave is None:
         return ""
+    period = found.regime.evidence.get("wave_period")
+    every = f", every {in_words(period, 's')}," if period is not None else ","
     return (
-        f" It does so on a slower wave of {in_words(wave, 'N')} from crest to trough, as of a disc "
-        "that turns askew, or a load that varies."
+        f" It does so on a slower wave of {in_words(wave, 'N')} from crest to trough{every} as of "
+        "a disc that turns askew, or a load that varies."
     )
 
 

@@ -24,6 +24,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
 from stiction.analysis.motion.vibration import COUPLED, drop_spread, irregularity
+from stiction.analysis.motion.wave import regular_wave
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
 from stiction.analysis.signals.robust import median
@@ -219,8 +220,11 @@ def _sizes(found: Swings) -> dict[str, float]:
         evidence["last_over_first"] = grown
     if found.lines:
         evidence["line_taken_off"] = found.lines[0].frequency
-    if found.wave:
-        evidence["wave"] = found.wave
+    wave = regular_wave(found.lasting)
+    if found.wave or wave is not None:
+        evidence["wave"] = found.wave if wave is None else wave.height
+    if wave is not None:
+        evidence["wave_period"] = wave.period
     return evidence
 
 

@@ -61,6 +61,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "line_taken_off": ("a line at {} was subtracted from the force", _frequency),
     "beat": ("two vibrations beat at {}", _frequency),
     "wave": ("a slower wave of {} from crest to trough carries the cycles", _force),
+    "wave_period": ("it comes every {}", _seconds),
     "plateaus": (
         "it stays near its largest or its smallest value for {} of the time, as no vibration does: "
         "the drive goes back and forth, or the load changes in steps",
