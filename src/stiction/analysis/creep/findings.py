@@ -13,10 +13,12 @@ from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.force_curve import misalignment_from_force
 from stiction.analysis.creep.misalignment import Misalignment, fit_misalignment
 from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import xr
 from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError, StictionError
 from stiction.text.quantity_text import percent
+from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 T = TypeVar("T")
@@ -26,6 +28,7 @@ SURE = 2.0  # standard errors
 MISSED = 0.1  # of the creep: Eq. (7) does not describe curves with a larger misfit
 SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by more
 RESTS = 1e-6  # of the drive velocity: slower motion, most of the time, counts as rest
+COARSE = 0.01  # of the force's range: steps that hide creep
 BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: limits of backward creep
 
 
@@ -133,6 +136,12 @@ def _mean(curves: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
     ratio = (record.stiffness or 1.0) / (stated.stiffness or record.stiffness or 1.0)
     most = np.fmax(velocity, V - ratio * (V - velocity))
     backward = np.mean(most < -SURE * np.nan_to_num(error) - BACKWARD * V)
+    step = resolution(record.force)
+    if backward > SOME and step > COARSE * float(np.ptp(record.force)):
+        raise ResultError(
+            f"not determined: the force is recorded in steps of {in_words(step, 'N')}, too coarse "
+            "for creep"
+        )
     if backward > SOME and record.position is None:
         raise ResultError(
             "not determined: the mass would creep against the drive; stiffness and drive velocity "

@@ -15,6 +15,7 @@ from stiction.analysis.motion.regime.kinds import (
     SETTLING,
     STEADY,
     STICK_SLIP,
+    STUCK,
     TRANSITIONAL,
     TRANSVERSE,
     UNDETERMINED,
@@ -104,6 +105,8 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     forces, times, noise = _means(record.force, record.time)
     at, _ = _first_peak(forces, noise)
     break_away, reason = _find_break_away(record, cycles, relative)
+    if kind == STUCK and not regime.runner_up:
+        break_away, reason = None, "the mass does not slip"
     if break_away is None:
         missing["break_away"] = reason
     count, peak, trough = len(cycles), cycles["peak"], cycles["trough"]
@@ -123,6 +126,8 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         kinetic = _over(0.5 * (peak + trough), reduced, load)
     elif comes_to_rest(record.slip_speed):
         missing["kinetic"] = "the mass comes to rest"
+    elif "turns" in regime.evidence:
+        missing["kinetic"] = "it is not determined whether the mass slides"
     elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
         kinetic = _sliding(record, times, at, kind, relative)
     else:

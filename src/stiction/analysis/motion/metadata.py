@@ -13,6 +13,7 @@ from stiction.analysis.motion.course import change_of_period
 from stiction.analysis.motion.drift import find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
+from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
 from stiction.arrays import Floats, xr
 from stiction.text.units import in_words
@@ -147,8 +148,8 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
     if not cycles.sizes["cycle"] or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
     falls = cycles["trough_time"].values - cycles["peak_time"].values
-    if float(np.median(falls)) * record.sample_rate < FEW:
-        return None
+    if float(np.median(falls)) * record.sample_rate < FEW or flat_ends(record.force):
+        return None  # where peaks are cut off, a fall seems to begin too early
     periods, how = cycles["period"].values, BY_SLIPS
     rests = float(np.median(periods)) > RESTED * 2.0 * float(np.median(falls))
     swings = periods if kind == HARMONIC and not rests else 2.0 * falls

@@ -497,3 +497,73 @@ def test_slip_speeds_of_few_samples_are_named_with_their_error(samples, place, r
     else:
         assert low < 0.05
     assert ("samples:" in said) == (samples < 5.5) or 4.5 < samples < 6.5
+
+
+def saw(rises, falls, step=0.02):
+    """Return time and force of stick-slip of 1 N/s that loads and falls for so long in turn, s."""
+    corners = np.concatenate([[0.0], np.cumsum(np.stack([rises, falls], axis=1))])
+    time = np.arange(0.0, corners[-1], step)
+    values = np.append(np.stack([np.zeros(len(rises)), np.ones(len(rises))], axis=1), 0.0)
+    return time, 1.0 + np.interp(time, corners, values)
+
+
+FEW_CYCLES = inside(16, (8.0, 13.0), (4.0, 10.0), (0.0, 0.1), (0.3, 0.7))
+
+
+@pytest.mark.parametrize(("count", "pause", "irregular", "at"), FEW_CYCLES)
+def test_a_pause_between_few_cycles_is_named(count, pause, irregular, at):
+    rises = 1.0 + irregular * np.sin(5.0 * np.arange(int(count)) ** 2)
+    time, force = saw(rises, 0.1 + 0 * rises)
+    regular = st.analyse(st.Record(time=time, force=force))
+    assert not any("the drive paused" in each for each in regular.warnings)
+    rises[int(at * count)] += pause
+    time, force = saw(rises, 0.1 + 0 * rises)
+    found = st.analyse(st.Record(time=time, force=force))
+    assert any("the drive paused" in each for each in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("share", "noise", "mass"), inside(12, (0.6, 0.95), (0.001, 0.01), (0.1, 1.0))
+)
+def test_a_force_that_is_cut_off_contradicts_no_mass(share, noise, mass):
+    """A fall seems to begin where the force reaches the end of the range."""
+    time, force = saw(np.full(10, 1.0), np.full(10, np.pi * (mass / 1e3) ** 0.5), 2e-3)
+    force += noise * np.random.default_rng(1).standard_normal(len(time))
+    cut = np.minimum(force, 1.0 + share)
+    found = st.analyse(
+        st.Record(time=time, force=cut, stiffness=1e3, drive_velocity=1e-3, mass=mass)
+    )
+    assert any("the end of the load cell's range" in each for each in found.warnings)
+    assert not any("check mass" in each for each in found.warnings)
+    assert "stiffness over mass" not in [each.quantity for each in found.parts["metadata"]]
+
+
+@pytest.mark.parametrize(("noise", "lasts"), inside(16, (0.001, 0.01), (0.5, 3.0)))
+def test_a_force_that_only_rises_has_no_break_away(noise, lasts):
+    time = np.arange(0.0, lasts, 2e-3)
+    force = time + noise * np.random.default_rng(1).standard_normal(len(time))
+    found = st.analyse(st.Record(time=time, force=force, stiffness=1e3, drive_velocity=1e-3))
+    assert found.regime.kind == "stuck"
+    assert found.friction.break_away is None
+
+
+def test_a_drive_that_turns_is_no_zero_that_is_off():
+    """Seven turns, of strokes in which the mass slips once or twice."""
+    time = np.arange(0.0, 28.0, 2e-3)
+    place = np.abs((time + 4.0) % 8.0 - 4.0)
+    force = 3.0 * np.sin(np.pi * (place - 2.3) / 4.0)
+    said = " ".join(st.analyse(st.Record(time=time, force=force)).warnings)
+    assert "the zero of the force is off, or its sign" not in said
+
+
+@pytest.mark.parametrize(
+    ("drop", "steps", "noise"), inside(12, (0.5, 3.0), (8.0, 40.0), (0.1, 0.4))
+)
+def test_creep_in_coarse_steps_contradicts_nothing(drop, steps, noise):
+    step = drop / steps
+    time, force = saw(np.full(9, drop), np.full(9, 0.05), 2e-3)
+    force = 1.0 + (force - 1.0) * drop
+    force += noise * step * np.random.default_rng(1).standard_normal(len(time))
+    rig = {"stiffness": 1e3, "drive_velocity": 1e-3}
+    found = st.analyse(st.Record(time=time, force=step * np.round(force / step), **rig))
+    assert "contradict this force" not in found.missing.get("creep", "")

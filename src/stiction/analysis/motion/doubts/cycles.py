@@ -9,14 +9,14 @@ import numpy as np
 from stiction.analysis.motion.course import QUIET, change_of_period
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.record import Record
-from stiction.arrays import xr
+from stiction.arrays import Floats, xr
 from stiction.text.units import in_words
 
 FAR_ABOVE = 5.0  # times the median of the falls
 QUIET_SHARE = 0.15  # of the record
 # A cycle in which the drive may have paused: over the median period, and over the span of periods,
 # a tenth left out at each end; of measured stick-slip without a pause it comes to 1.4 spans
-PAUSED, BEYOND, FEWEST_CYCLES = 3.0, 5.0, 10
+PAUSED, BEYOND, FEWEST_CYCLES, MANY_CYCLES = 3.0, 5.0, 5, 10
 
 
 def doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
@@ -36,12 +36,9 @@ def doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
 def doubt_longest_cycle(cycles: xr.Dataset) -> Iterator[str]:
     """Doubt means over cycles of which one takes far longer than the others, as in a pause."""
     period = cycles["period"].values
-    if len(period) < FEWEST_CYCLES:
+    if not _stands_out(period, PAUSED):
         return
-    low, middle, high = np.percentile(period, (10.0, 50.0, 90.0))
-    longest = float(period.max())
-    if longest < PAUSED * middle or longest - middle < BEYOND * (high - low):
-        return
+    longest, middle = float(period.max()), float(np.median(period))
     at = in_words(float(cycles["start"].values[period.argmax()]), "s")
     yield (
         f"The cycle from {at} on takes {in_words(longest, 's')}, {longest / middle:.2g} times the "
@@ -53,18 +50,30 @@ def doubt_longest_cycle(cycles: xr.Dataset) -> Iterator[str]:
 def doubt_highest_fall(cycles: xr.Dataset) -> Iterator[str]:
     """Doubt means over cycles of which one falls far deeper than the others, as after a knock."""
     drop = cycles["drop"].values
-    if len(drop) < FEWEST_CYCLES:
+    if not _stands_out(drop, FAR_ABOVE):
         return
-    low, middle, high = np.percentile(drop, (10.0, 50.0, 90.0))
-    highest = float(drop.max())
-    if highest < FAR_ABOVE * middle or highest - middle < BEYOND * (high - low):
-        return
+    highest, middle = float(drop.max()), float(np.median(drop))
     at = in_words(float(cycles["peak_time"].values[drop.argmax()]), "s")
     yield (
         f"At {at} the force falls by {in_words(highest, 'N')}, {highest / middle:.2g} times the "
         f"median of all falls, {in_words(float(middle), 'N')}: a knock, or a slip of another kind. "
         "It is one of the cycles, and means over them contain it."
     )
+
+
+def _stands_out(values: Floats, times: float) -> bool:
+    """Return whether the largest value is many times the median, and far beyond all others.
+
+    Of few values these others span all that is known.
+    """
+    if len(values) < FEWEST_CYCLES:
+        return False
+    low, high = np.percentile(values, (10.0, 90.0))
+    if len(values) < MANY_CYCLES:
+        others = np.sort(values)[:-1]
+        low, high = others[0], others[-1]
+    largest, middle = float(values.max()), float(np.median(values))
+    return largest >= times * middle and largest - middle >= BEYOND * (high - low)
 
 
 def doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:

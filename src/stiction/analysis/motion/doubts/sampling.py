@@ -112,7 +112,10 @@ def _slow_slips(record: Record, cycles: xr.Dataset, samples: float) -> str:
     if samples < SEEN_SAMPLES[0]:
         return ", and the largest slip speeds are lower bounds: they may be many times as high"
     low = float(np.interp(samples, SEEN_SAMPLES, TOO_LOW))
-    return f", and the largest slip speeds are too low by about {percent(low)}, as of half a sine"
+    return (
+        f", and the largest slip speeds are too low by about {percent(low)} if a slip is half a "
+        "sine, by more if it is quicker at its end"
+    )
 
 
 def doubt_filter(record: Record, cycles: xr.Dataset) -> Iterator[str]:

@@ -24,6 +24,7 @@ from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import LOADING_RATE, SWING, StatedQuantity
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
+from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.arrays import xr
@@ -38,8 +39,7 @@ TINY_MU = 1e-3  # no friction is so small, but of a film of fluid
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
 AT_REST = 0.02  # of the largest force
-FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
-TIMES = 3  # that a force stays at its least value: at rest it does so once
+BOTH_SIGNS = 0.3  # of the largest force: so far it goes the other way where a drive turns
 VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 # By which power of 1000 the rate of a force is off in another unit: quantity, unit, remedy
@@ -53,6 +53,7 @@ CAUSES = {
     2: (("force", "micronewtons", "force_unit='uN'"),),
 }
 STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
+QUICKER = 2.0  # times k/m: so quick a vibration may be that of both springs
 NOISE = 5.0  # standard deviations
 
 
@@ -153,29 +154,15 @@ def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
 
 def _doubt_clipping(record: Record) -> Iterator[str]:
     """Doubt a force that stays at exactly its largest or least value for longer than elsewhere."""
-    way = 1.0 if record.force.max(initial=0.0) >= -record.force.min(initial=0.0) else -1.0
-    force = way * record.force
-    if not len(force):
-        return
-    begins = np.flatnonzero(np.diff(force, prepend=force[0] - 1.0))
-    lasts, values = np.diff(begins, append=len(force)), force[begins]
-    top, bottom = values == force.max(), values == force.min()
-    if (top | bottom).all():
-        return
-    flat = lasts >= max(FLAT, FLAT * int(lasts[~top & ~bottom].max()) + 1)
-    cut = {
-        "largest": (top, 1, "peaks are cut off, static coefficients and drops are too small, and "
-        "what seems to creep there may rest"),
-        "least": (bottom, TIMES, "troughs are cut off, drops are too small and kinetic "
-        "coefficients too large"),
-    }  # fmt: skip
-    for name, (end, least, then) in cut.items():
-        if np.count_nonzero(flat & end) < least:
-            continue
-        value, longest = way * float(values[end][0]), int(lasts[end].max())
+    then = {
+        "largest": "peaks are cut off, static coefficients and drops are too small, and what seems "
+        "to creep there may rest",
+        "least": "troughs are cut off, drops are too small and kinetic coefficients too large",
+    }
+    for name, value, longest in flat_ends(record.force):
         yield (
             f"The force stays at exactly {in_words(value, 'N')} for up to {longest} samples, its "
-            f"{name} value: if that is the end of the load cell's range, {then}."
+            f"{name} value: if that is the end of the load cell's range, {then[name]}."
         )
 
 
@@ -239,14 +226,19 @@ def _mass(its: StatedQuantity | None, kind: str) -> Iterator[str]:
     yield (
         f"By the {its.how} ({in_words(lasts * pi / its.found**0.5, 's')}), "
         f"stiffness over mass is {its.ratio:.2g} times {its.stated:.3g} 1/s², as stated: "
-        f"{_remedy_of_mass(its.ratio)}."
+        f"{_remedy_of_mass(its.ratio, kind)}."
     )
 
 
-def _remedy_of_mass(ratio: float) -> str:
+def _remedy_of_mass(ratio: float, kind: str) -> str:
     """Return the likely cause of a k/m that is `ratio` times as large as stated."""
     if THOUSAND * 1e-6 < ratio < 1e-6 / THOUSAND:
         return "is the time in milliseconds? Give time_unit='ms'; or check mass and stiffness"
+    if kind == HARMONIC and ratio > QUICKER:
+        return (
+            "check mass and stiffness; or the transverse spring swings as well, as friction that "
+            "turns makes it"
+        )
     return "check mass and stiffness"
 
 
@@ -284,6 +276,13 @@ def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[st
         )
         return
     if friction.kinetic is not None and friction.kinetic.force < 0.0:
+        low, high = float(record.force.min()), float(record.force.max())
+        if high > BOTH_SIGNS * largest:
+            yield (
+                f"The force lies between {in_words(low, 'N')} and {in_words(high, 'N')}: the drive "
+                "goes back and forth, and a mean is no friction; or the zero of the force is off."
+            )
+            return
         yield (
             f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
             "zero of the force is off, or its sign; give zero=, the reading without load."

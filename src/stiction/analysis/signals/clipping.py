@@ -1,0 +1,34 @@
+"""Signals that are cut off at the end of a sensor's range."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stiction.arrays import Floats
+
+FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
+TIMES = 3  # that a signal stays at its least value: at rest it does so once
+
+
+def flat_ends(values: Floats) -> list[tuple[str, float, int]]:
+    """Return at which ends of its range a signal stays for longer than elsewhere.
+
+    Each by its name, "largest" or "least" in magnitude, with its value and the most samples in a
+    row there.
+    """
+    way = 1.0 if values.max(initial=0.0) >= -values.min(initial=0.0) else -1.0
+    turned = way * values
+    if not len(turned):
+        return []
+    begins = np.flatnonzero(np.diff(turned, prepend=turned[0] - 1.0))
+    lasts, each = np.diff(begins, append=len(turned)), turned[begins]
+    top, bottom = each == turned.max(), each == turned.min()
+    if (top | bottom).all():
+        return []
+    flat = lasts >= max(FLAT, FLAT * int(lasts[~top & ~bottom].max()) + 1)
+    ends = (("largest", top, 1), ("least", bottom, TIMES))
+    return [
+        (name, way * float(each[end][0]), int(lasts[end].max()))
+        for name, end, least in ends
+        if np.count_nonzero(flat & end) >= least
+    ]
