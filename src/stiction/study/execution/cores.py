@@ -93,7 +93,7 @@ class Helpers(Generic[T]):
 
     def _start(self, message: bytes) -> None:
         """Start a process, and wait until it is ready."""
-        with suppress(OSError):
+        with suppress(OSError, ValueError):  # its pipes may be closed meanwhile, by `end`
             with self._lock:
                 if self._ended:
                     return
