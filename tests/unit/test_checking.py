@@ -12,6 +12,7 @@ from benchmarks.explore.draw import Draw
 
 import stiction as st
 from stiction import cli
+from stiction.result.file import DamageError
 
 SEED, DAMAGES = 1, 50  # of a result, and as many of a store
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
@@ -85,6 +86,12 @@ def test_no_damage_of_a_result_is_silent(result, tmp_path):
         assert same(found, right), number
     assert seen["refused"] > 0
     assert seen["repaired"] > 0
+
+
+def test_what_is_damaged_is_told_by_another_process_too():
+    error = DamageError("a.nc", ["u_x", "u_y"])
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.lost) == (str(error), "u_x, u_y")
 
 
 def test_no_damage_of_a_store_is_silent(store, tmp_path):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from math import floor, log10
 from typing import Any, NamedTuple
 
@@ -243,11 +243,7 @@ def near(value: float) -> float:
     >>> near(0.0123), near(9.8), near(0.0)
     (0.012, 10.0, 0.0)
     """
-    if value <= 0.0:
-        return 0.0
-    power = floor(log10(value))
-    mantissa = value / 10.0**power
-    return float(f"{min(MANTISSAS, key=lambda each: abs(log10(each / mantissa)))}e{power}")
+    return on_scale(value, lambda mantissa: min(MANTISSAS, key=lambda x: abs(log10(x / mantissa))))
 
 
 def round_up(value: float) -> float:
@@ -256,8 +252,12 @@ def round_up(value: float) -> float:
     >>> round_up(0.0123), round_up(0.0)
     (0.015, 0.0)
     """
+    return on_scale(value, lambda mantissa: next(x for x in MANTISSAS if x >= mantissa - 1e-9))
+
+
+def on_scale(value: float, choose: Callable[[float], float]) -> float:
+    """Return a positive value with another mantissa, chosen for its own from 1 to 10; or 0."""
     if value <= 0.0:
         return 0.0
     power = floor(log10(value))
-    mantissa = value / 10.0**power
-    return float(f"{next(each for each in MANTISSAS if each >= mantissa - 1e-9)}e{power}")
+    return float(f"{choose(value / 10.0**power)}e{power}")

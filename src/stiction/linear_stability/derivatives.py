@@ -9,9 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.friction import ellipse
 from stiction.system.slider import Slider
-from stiction.system.tensors import principal
+from stiction.system.tensors import surface_tensor
 
 ROUNDING = float(np.finfo(np.float64).eps)
 SMALL = 4.0 * ROUNDING  # relative rounding error after a few operations
@@ -41,12 +40,6 @@ class Response(NamedTuple):
     error: Floats
 
 
-def surface(slider: Slider) -> Floats:
-    """Return N = M^2 of `stiction.friction.Anisotropic` in the slider's axes, (2, 2)."""
-    ratio, angle = ellipse(slider.law)
-    return principal(1.0, ratio * ratio, slider.misalignment + angle)
-
-
 def set_valued(slider: Slider, slip: Floats) -> tuple[Floats, Floats]:
     """Return friction (N) and its slopes by slip (N s/m) from the ``slope`` of a set-valued law.
 
@@ -58,7 +51,7 @@ def set_valued(slider: Slider, slip: Floats) -> tuple[Floats, Floats]:
     across it.
     """
     law: Any = slider.law
-    (a, b), (_, d) = surface(slider).tolist()
+    (a, b), (_, d) = surface_tensor(slider).tolist()
     x, y = map(float, slip)
     v = hypot(x, y)
     push_x, push_y = a * x + b * y, b * x + d * y
@@ -79,16 +72,11 @@ def response_of(slider: Slider, slip: Floats) -> Response:
     """Return the response of a set-valued law, with the errors of its slopes from rounding."""
     law: Any = slider.law
     value, slopes = set_valued(slider, slip)
-    v = hypot(*slip)
-    N = surface(slider)
-    push = N @ slip
-    q = float(np.sqrt(slip @ push))
-    turned = np.array([-slip[1], slip[0]])
-    doubt = np.abs(np.outer(push, slip)) * (
-        (SMALL * abs(law.slope(v)) + noise(law.slope, v, v)) / (q * v)
-    )
-    across = float(np.linalg.det(N)) / q**3 * law.coefficient(v) * np.outer(turned, turned)
-    return Response(value, slopes, slider.normal_load * (doubt + SMALL * np.abs(across)))
+    v, N = hypot(*slip), surface_tensor(slider)
+    per = slider.normal_load * np.outer(N @ slip, slip) / (float(np.sqrt(slip @ N @ slip)) * v)
+    along = law.slope(v) * per
+    rounding = SMALL * (np.abs(along) + np.abs(slopes - along))
+    return Response(value, slopes, rounding + noise(law.slope, v, v) * np.abs(per))
 
 
 def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:

@@ -76,9 +76,14 @@ def leading_growth(matrix: Floats, error: Floats) -> tuple[float, float]:
     for k, value in enumerate(values):
         gap = float(np.abs(np.delete(values, k) - value).min())
         uncertain[k] = bound(balanced, doubt, value, right[:, k], left[:, k], gap)[1]
-    first = int(np.argmax(values.real))
-    growth = float(values.real[first])
-    return growth, float(max(uncertain[first], (values.real + uncertain).max() - growth))
+    return largest_growth(values.real, uncertain)
+
+
+def largest_growth(rates: Floats, uncertain: Floats) -> tuple[float, float]:
+    """Return the largest of some growth rates (1/s), and a bound of its error, from theirs."""
+    first = int(np.argmax(rates))
+    growth = float(rates[first])
+    return growth, float(max(uncertain[first], (rates + uncertain).max() - growth))
 
 
 def refine(matrix: Floats, value: complex, vector: Complex, gap: float) -> tuple[complex, Complex]:

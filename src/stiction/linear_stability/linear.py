@@ -20,7 +20,7 @@ from stiction.linear_stability.derivatives import (
     set_valued,
     with_state,
 )
-from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues
+from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues, largest_growth
 from stiction.names import warn_renamed
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -96,8 +96,7 @@ class Linearisation:
     @property
     def growth_uncertainty(self) -> float:
         """An error bound of `growth_rate`, 1/s."""
-        highest = self.growth_rates + self._modes.growth_uncertainty
-        return float(max(self._modes.growth_uncertainty[0], highest.max() - self.growth_rate))
+        return largest_growth(self.growth_rates, self._modes.growth_uncertainty)[1]
 
     @property
     def shapes(self) -> Complex:

@@ -70,6 +70,11 @@ class DamageError(ResultError):
         self.lost = ", ".join(lost[:3])
         again = f"compute it again with: stiction check {path} --repair"
         super().__init__(f"{path}: is damaged, or was changed: {self.lost}; {again}")
+        self._made_of = path, lost
+
+    def __reduce__(self) -> tuple[type[DamageError], tuple[str | Path, Sequence[str]]]:
+        """Pickle what the message is made of."""
+        return type(self), self._made_of
 
 
 def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:

@@ -29,7 +29,12 @@ from stiction.drive import ConstantVelocity
 from stiction.friction import Anisotropic
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.system.tensors import damping_tensor, mobility_tensor, principal, stiffness_tensor
+from stiction.system.tensors import (
+    damping_tensor,
+    mobility_tensor,
+    stiffness_tensor,
+    surface_tensor,
+)
 
 TAKE_OFF = 0.1  # length of a take-off, in units of the shorter natural period over 2 pi
 DEGREE = 8  # of the polynomials in time that describe it; their error is near rounding
@@ -156,9 +161,8 @@ def equations_of(slider: Slider) -> Equations:
         raise ValueError(f"the twin knows a steady drive and load only, not {slider.drive!r}")
     drive = slider.drive.velocity * np.array(slider.direction)
     law: Any = slider.law
-    surface = np.eye(2)
+    surface = surface_tensor(slider)
     if isinstance(law, Anisotropic):
-        surface = principal(1.0, law.ratio**2, slider.misalignment + law.angle)
         law = law.law
     mobility, stiffness = mobility_tensor(slider), stiffness_tensor(slider)
     rate = float(np.sqrt(np.linalg.eigvals(mobility @ stiffness).real.max()))

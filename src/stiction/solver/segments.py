@@ -7,7 +7,7 @@ stops exactly there, so that it never steps over such an instant.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import cos, hypot, sin
+from math import hypot
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,7 +22,7 @@ from stiction.solver.problem import Bend, Bends, Elliptic, Isotropic, Problem, S
 from stiction.solver.rig import Aligned, General
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.system.tensors import solver_axes
+from stiction.system.tensors import solver_axes, surface_tensor
 
 
 class Stretch(NamedTuple):
@@ -103,12 +103,10 @@ def begin(slider: Slider, initial: Initial) -> tuple[tuple[float, float], tuple[
 
 def surface_of(slider: Slider) -> Isotropic | Elliptic:
     """Return the surface in the axes x and y."""
-    law: Any = slider.law
-    if not isinstance(law, Anisotropic):
+    if not isinstance(slider.law, Anisotropic):
         return Isotropic()
-    c, s = cos(slider.misalignment + law.angle), sin(slider.misalignment + law.angle)
-    square = law.ratio**2
-    return Elliptic(c * c + square * s * s, (1 - square) * c * s, s * s + square * c * c)
+    (along, mixed), (_, across) = surface_tensor(slider).tolist()
+    return Elliptic(along, mixed, across)
 
 
 def friction_of(slider: Slider) -> tuple[Any, Isotropic | Elliptic]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.friction import ellipse
 
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
@@ -26,16 +27,24 @@ def mass_tensor(slider: Slider) -> Floats:
     >>> mass_tensor(slider).diagonal()
     array([1., 2.])
     """
-    along = slider.mass
-    across = along if slider.mass_y is None else slider.mass_y
-    return principal(along, across, slider.mass_angle - slider.turn)
+    return principal(slider.mass, mass_across(slider), slider.mass_angle - slider.turn)
 
 
 def mobility_tensor(slider: Slider) -> Floats:
     """Return the inverse of the mass tensor, (2, 2), 1/kg."""
-    along = slider.mass
-    across = along if slider.mass_y is None else slider.mass_y
-    return principal(1.0 / along, 1.0 / across, slider.mass_angle - slider.turn)
+    along, across = 1.0 / slider.mass, 1.0 / mass_across(slider)
+    return principal(along, across, slider.mass_angle - slider.turn)
+
+
+def mass_across(slider: Slider) -> float:
+    """Return the mass (kg) across its own axis."""
+    return slider.mass if slider.mass_y is None else slider.mass_y
+
+
+def surface_tensor(slider: Slider) -> Floats:
+    """Return N = M^2 of `stiction.friction.Anisotropic` in the axes x and y, (2, 2)."""
+    ratio, angle = ellipse(slider.law)
+    return principal(1.0, ratio * ratio, slider.misalignment + angle)
 
 
 def stiffness_tensor(slider: Slider) -> Floats:

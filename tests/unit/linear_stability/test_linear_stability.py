@@ -16,13 +16,12 @@ from stiction.linear_stability.derivatives import (
     derivative,
     response_of,
     smooth_derivative,
-    surface,
     with_state,
 )
 from stiction.linear_stability.eigenvalues import leading_growth
 from stiction.linear_stability.linear import disturbance, drive_velocity
 from stiction.system.parameter import change_unchecked
-from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
+from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor, surface_tensor
 
 PAPER = st.presets.nakano_popov_2020()
 V, W = 1e-3, 10.0
@@ -252,7 +251,7 @@ def test_the_matrix_of_a_disturbance_is_that_of_the_equations_of_any_rig():
         seen += 1
 
         def friction(s, slider=slider):
-            push = surface(slider) @ s
+            push = surface_tensor(slider) @ s
             limit = slider.normal_load * slider.law.coefficient(math.hypot(*s))
             return limit / np.sqrt(s @ push) * push
 

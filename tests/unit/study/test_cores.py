@@ -2,7 +2,9 @@
 
 import os
 from functools import partial
+from io import BytesIO
 from itertools import count
+from types import SimpleNamespace
 
 import pytest
 from tests.tasks import forces, stop_elsewhere, who
@@ -86,6 +88,18 @@ def test_nobody_waits_for_a_process_when_the_work_is_broken_off(tmp_path):
     until(lambda: next(found) >= 0 and seen.exists() and seen.read_text(), "a process")
     found.close()
     assert not is_alive(int(seen.read_text()))
+
+
+def test_a_process_that_ends_while_it_starts_raises_nothing(monkeypatch):
+    """Its pipes are closed while a thread waits for its first word."""
+    closed = open(os.devnull, "rb")  # noqa: SIM115
+    closed.close()
+    for stdin, stdout in ((BytesIO(), closed), (closed, BytesIO())):
+        helper = SimpleNamespace(stdin=stdin, stdout=stdout)
+        monkeypatch.setattr(cores, "python", lambda *_, made=helper, **__: made)
+        helpers = cores.Helpers(forces, 0)
+        helpers._start(b"tasks")
+        assert helpers._idle.empty()
 
 
 def test_a_law_from_a_file_gives_the_same_in_another_process(tmp_path):
