@@ -346,6 +346,23 @@ def test_it_fits_a_small_projector(page):
     assert [each for each in small if not each.startswith("<sub")] == []
 
 
+@pytest.mark.parametrize("size", [(1366, 620), (1024, 600), (390, 844)])
+def test_a_smaller_window_scrolls_and_keeps_its_curves(page, size):
+    """In 1024 x 600 px five strips shared 40 px; on a phone half the page lay beside the screen."""
+    width, height = size
+    page.tab.set_viewport_size({"width": width, "height": height})
+    page.until("stictionPage.settled")
+    assert page.value("document.documentElement.scrollWidth") <= width
+    assert page.value("document.querySelector('#series-still').clientHeight") >= 5 * 55
+    beside = page.value(
+        """[...document.querySelectorAll('header *, #transport *, .row *, canvas')].filter(
+        (each) => { const b = each.getBoundingClientRect(), box = each.closest('form, header, main');
+          return b.width && b.right > box.getBoundingClientRect().right + 1; })
+        .map((each) => each.outerHTML)"""
+    )
+    assert beside == []
+
+
 def test_no_name_of_a_parameter_is_cut_off(page):
     """`sample rate` was "sample r...", on the line where it is changed."""
     page.value(

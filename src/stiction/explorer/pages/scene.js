@@ -10,6 +10,7 @@ import { plain, quantity } from "./quantity.js";
 const BLOCK = 27; // half side of the mass, px
 const PIXEL = 0.0254 / 96; // m, of CSS
 const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
+const BESIDE = 500; // px: in a narrower scene two texts of the lowest line would overlap
 
 export class Scene {
   constructor(canvas) {
@@ -185,7 +186,8 @@ export class Scene {
       symbols(context, name, 12, 15 + 18 * i, { color, halo: true });
       text(context, value, 88, 15 + 18 * i, { color: INK, halo: true });
     });
-    symbols(context, `${this.factors(M)};  slip arrow: logarithmic`, width - 10, height - 16, { color: SOFT, align: "right", halo: true });
+    const above = width < BESIDE ? 20 : 0; // narrow: not over the ways
+    symbols(context, `${this.factors(M)};  slip arrow: logarithmic`, width - 10, height - 16 - above, { color: SOFT, align: "right", halo: true });
     text(context, `φ = ${plain((this.scene.phi * 180) / Math.PI, 4)}°`, width - 10, 15, { color: INK, align: "right", halo: true });
   }
 
