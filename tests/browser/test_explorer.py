@@ -355,10 +355,11 @@ def test_a_smaller_window_scrolls_and_keeps_its_curves(page, size):
     assert page.value("document.documentElement.scrollWidth") <= width
     assert page.value("document.querySelector('#series-still').clientHeight") >= 5 * 55
     beside = page.value(
-        """[...document.querySelectorAll('header *, #transport *, .row *, canvas')].filter(
-        (each) => { const b = each.getBoundingClientRect(), box = each.closest('form, header, main');
-          return b.width && b.right > box.getBoundingClientRect().right + 1; })
-        .map((each) => each.outerHTML)"""
+        """[...document.querySelectorAll('header *, #transport *, .row *, canvas')]
+        .filter((each) => {
+          const b = each.getBoundingClientRect(), box = each.closest('form, header, main');
+          return b.width && b.right > box.getBoundingClientRect().right + 1;
+        }).map((each) => each.outerHTML)"""
     )
     assert beside == []
 

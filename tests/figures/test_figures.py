@@ -42,6 +42,7 @@ from stiction.plotting.run.time_series import (
     envelope,
     oscillations,
 )
+from stiction.plotting.shades import COLORS
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
@@ -118,6 +119,17 @@ def test_figure5_has_its_cross_where_zeta_is_one(slider: st.Slider) -> None:
     assert [end[1] for end in ends] == pytest.approx([1.0, 10.0])
     assert ax.get_xlabel().endswith("(1)")
     assert ax.get_ylabel().endswith("(deg)")
+
+
+def test_kinds_of_motion_are_told_apart_in_a_print_without_colour() -> None:
+    """Stick-slip and transverse oscillation, half a map each, were the same grey.
+
+    Patches that do not touch are told apart from a difference of about 5 in CIE lightness on.
+    """
+    colors = np.array([mpl.colors.to_rgb(each) for each in COLORS.values()])
+    linear = np.where(colors <= 0.04045, colors / 12.92, ((colors + 0.055) / 1.055) ** 2.4)  # sRGB
+    lightness = 116.0 * np.cbrt(linear @ [0.2126, 0.7152, 0.0722]) - 16.0
+    assert np.diff(np.sort(lightness)).min() > 5.0
 
 
 def test_the_boundary_of_the_damping_map_is_the_critical_angle() -> None:

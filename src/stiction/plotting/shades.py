@@ -15,15 +15,15 @@ DECADES = 30.0  # a measure that spans a larger factor is drawn in decades
 DEEPEST = 1e6  # range below the largest value; smaller ones count as zero
 NO_RESULT, NO_VALUE = "no result", "no value"
 
-# light for calm, dark and warm for violent motion; distinct without colour too
+# light for calm, dark and warm for violent motion; in print without colour no two are alike
 COLORS = {
     "stick-slip": "#C44E00",
-    "transitional oscillation": "#EE9A4D",
-    "harmonic vibration": "#FBDDA6",
-    "settling": "#CFE3F1",
+    "transitional oscillation": "#E8903F",
+    "harmonic vibration": "#F6CC86",
+    "settling": "#D8E9F5",
     "steady sliding": "#8FC1E3",
-    "transverse oscillation": "#A3558F",
-    "irregular vibration": "#6B4E9B",
+    "transverse oscillation": "#8A3B78",
+    "irregular vibration": "#4C3380",
     "stuck": "#8A8A8A",
     "undetermined": "#FFFFFF",
 }
