@@ -282,6 +282,21 @@ class Looping(NamedTuple):
         return (z,)
 
 
+class Bound(Looping):
+    """A law whose states are those of an object, not of its class."""
+
+    def states(self):
+        return (("z", "m", "bristle"),)
+
+
+def test_states_of_an_object_are_refused_before_a_run(slider):
+    """It said that `Bound.states() missing 1 required positional argument`, as the run began."""
+    with pytest.raises(st.DescriptionError, match=r"states\(\) takes no argument.*@staticmethod"):
+        slider.replace(friction=Bound(0.2))
+    with pytest.raises(st.DescriptionError, match="@staticmethod"):
+        st.testing.check_law(Bound(0.2))
+
+
 class Making(NamedTuple):
     """Exponential weakening, summed in arrays that its methods make."""
 

@@ -138,8 +138,21 @@ def is_law(found: Any, name: str) -> type[Any]:
     lacking = [method for method in wanted if not callable(getattr(found, method, None))]
     if lacking:
         raise fault(f"{echo(name)} is not a friction law, it lacks {', '.join(lacking)}; {write}")
+    if hasattr(found, "states") and not _is_free(found.states):
+        raise fault(f"{echo(name)}.states() takes no argument; write @staticmethod above it")
     law: type[Any] = found
     return law
+
+
+def _is_free(method: Callable[..., object]) -> bool:
+    """Return whether a method can be called on its class, without an argument."""
+    try:
+        inspect.signature(method).bind()
+    except TypeError:
+        return False
+    except ValueError:  # unknown: not of Python
+        return True
+    return True
 
 
 def try_law(law: Any, name: str) -> Any:
