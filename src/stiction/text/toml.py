@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import errno
 import json
+import re
 import tomllib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from os import PathLike
@@ -21,6 +22,12 @@ DEEPEST = 16  # tables and lists inside one another; descriptions have five
 TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; descriptions are not"
 BITS = 64  # of an integer, as TOML has it
 WRITE = "write a description with 'stiction init'"
+AT_LINE = re.compile(r"\(at line (\d+), ")
+MISWRITTEN = {  # a number of other programs or languages, and how TOML has it
+    re.compile(r"=\s*[-+]?\d+,\d"): "the decimal sign is a point: 0.4",
+    re.compile(r"=\s*[-+]?\.\d"): "a digit stands before the point: 0.4",
+    re.compile(r"=\s*[-+]?\d+\.(?!\d)"): "a digit stands after the point: 1.0",
+}
 OF_STUDIES = ("axes", "study")  # tables of a description that is swept
 
 
@@ -44,8 +51,10 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         raise DescriptionError.of("path", message)
     written = isinstance(path, str) and "\n" in path
     where = "the text" if written else str(path)
+    text = str(path) if written else ""
     try:
-        raw = tomllib.loads(str(path) if written else _text_of(Path(path)))
+        text = text or _text_of(Path(path))
+        raw = tomllib.loads(text)
     except RecursionError:
         message = TOO_DEEP
     except OSError as error:
@@ -53,15 +62,22 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
     except UnicodeDecodeError:
         message = f"is not text in UTF-8; {_instead(path, written) or WRITE}"
     except ValueError as error:  # invalid TOML, and integers of thousands of digits
-        unquoted = (
-            "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
-        )
         use = _instead(path, written)
-        message = f"is not TOML: {error}{unquoted}{use and f'; {use}'}"
+        message = f"is not TOML: {error}{_remedy(error, text)}{use and f'; {use}'}"
     else:
         tame(raw, where)
         return tame(with_changes(raw, changes), where) if changes else raw
     raise DescriptionError.of(where, message)
+
+
+def _remedy(error: ValueError, text: str) -> str:
+    """Return how to write what TOML does not read, as far as its line tells."""
+    place = AT_LINE.search(str(error))
+    line = text.split("\n")[int(place[1]) - 1] if place else ""
+    for pattern, remedy in MISWRITTEN.items():
+        if pattern.search(line):
+            return f"; {remedy}"
+    return "; a value with a unit goes in quotes" if "Expected newline" in str(error) else ""
 
 
 def _instead(path: str | Path, written: bool) -> str:

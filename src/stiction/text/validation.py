@@ -25,6 +25,7 @@ else:
     ModelMetaclass = type(BaseModel)
 
 T = TypeVar("T")
+LEAST, MOST = 3, 6  # letters that begin a name; names that are listed
 READS = "reads_parameters"  # marks constructors made by `validate`
 
 
@@ -234,8 +235,10 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
 def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
     """Return the message for a name that is not `known`, with the nearest known one."""
     known = sorted(known)
-    near = get_close_matches(name, known, 1)
-    remedy = f"did you mean {near[0]!r}?" if near else f"known: {', '.join(known)}"
+    longer = [each for each in known if len(name) >= LEAST and each.startswith(name)]
+    near = longer if 0 < len(longer) <= MOST else get_close_matches(name, known, 1)
+    meant = " or ".join(filter(None, (", ".join(map(repr, near[:-1])), *map(repr, near[-1:]))))
+    remedy = f"did you mean {meant}?" if near else f"known: {', '.join(known)}"
     return f"unknown {what} {echo(name)}; {remedy}"
 
 

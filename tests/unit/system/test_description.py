@@ -96,6 +96,8 @@ def test_every_fault_at_once_by_path(tmp_path):
     ("old", "new", "path", "words"),
     [
         ('"exponential-weakening"', '"exponential-weakning"', "friction.law", "did you mean"),
+        ('"exponential-weakening"', '"exponential"', "friction.law", "'exponential-weakening'?"),
+        ('"exponential-weakening"', '"lugre-"', "friction.law", "mean 'lugre-hyperbolic'?"),
         ('[drive]\nvelocity = "1 mm/s"', "", "drive", "write a table [drive]"),
         ("[friction]", "[slider.friction]", "slider.friction", "of its own; write [friction]"),
         ("[drive]", "[friction.drive]", "friction.drive", "of its own; write [drive]"),
@@ -123,6 +125,16 @@ def test_a_fault_says_what_to_write(tmp_path, old, new, path, words):
 def test_unreadable_files(tmp_path):
     assert "No such file" in str(*faults(tmp_path / "none.toml").values())
     assert "not TOML" in str(*faults(write_file(tmp_path / "x.toml", "mass = 0.25 kg")).values())
+    for wrong, remedy in (
+        ("0,25", "the decimal sign is a point"),
+        ("-0,25", "the decimal sign is a point"),
+        (".25", "a digit stands before the point"),
+        ("1.e3", "a digit stands after the point"),
+        ("25.", "a digit stands after the point"),
+        ("0.25 kg", "goes in quotes"),
+    ):
+        text = f"[slider]\nmass = {wrong}\nk_x = 1.0\n"
+        assert remedy in str(*faults(write_file(tmp_path / "x.toml", text)).values())
     (tmp_path / "y.toml").write_bytes(b"\xff\xfe\x00")
     assert "UTF-8" in str(*faults(tmp_path / "y.toml").values())
 
