@@ -2,6 +2,7 @@
 
 import atexit
 import gc
+import sys
 
 # Modules make 150 000 objects that stay. Python would search them for garbage again and again, and
 # once more at the end, for a fifth of a short command's time.
@@ -13,8 +14,11 @@ def main() -> None:
     gc.set_threshold(FIRST_SEARCH)
     atexit.register(gc.freeze)  # what ends with the process is not searched
 
-    from stiction.cli import main as run
-
+    try:
+        from stiction.cli import main as run
+    except KeyboardInterrupt:  # on a slow disk loading takes seconds
+        print("interrupted", file=sys.stderr)
+        sys.exit(130)
     run()
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, argument
 from stiction.result.file import DamageError, intact_description, is_netcdf, read_tables
 from stiction.simulation import run
 from stiction.storage.isolation import apart
@@ -66,7 +66,7 @@ class Check(NamedTuple):
         if self.repaired:
             lines.append("It was computed again.")
         elif self.damaged:
-            lines.append(f"Compute it again with: stiction check {self.path} --repair")
+            lines.append(f"Compute it again with: stiction check {argument(self.path)} --repair")
         if self.pending:
             lines.append(f"{self.pending} blocks of runs are still to be done.")
         return [Section(str(self.path), lines)]

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from enum import Enum
+from pathlib import Path
 from reprlib import Repr
+from shlex import quote
 from typing import NamedTuple
 
 LONGEST = 2000  # characters of a message
@@ -32,6 +35,21 @@ def visible(text: str) -> str:
     Names and values in a file come from whoever wrote it.
     """
     return "".join(x if x.isprintable() or x == "\n" else ascii(x)[1:-1] for x in text)
+
+
+def argument(path: str | Path) -> str:
+    """Return a path as one argument of a command in a message: in quotes where it has blanks.
+
+    Examples
+    --------
+    >>> argument("my.nc"), "my rigs" in argument("my rigs/my.nc")
+    ('my.nc', True)
+    """
+    if os.name != "nt":
+        return quote(str(path))
+    from subprocess import list2cmdline
+
+    return list2cmdline([str(path)])
 
 
 def echo(value: object) -> str:

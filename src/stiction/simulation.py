@@ -175,6 +175,11 @@ def run(
     Trajectory
         Whatever happens; ``run.status`` says how the run ended.
 
+    Raises
+    ------
+    DescriptionError
+        If the description cannot be read or simulated.
+
     Examples
     --------
     >>> import stiction as st

@@ -1,6 +1,8 @@
 """The command line, run for real on real files."""
 
 import json
+import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -11,6 +13,7 @@ import pytest
 from tests.waiting import INTERRUPTIBLE, PATIENCE, until
 
 import stiction as st
+from stiction.__main__ import main as start
 from stiction.cli import COMMANDS, app, main, progress
 from stiction.cli.commands.run import report_lines
 
@@ -331,6 +334,56 @@ def test_work_that_lasts_says_so_through_a_pipe(capsys, monkeypatch):
     assert lines[0].startswith("simulating: ")
     assert progress.line("auditing", 0.1, 1200.0) == "auditing: 10 % after 20 min, about 3.0 h left"
     assert capsys.readouterr() == ("", "")
+
+
+def test_compilation_is_no_measure_of_the_time_left():
+    """After 5 s of compilation at 2 %, a run of 10 s was said to take 4 minutes."""
+    assert progress.line("simulating", 0.02, 5.0, since=(0.02, 4.9)) == "simulating: 2 % after 5 s"
+    later = progress.line("simulating", 0.52, 10.0, since=(0.02, 5.0))
+    assert later == "simulating: 52 % after 10 s, about 5 s left"
+
+
+def test_a_suggested_command_quotes_a_path_with_blanks(config, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "my rigs"
+    folder.mkdir()
+    capsys.readouterr()
+    assert inside("init", "my rigs/my rig.toml", "--schema") == 0
+    assert inside("run", config, "--output", "my rigs/a b.nc") == 0
+    assert inside("plot", config, "--output", "a.png") == 2
+    assert inside("run", "my rigs/a b.nc", "--output", "c.nc") == 2
+    said = "".join(capsys.readouterr())
+    commands = re.findall(r"stiction (?:run|plot|analyse) .*?(?=, | takes|\n)", said)
+    paths = [each for command in commands for each in shlex.split(command)[2:]]
+    assert {each for each in paths if "a b" in each} == {"my rigs/a b.nc", "my rigs/a b.png"}
+    assert {each for each in paths if "my rig." in each} == {
+        *("my rigs/my rig.toml", "my rigs/my rig.nc")
+    }
+
+
+def test_ctrl_c_while_it_loads_is_no_traceback(monkeypatch, capsys):
+    class Interrupt:
+        def find_spec(self, name, path=None, target=None):
+            if name == "stiction.cli":
+                raise KeyboardInterrupt
+
+    for each in ("gc.set_threshold", "atexit.register"):  # of this process
+        monkeypatch.setattr(each, lambda *_: None)
+    monkeypatch.delitem(sys.modules, "stiction.cli")
+    monkeypatch.setattr(sys, "meta_path", [Interrupt(), *sys.meta_path])
+    with pytest.raises(SystemExit) as end:
+        start()
+    assert end.value.code == 130
+    assert capsys.readouterr().err == "interrupted\n"
+
+
+def test_ctrl_c_is_the_end_of_the_explorer(monkeypatch, capsys):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("stiction.explorer.door.explore", interrupted)
+    assert inside("explore") == 0
+    assert "closed" in capsys.readouterr().err
 
 
 def test_work_that_is_over_soon_says_nothing(capsys):

@@ -50,24 +50,35 @@ def progress(title: str) -> Iterator[Callable[[float], None]]:
 def _lines(title: str) -> Iterator[Callable[[float], None]]:
     """Print lines while the work lasts; yield a function that takes the fraction."""
     begun, done, finished = monotonic(), [0.0], Event()
+    first: list[tuple[float, float]] = []  # the first fraction, and when it was reported
+
+    def report(fraction: float) -> None:
+        if fraction > 0.0 and not first:
+            first.append((fraction, monotonic() - begun))
+        done[0] = fraction
 
     def tell() -> None:
         pause = FIRST
         while not finished.wait(pause):
-            print_line(line(title, done[0], monotonic() - begun))
+            since = first[0] if first else (0.0, 0.0)
+            print_line(line(title, done[0], monotonic() - begun, since))
             pause = EVERY if done[0] else min(2.0 * pause, EVERY)
 
     teller = Thread(target=tell, daemon=True)
     teller.start()
     try:
-        yield lambda fraction: done.__setitem__(0, fraction)
+        yield report
     finally:
         finished.set()
         teller.join()
 
 
-def line(title: str, fraction: float, seconds: float) -> str:
-    """Return the progress in words.
+def line(
+    title: str, fraction: float, seconds: float, since: tuple[float, float] = (0.0, 0.0)
+) -> str:
+    """Return the progress in words; the time left is that at the pace since a fraction and a time.
+
+    What comes before the first fraction, such as compilation, comes once.
 
     Examples
     --------
@@ -78,8 +89,9 @@ def line(title: str, fraction: float, seconds: float) -> str:
     """
     if fraction <= 0.0:
         return f"{title}: begun {in_time(seconds)} ago"
-    left = in_time(seconds / fraction - seconds)
-    return f"{title}: {100 * fraction:.0f} % after {in_time(seconds)}, about {left} left"
+    done, spent = fraction - since[0], seconds - since[1]
+    left = f", about {in_time(spent * (1.0 - fraction) / done)} left" if done > 0.0 else ""
+    return f"{title}: {100 * fraction:.0f} % after {in_time(seconds)}{left}"
 
 
 def in_time(seconds: float) -> str:

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.errors import ResultError
+from stiction.errors import ResultError, argument
 from stiction.result.table import STICKS, VARIABLES, Column, ColumnTable
 from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
@@ -68,7 +68,7 @@ class DamageError(ResultError):
     def __init__(self, path: str | Path, lost: Sequence[str]) -> None:
         """Name the first places, and what computes the result again."""
         self.lost = ", ".join(lost[:3])
-        again = f"compute it again with: stiction check {path} --repair"
+        again = f"compute it again with: stiction check {argument(path)} --repair"
         super().__init__(f"{path}: is damaged, or was changed: {self.lost}; {again}")
         self._made_of = path, lost
 

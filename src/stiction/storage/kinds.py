@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from stiction.errors import argument
+
 HDF5 = b"\x89HDF\r\n\x1a\n"  # the first bytes of HDF5, the format below NetCDF 4
 SEEN = 2**16  # bytes that are looked at
 TABLE = re.compile(rb"^\s*\[(slider|friction|drive)\b", re.M)
@@ -13,8 +15,8 @@ NUMBERS = re.compile(rb"^\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[;,\t ]\s*[-+]?[\d.]", re.
 
 DESCRIPTION, STUDY, STORE, RESULT, RECORD = "description", "study", "store", "result", "record"
 USES = {
-    DESCRIPTION: "it is a description; stiction run {path} -o {stem}.nc simulates it",
-    STUDY: "it describes a study; stiction sweep {path} -o {stem}.zarr runs it",
+    DESCRIPTION: "it is a description; stiction run {path} -o {stem_nc} simulates it",
+    STUDY: "it describes a study; stiction sweep {path} -o {stem_zarr} runs it",
     STORE: "it is the store of a study; stiction map {path} draws it, and st.open_study reads it",
     RESULT: "it is a result or a record; stiction analyse {path} takes either",
     RECORD: "it seems to be a measured record; stiction analyse or st.read_record reads it",
@@ -26,7 +28,9 @@ def use_of(path: str | Path, *wanted: str) -> str:
     kind = kind_of(Path(path))
     if kind is None or kind in wanted:
         return ""
-    return USES[kind].format(path=path, stem=Path(path).stem)
+    stem = Path(path).stem
+    made = {f"stem_{suffix}": argument(f"{stem}.{suffix}") for suffix in ("nc", "zarr")}
+    return USES[kind].format(path=argument(path), **made)
 
 
 def kind_of(path: Path) -> str | None:

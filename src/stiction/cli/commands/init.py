@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.cli.terminal import say
+from stiction.errors import argument
 
 
 def init(
@@ -48,7 +49,8 @@ def init(
     if schema and there:
         say(f"{path} is as it was; its editor needs the first line: {BY_SCHEMA.strip()}")
         return
-    say(f"wrote {path}; edit it, then: stiction run {path} --output {path.with_suffix('.nc')}")
+    config, result = argument(path), argument(path.with_suffix(".nc"))
+    say(f"wrote {path}; edit it, then: stiction run {config} --output {result}")
 
 
 def presets(name: str | None = None, /) -> None:

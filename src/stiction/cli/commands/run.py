@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
+from stiction.errors import argument
 from stiction.text.quantity_text import percent
 
 REST = 1e-9  # of the drive velocity: slower slip counts as rest
@@ -101,8 +102,8 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
         f"{share(result)}; {statistics.steps} steps{mapped}",
         f"largest force of the spring along x, k_x u_x{sampled}: {in_words(peak, 'N')}"
         f"{f', {peak / load:.4g} of the normal load{then}' if load > 0.0 else ''}",
-        f"next: stiction plot {output} --output {output.with_suffix('.png')}, "
-        f"stiction analyse {output}",
+        f"next: stiction plot {argument(output)} --output "
+        f"{argument(output.with_suffix('.png'))}, stiction analyse {argument(output)}",
     ]
     if statistics.steps == 0 or (result.status.ok and rests_throughout(result)):
         still = not any(result.samples[name].any() for name in ("drive_X", "drive_Y"))

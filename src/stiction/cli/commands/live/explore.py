@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 
 from stiction.cli.options import RecordOptions, Trust
+from stiction.cli.terminal import note
 
 
 def explore(
@@ -47,4 +48,7 @@ def explore(
     records = [each for each in source if said and each.suffix != ".toml" and not is_run(each)]
     read = {each: read_source(each, **said) for each in records}
     opened = [read.get(each, each) for each in source]
-    open_explorer(opened, port=port, browser=browser, trust=trust)
+    try:
+        open_explorer(opened, port=port, browser=browser, trust=trust)
+    except KeyboardInterrupt:  # the usual end
+        note("the explorer is closed")
