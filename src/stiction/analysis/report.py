@@ -21,6 +21,7 @@ from stiction.analysis.motion.doubts.warnings import (
     turns_round,
     unsteady,
     warnings,
+    why_no_friction,
 )
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import (
@@ -31,6 +32,7 @@ from stiction.analysis.motion.metadata import (
 )
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.analysis.oscillation import (
     apart,
     oscillation_by_phase,
@@ -45,6 +47,7 @@ from stiction.trajectory import Trajectory
 
 HARMONICS = 10.0  # of the stick-slip; oscillations are sought above them
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
+OF_SLIDING = ("mu_kinetic", "slip_distance", "peak_slip_speed")  # and those of any known motion
 # columns that a force alone gives by stiffness and drive velocity
 BY_STIFFNESS = ("creep_distance", "slip_distance", "peak_slip_speed")
 BINS = 20.0  # least number in a stick phase for averages
@@ -181,17 +184,22 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     friction = _friction(record, found, regime, turns)
     # a run is what it states
     stated = compare_metadata(record, regime.kind, cycles) if run is None else ()
+    alike = cycles.isel(cycle=slice(0)) if turns else cycles  # those of two strokes are none
     doubts = (
-        warnings(record, regime.kind, cycles, friction, stated) if run is None else unsteady(run)
+        warnings(record, regime.kind, alike, friction, stated) if run is None else unsteady(run)
     ) + subtracted_lines(found.lines)
+    unreal = why_no_friction(friction, cycles) if run is None else ""
+    if unreal:
+        friction = friction.without_static(unreal).without_kinetic(unreal)
     other = other_velocity(stated, cycles["start"].values)
     if other.any() and record.position is None:
         given = {name: cycles[name].where(~other) for name in BY_STIFFNESS}
         cycles, sticking = cycles.assign(given), sticking.isel(cycle=~other)
     cycles = _blank_meaningless(record, cycles, regime, stated, missing)
-    if turns and cycles.sizes["cycle"]:
-        missing["mu_kinetic"] = turns
-        cycles = cycles.assign(mu_kinetic=cycles["mu_kinetic"].where(False))
+    if (turns or unreal) and cycles.sizes["cycle"]:
+        names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
+        missing |= dict.fromkeys(names, turns or unreal)
+        cycles = cycles.assign({name: cycles[name].where(False) for name in names})
     width = _free_of_hum(oscillation, sticking) if run is None else None
     creep = find_creep(source, record, sticking, width)
     missing |= creep.missing
@@ -234,7 +242,7 @@ def _friction(record: Record, found: Swings, regime: Regime, turns: str) -> Fric
     """Find the friction of a record without its hum, as far as what `turns` round leaves any."""
     clean = record.model_copy(update={"force": found.force}) if found.lines else record
     friction = find_friction(clean, regime, found.cycles)
-    if "forth" in regime.evidence:
+    if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)
     return friction.without_kinetic(turns) if turns else friction
 
@@ -247,6 +255,8 @@ def _turns_round(run: Trajectory | None, regime: Regime) -> str:
         return "the force goes back and forth between both signs"
     if "plateaus" in regime.evidence:
         return "the force goes back and forth between two levels"
+    if "straight" in regime.evidence:
+        return "the force rises and falls evenly, as where the mass sticks"
     return ""
 
 
@@ -278,8 +288,11 @@ def _blank_meaningless(
         )
         return cycles.assign(creep_distance=cycles["creep_distance"].where(False))
     why = f"they are defined for stick-slip, and {without_loading(regime)}"
-    missing |= dict.fromkeys(OF_STICKING, why)
-    return cycles.assign({name: cycles[name].where(False) for name in OF_STICKING})
+    names: tuple[str, ...] = OF_STICKING
+    if regime.kind == UNDETERMINED and record.position is None:
+        names += OF_SLIDING
+    missing |= dict.fromkeys(names, why)
+    return cycles.assign({name: cycles[name].where(False) for name in names})
 
 
 def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | None:

@@ -30,9 +30,6 @@ CHANGED = 0.25  # logarithm of the ratio of the two periods: a quarter more or l
 UNLOADED = 0.3  # of the largest force, below which a record begins with an unloaded spring
 QUARTER = 8  # medians in each quarter of a record: few enough to be free of noise
 PARTS = 4 * QUARTER
-# Strokes: the lesser of both levels over the larger; share of time between half of either, 0.23 for
-# a sine about zero, 0.25 for a sawtooth; least share of time on either side
-BALANCED, BETWEEN, EITHER = 0.3, 0.15, 0.1
 # A lone fall: its share of the record's time at most, and its height in standard deviations of the
 # noise, whose range over a million samples is 10
 BRIEF, STANDS_OUT = 1 / 16, 15.0
@@ -118,25 +115,6 @@ def order(values: np.ndarray) -> float:
         return nan
     ranks = np.argsort(np.argsort(values))
     return float(np.corrcoef(ranks, np.arange(len(values)))[0, 1])
-
-
-def strokes(force: Floats) -> tuple[float, float] | None:
-    """Return the typical force (N) of either sign, if it stays at both: the drive turns round.
-
-    A vibration about zero passes through it more slowly. A force that only once goes from negative
-    to positive may be a first loading with an untared zero.
-    """
-    forth, back = force[force > 0.0], force[force < 0.0]
-    if min(len(forth), len(back)) < EITHER * len(force):
-        return None
-    high, low = float(np.median(forth)), float(np.median(back))
-    if min(high, -low) < BALANCED * max(high, -low):
-        return None
-    side = np.where(force > 0.5 * high, 1, np.where(force < 0.5 * low, -1, 0))
-    passed = side[side != 0]
-    turns = np.flatnonzero(np.diff(passed))
-    untared = len(turns) < 2 and passed[0] < 0
-    return None if float(np.mean(side == 0)) > BETWEEN or untared else (high, low)
 
 
 def lone_fall(time: Floats, force: Floats) -> tuple[float, float] | None:

@@ -75,6 +75,10 @@ class Friction(NamedTuple):
         """Return the same without kinetic friction, for a reason."""
         return self._replace(kinetic=None, missing=self.missing | {"kinetic": reason})
 
+    def without_static(self, reason: str) -> Friction:
+        """Return the same without static friction, for a reason."""
+        return self._replace(static=None, missing=self.missing | {"static": reason})
+
     def without_any(self, reason: str) -> Friction:
         """Return none of them, for a reason."""
         return Friction(None, None, None, dict.fromkeys(self._fields[:3], reason))
@@ -128,7 +132,7 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         missing["kinetic"] = "the mass comes to rest"
     elif "turns" in regime.evidence:
         missing["kinetic"] = "it is not determined whether the mass slides"
-    elif kind in (STEADY, SETTLING, UNDETERMINED) and (at is not None or kind != UNDETERMINED):
+    elif kind in (STEADY, SETTLING) or (kind == UNDETERMINED and at is not None and not count):
         kinetic = _sliding(record, times, at, kind, relative)
     else:
         unknown = kind == UNDETERMINED

@@ -6,6 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.friction import Measured
+from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.analysis.parts.wording import SLIGHT, number, with_spread
 from stiction.arrays import xr
 from stiction.text.sections import Section, Table
@@ -54,6 +55,7 @@ def section(found: Analysis) -> Section:
         found.friction.break_away is not None
         and found.cycles.sizes["cycle"]
         and not found.regime.loads
+        and found.regime.kind != UNDETERMINED
     ):
         lines.append(
             "The first break-away is the first peak of a vibration: the mass moves before it, so "

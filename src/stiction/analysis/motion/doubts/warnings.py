@@ -265,14 +265,23 @@ def _is_about_zero(friction: Friction, cycles: xr.Dataset) -> bool:
     return abs(mean.force) < ABOUT_ZERO * swing
 
 
+def why_no_friction(friction: Friction, cycles: xr.Dataset) -> str:
+    """Return why no force of a record is a friction, by its mean; empty if it may be one."""
+    if friction.kinetic is None:
+        return ""
+    if _is_about_zero(friction, cycles):
+        return "the mean force is about zero, as no friction is"
+    return "the mean force is against the drive" if friction.kinetic.force < 0.0 else ""
+
+
 def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
     """Doubt the zero if a record begins unloaded, or reaches impossible values."""
     largest = largest_magnitude(record.force)
     if friction.kinetic is not None and _is_about_zero(friction, cycles):
         yield (
             f"The mean friction is about zero, {in_words(friction.kinetic.force, 'N')}: the zero "
-            "of the force is off, as behind an amplifier that lets no constant force through; "
-            "give zero=, the reading without load."
+            "of the force is off, as behind an amplifier that lets no constant force through, or "
+            "the drive goes back and forth; give zero=, the reading without load."
         )
         return
     if friction.kinetic is not None and friction.kinetic.force < 0.0:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.analysis.motion.course import PARTS, strokes
+from stiction.analysis.motion.changes.strokes import strokes
+from stiction.analysis.motion.course import PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
@@ -61,7 +62,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if record.slip_speed is None:
         if np.ptp(record.force) == 0.0:
             return Regime(UNDETERMINED, 0.0, {"unchanging": float(record.force[0])})
-        if (pulls := strokes(record.force)) is not None:
+        if (pulls := strokes(record)) is not None:
             return Regime(UNDETERMINED, 0.0, {"forth": pulls[0], "back": pulls[1]})
     if found.lines:
         record = record.model_copy(update={"force": found.force})

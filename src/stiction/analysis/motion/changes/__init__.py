@@ -1,0 +1,1 @@
+"""Changes within a record: a drive that turns or changes its speed, and cycles of another kind."""
