@@ -14,6 +14,7 @@ from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.cycle_columns import summary
 from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.doubts.warnings import (
@@ -178,10 +179,11 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     record = as_record(source)
     found = swings(record)
     cycles, regime = found.cycles, regime_of(record, found)
-    sticking = cycles if regime.loads else cycles.isel(cycle=slice(0))
+    sticking = cycles.isel(cycle=slice(0))
     oscillation = attempt(missing, "oscillation", lambda: _oscillation(record, run, cycles))
     turns = _turns_round(run, regime)
-    friction = _friction(record, found, regime, turns)
+    apart = cycles_apart(cycles) if run is None else np.zeros(cycles.sizes["cycle"], bool)
+    friction = _friction(record, found, cycles.isel(cycle=~apart), regime, turns)
     # a run is what it states
     stated = compare_metadata(record, regime.kind, cycles) if run is None else ()
     alike = cycles.isel(cycle=slice(0)) if turns else cycles  # those of two strokes are none
@@ -191,10 +193,12 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     unreal = why_no_friction(friction, cycles) if run is None else ""
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)
-    other = other_velocity(stated, cycles["start"].values)
+    other = other_velocity(stated, cycles)
     if other.any() and record.position is None:
-        given = {name: cycles[name].where(~other) for name in BY_STIFFNESS}
-        cycles, sticking = cycles.assign(given), sticking.isel(cycle=~other)
+        given = {name: cycles[name].where(~other) for name in ("stiffness", *BY_STIFFNESS)}
+        cycles = cycles.assign(given)
+    if regime.loads:
+        sticking = cycles.isel(cycle=~(other | apart))
     cycles = _blank_meaningless(record, cycles, regime, stated, missing)
     if (turns or unreal) and cycles.sizes["cycle"]:
         names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
@@ -211,7 +215,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         record,
         regime,
         cycles,
-        summary(cycles),
+        summary(cycles.isel(cycle=~apart)),
         creep.curves,
         creep.mean,
         creep.divergence,
@@ -238,10 +242,12 @@ def _oscillation(record: Record, run: Trajectory | None, cycles: xr.Dataset) -> 
     return strongest_line(record, _above(record, cycles), cycles=cycles)
 
 
-def _friction(record: Record, found: Swings, regime: Regime, turns: str) -> Friction:
+def _friction(
+    record: Record, found: Swings, usual: xr.Dataset, regime: Regime, turns: str
+) -> Friction:
     """Find the friction of a record without its hum, as far as what `turns` round leaves any."""
     clean = record.model_copy(update={"force": found.force}) if found.lines else record
-    friction = find_friction(clean, regime, found.cycles)
+    friction = find_friction(clean, regime, usual)
     if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)
     return friction.without_kinetic(turns) if turns else friction

@@ -25,8 +25,6 @@ STEADILY = 0.3
 # Swings that build up: less than half the median, so many in succession (by chance once in a
 # thousand records where a quarter of all are so small)
 BELOW, BUILDING = 0.5, 5
-FEW_CYCLES = 4  # before a change of period and after it
-CHANGED = 0.25  # logarithm of the ratio of the two periods: a quarter more or less
 UNLOADED = 0.3  # of the largest force, below which a record begins with an unloaded spring
 QUARTER = 8  # medians in each quarter of a record: few enough to be free of noise
 PARTS = 4 * QUARTER
@@ -90,20 +88,6 @@ def _building(size: np.ndarray) -> int:
         return 0
     count = int(np.argmax(size >= BELOW * median(size)))
     return count if count >= BUILDING else 0
-
-
-def change_of_period(period: Floats) -> int | None:
-    """Return the number of cycles before their period changes for good; None if it does not."""
-    size = np.log(np.maximum(period, 1e-300))
-    places = np.arange(FEW_CYCLES, len(size) - FEW_CYCLES + 1)
-    if not len(places):
-        return None
-    total = np.cumsum(size - size.mean())[places - 1]  # the split with the smallest sum of squares
-    k = int(places[np.argmax(total**2 * (1.0 / places + 1.0 / (len(size) - places)))])
-    before, after = size[:k], size[k:]
-    change = float(np.median(after) - np.median(before))
-    spread = max(float(np.ptp(np.percentile(part, (10.0, 90.0)))) for part in (before, after))
-    return None if abs(change) < CHANGED or spread > 0.5 * abs(change) else k
 
 
 def order(values: np.ndarray) -> float:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.course import change_of_period
+from stiction.analysis.motion.changes.cycles import parts_of, steady_change
 from stiction.analysis.motion.drift import find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
@@ -27,6 +27,7 @@ TO_AND_FRO = 0.5  # of its reach: a drive that comes less far on the whole turns
 NOISE = 20.0  # standard deviations, by which means of the displacement do not differ
 FEW = 6  # samples in a slip
 ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
+SURE = 3.0  # standard errors by which a value differs for sure
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
 AT_REST = 0.02  # of the largest force
 LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
@@ -97,26 +98,47 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Sta
 def _loading_rates(record: Record, kind: str, cycles: xr.Dataset) -> list[StatedQuantity]:
     """Compare the rate of loading while the mass sticks with stiffness times drive velocity.
 
-    Where the cycles change once, as after a step of the velocity, each part has its own rate. If
-    one of them is as stated, nothing is stated of the other.
+    Where the cycles change, as after a step of the velocity, each part has its own rate. If one of
+    them is as stated, nothing is stated of the others. Nor is anything where the rate goes on
+    changing and passes the stated one, or a part of it that creep may leave.
     """
     if kind not in (STICK_SLIP, TRANSITIONAL):
         return []
     slopes, starts = cycles["stick_slope"].values, cycles["start"].values
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
     whole = StatedQuantity(LOADING_RATE, "N/s", *_typical(slopes), stated, SLOWER, FASTER, BY_RISE)
-    k = change_of_period(cycles["period"].values)
-    if k is None:
-        return [whole]
-    (early, early_error), (late, late_error) = _typical(slopes[:k]), _typical(slopes[k:])
-    at, when = float(starts[k]), in_words(float(starts[k]), "s")
-    parts = [
-        whole._replace(found=early, error=early_error, part=f"until {when}", end=at),
-        whole._replace(found=late, error=late_error, part=f"from {when} on", begin=at),
-    ]
-    if parts[0].agrees == parts[1].agrees:
+    places = parts_of(cycles["period"].values)
+    if len(places) < 2:
+        if steady_change(slopes) is None:
+            return [whole]
+        line = np.polyfit(starts, slopes, 1)  # from the first sample to the last
+        low, high = np.sort(np.polyval(line, record.time[[0, -1]]))
+        passes = SLOWER * stated < high and low < FASTER * stated
+        return [whole._replace(stated=nan) if passes else whole]
+    at = [-inf, *(float(starts[place.start]) for place in places[1:]), inf]
+    parts = []
+    for place, begin, end in zip(places, at[:-1], at[1:], strict=True):
+        found, error = _typical(slopes[place])
+        when = _part_in_words(begin, end)
+        parts.append(whole._replace(found=found, error=error, part=when, begin=begin, end=end))
+    agree = [each for each in parts if _is_same(each)] or [x for x in parts if x.agrees]
+    if not agree:
         return parts
-    return [each if each.agrees else each._replace(stated=nan) for each in parts]
+    return [each if each in agree else each._replace(stated=nan) for each in parts]
+
+
+def _is_same(each: StatedQuantity) -> bool:
+    """Return whether a value is the stated one, not only one that it allows."""
+    return bool(abs(each.found - each.stated) <= max(ALIKE * each.stated, SURE * each.error))
+
+
+def _part_in_words(begin: float, end: float) -> str:
+    """Return a part of a record in words."""
+    if begin == -inf:
+        return f"until {in_words(end, 's')}"
+    if end == inf:
+        return f"from {in_words(begin, 's')} on"
+    return f"from {in_words(begin, 's')} to {in_words(end, 's')}"
 
 
 def _typical(values: Floats) -> tuple[float, float]:
@@ -124,17 +146,20 @@ def _typical(values: Floats) -> tuple[float, float]:
     return float(np.median(values)), _error(values)
 
 
-def other_velocity(stated: Sequence[StatedQuantity], start: Floats) -> NDArray[np.bool_]:
-    """Return which cycles, by their starts (s), are loaded at another rate than the stated one.
+def other_velocity(stated: Sequence[StatedQuantity], cycles: xr.Dataset) -> NDArray[np.bool_]:
+    """Return which cycles are loaded at another rate than the stated one.
 
-    None are, if no cycles are loaded at the stated rate.
+    None are, if no cycles are loaded at the stated rate. All are, if the rate goes on changing.
     """
-    rates = [each for each in stated if each.quantity == LOADING_RATE]
+    rates, start = [each for each in stated if each.quantity == LOADING_RATE], cycles["start"]
     found = np.zeros(len(start), bool)
+    if len(rates) == 1:
+        changes = steady_change(cycles["stick_slope"].values) is not None
+        return found | (changes and rates[0].agrees is None)
     if any(each.agrees for each in rates):
         for each in rates:
             if not each.agrees:
-                found |= (start >= each.begin) & (start < each.end)
+                found |= (start.values >= each.begin) & (start.values < each.end)
     return found
 
 

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 PARTS = (
     "motion",
     "friction",
+    "changes",
     "cycles",
     "creep",
     "oscillation",

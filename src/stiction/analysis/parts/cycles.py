@@ -45,13 +45,15 @@ def section(found: Analysis) -> Section:
             several = with_spread(spread, mean, unit)
             rows.append((str(row["meaning"].values), in_words(mean, unit), several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
+    left_out = count - int(found.summary["number"].sel(quantity="period"))
+    less = f"; the means leave out {left_out} that stand apart" if left_out else ""
     lines = [
         *_hesitations(found.cycles),
-        f"{count} cycle{'s' * (count > 1)}, from trough to trough.",
+        f"{count} cycle{'s' * (count > 1)}, from trough to trough{less}.",
     ]
-    left_out = [name for name in COLUMNS if name in found.missing]
-    for why in dict.fromkeys(found.missing[name] for name in left_out):
-        columns = ", ".join(COLUMNS[name] for name in left_out if found.missing[name] == why)
+    unknown = [name for name in COLUMNS if name in found.missing]
+    for why in dict.fromkeys(found.missing[name] for name in unknown):
+        columns = ", ".join(COLUMNS[name] for name in unknown if found.missing[name] == why)
         lines.append(f"Not given: {columns}; {why}.")
     return Section("Cycles", lines, table)
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.analysis.motion.changes.cycles import cycles_apart, parts_of
 from stiction.analysis.motion.doubts.warnings import turns_round
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -22,6 +23,7 @@ from stiction.analysis.motion.rest import comes_to_rest, stuck_share
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.parts.wording import number
 from stiction.analysis.signals.hum import of_mains
+from stiction.arrays import xr
 from stiction.recording.units import with_other_sign
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
@@ -103,9 +105,10 @@ def _describe_cycles(found: Analysis) -> str:
     count = found.cycles.sizes["cycle"]
     if not count:
         return ""
-    drop, period = (float(found.cycles[name].mean()) for name in ("drop", "period"))
+    mean = found.summary["mean"]
+    drop, period = (float(mean.sel(quantity=name)) for name in ("drop", "period"))
     times = {1: "once", 2: "twice"}.get(count, f"{count} times")
-    every = f", every {in_words(period, 's')}" if count > 1 else ""
+    every = f", every {_period(found.cycles, period)}" if count > 1 else ""
     share = _stick_share(found)
     plain = {
         STICK_SLIP: f"The mass sticks and slips {times}{every}{share}",
@@ -117,6 +120,15 @@ def _describe_cycles(found: Analysis) -> str:
         return ""
     falls = f"the force drops by {in_words(drop, 'N')}{_each_time(found)}."
     return f"{plain}; {falls}{_why_transverse(found)}{_slow_swing(found)}{_on_a_wave(found)}"
+
+
+def _period(cycles: xr.Dataset, mean: float) -> str:
+    """Return the period in words: its mean, or the range of parts that have their own."""
+    period = cycles["period"].values
+    own = sorted(float(np.median(period[part])) for part in parts_of(period))
+    if len(own) < 2:
+        return in_words(mean, "s")
+    return f"{in_words(own[0], 's')} to {in_words(own[-1], 's')}, as the velocity or load changes"
 
 
 def _describe_unclear_force(found: Analysis) -> str:
@@ -261,6 +273,8 @@ def _each_time(found: Analysis) -> str:
     drop = found.cycles["drop"].values
     if len(drop) == 1:
         return ""
+    if not isinstance(found.source, Trajectory):
+        drop = drop[~cycles_apart(found.cycles)]
     if drop.std() < ALIKE * drop.mean():
         return " each time"
     low, high = (in_words(float(end), "N") for end in (drop.min(), drop.max()))

@@ -36,3 +36,61 @@ def test_strokes_have_no_friction_in_one_number(slips, mass):
     assert np.isnan(found.summary["mean"].sel(quantity="slip_distance"))
     moved = record.model_copy(update={"drive_position": travel, "stiffness": None})
     assert "back and forth" in str(st.analyse(moved))
+
+
+def saw(periods, drop=1.0, rate=200.0, seed=1):
+    """Return times and a force of cycles that fall by `drop` in 0.02 s, with noise."""
+    lasts = np.repeat(np.asarray(periods, dtype=float), 2)
+    lasts[::2] -= 0.02
+    lasts[1::2] = 0.02
+    ends = np.append(0.0, np.cumsum(lasts))
+    falls = np.broadcast_to(drop, len(periods))
+    corners = np.append(np.stack([2.0 - np.roll(falls, 1), np.full(len(periods), 2.0)], 1), 1.0)
+    time = np.arange(0.0, ends[-1], 1.0 / rate)
+    noise = 2e-3 * np.random.default_rng(seed).standard_normal(len(time))
+    return time, np.interp(time, ends, corners) + noise
+
+
+@pytest.mark.parametrize("ratios", [(1, 2, 4), (1, 3, 1, 0.4), (2, 1, 2, 1, 2)])
+def test_each_step_of_the_velocity_is_a_part(ratios):
+    time, force = saw(np.concatenate([np.full(8, 1.0 / each) for each in ratios]))
+    rig = {"normal_load": 10.0, "stiffness": 1e3, "drive_velocity": 1.02e-3 * min(ratios[:2])}
+    found = st.analyse(st.Record(time=time, force=force, **rig))
+    said = str(found)
+    assert "check stiffness" not in said
+    table, rates = found.parts["changes"], 1.0 / (1.0 / np.array(ratios) - 0.02)
+    assert table["period"].values == pytest.approx(1.0 / np.array(ratios), rel=0.02)
+    assert table["velocity"].values == pytest.approx(1e-3 * rates, rel=0.01)
+    assert "analyse the parts by themselves" in said
+    known = found.cycles["stiffness"].values
+    assert np.nanmean(known) == pytest.approx(1e3, rel=0.06)
+    assert np.isnan(known).any()
+
+
+def test_a_drive_that_is_accelerated_contradicts_nothing():
+    time, force = saw(1.0 / np.linspace(1.0, 4.0, 30))
+    rig = {"normal_load": 10.0, "stiffness": 1e3, "drive_velocity": 1e-3}
+    found = st.analyse(st.Record(time=time, force=force, **rig))
+    said = " ".join(found.warnings)
+    assert "The rate of loading changes from" in said
+    assert "check stiffness" not in said
+    assert not np.isfinite(found.cycles["stiffness"]).any()
+    assert found.creep is None
+
+
+@pytest.mark.parametrize("number", [7, 14, 60])
+def test_pauses_and_deep_falls_are_named_and_left_out_of_the_means(number):
+    paused = np.ones(number)
+    paused[[number // 3, -3][: number // 7]] = 7.0
+    found = st.analyse(st.Record(time=saw(paused)[0], force=saw(paused)[1], normal_load=10.0))
+    assert found.summary["mean"].sel(quantity="period") == pytest.approx(1.0, rel=0.01)
+    assert "the drive paused" in " ".join(found.warnings)
+    deep, lasts = np.ones(number), np.ones(number)
+    deep[number // 2], lasts[number // 2 + 1] = 3.0, 3.0
+    time, force = saw(lasts, deep)
+    found = st.analyse(st.Record(time=time, force=force, normal_load=10.0))
+    said = " ".join(found.warnings)
+    assert "a knock, or a slip of another kind" in said
+    assert "paused" not in said
+    assert found.friction.kinetic.force == pytest.approx(1.5, abs=0.01)
+    assert found.summary["mean"].sel(quantity="drop") == pytest.approx(1.0, rel=0.02)

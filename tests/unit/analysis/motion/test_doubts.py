@@ -441,9 +441,10 @@ def test_a_cycle_in_which_the_drive_pauses_is_named(pause):
     force = np.insert(saw, at, np.full(round(1e3 * pause), saw[at]))
     record = st.Record(time=1e-3 * np.arange(len(force)), force=force)
     said = [each for each in st.analyse(record).warnings if "if the drive paused" in each]
-    assert len(said) == (pause == 10.0)
+    assert len(said) == (pause > 0.0)
     if said:
-        assert "The cycle from 9 s on takes 11 s, 11 times the median, 1 s" in said[0]
+        lasts = f"{1.0 + pause:g} s, {1.0 + pause:g} times"
+        assert f"The cycle from 9 s on takes {lasts} the median, 1 s" in said[0]
 
 
 KNOCKS = inside(12, (60.0, 400.0), (1.0, 2.3), (0.2, 3.0), (0.1, 0.9), (0.55, 0.99))

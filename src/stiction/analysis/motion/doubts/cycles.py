@@ -6,74 +6,81 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from stiction.analysis.motion.course import QUIET, change_of_period
+from stiction.analysis.motion.changes.cycles import (
+    cycles_apart,
+    parts_of,
+    stand_apart,
+    steady_change,
+)
+from stiction.analysis.motion.course import QUIET
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.record import Record
-from stiction.arrays import Floats, xr
+from stiction.arrays import xr
 from stiction.text.units import in_words
 
-FAR_ABOVE = 5.0  # times the median of the falls
 QUIET_SHARE = 0.15  # of the record
-# A cycle in which the drive may have paused: over the median period, and over the span of periods,
-# a tenth left out at each end; of measured stick-slip without a pause it comes to 1.4 spans
-PAUSED, BEYOND, FEWEST_CYCLES, MANY_CYCLES = 3.0, 5.0, 5, 10
+NAMED = 3  # cycles apart; more are counted
 
 
 def doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt one mean over cycles of which the later have another period than the earlier."""
-    period = cycles["period"].values
-    k = change_of_period(period)
-    if k is None:
+    """Doubt one mean over cycles of which parts have a period of their own."""
+    period, start = cycles["period"].values, cycles["start"].values
+    parts = parts_of(period)
+    if len(parts) < 2:
         return
-    at = in_words(float(cycles["start"].values[k]), "s")
-    first, second = (in_words(float(np.median(part)), "s") for part in (period[:k], period[k:]))
+    lasts = [in_words(float(np.median(period[part])), "s") for part in parts]
+    later = [
+        f"from {in_words(float(start[part.start]), 's')} on{' the cycles take' * (k == 0)} {long}"
+        for k, (part, long) in enumerate(zip(parts[1:], lasts[1:], strict=True))
+    ]
     yield (
-        f"From {at} on the cycles take {second}, before {first}: if the drive or the load changed "
-        "there, analyse the two parts by themselves; means over both mean little."
+        f"{', '.join(later).capitalize()}, before {lasts[0]}: if the drive or the load changed "
+        f"there, analyse the {'two ' * (len(parts) == 2)}parts by themselves; means over "
+        f"{'both' if len(parts) == 2 else 'all'} mean little."
     )
 
 
-def doubt_longest_cycle(cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt means over cycles of which one takes far longer than the others, as in a pause."""
-    period = cycles["period"].values
-    if not _stands_out(period, PAUSED):
+def doubt_loading(cycles: xr.Dataset) -> Iterator[str]:
+    """Name a rate of loading that goes on changing."""
+    ends = steady_change(cycles["stick_slope"].values)
+    if ends is None or len(parts_of(cycles["period"].values)) > 1:
         return
-    longest, middle = float(period.max()), float(np.median(period))
-    at = in_words(float(cycles["start"].values[period.argmax()]), "s")
+    first, last = (in_words(end, "N/s") for end in ends)
     yield (
-        f"The cycle from {at} on takes {in_words(longest, 's')}, {longest / middle:.2g} times the "
-        f"median, {in_words(float(middle), 's')}: if the drive paused, analyse the parts before "
-        "and after by themselves; means over all cycles, such as of period and creep, mean little."
+        f"The rate of loading changes from {first} to {last}, from cycle to cycle: the drive does "
+        "not keep one velocity, so that creep, slip and stiffness by it are not given."
     )
 
 
-def doubt_highest_fall(cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt means over cycles of which one falls far deeper than the others, as after a knock."""
-    drop = cycles["drop"].values
-    if not _stands_out(drop, FAR_ABOVE):
+def doubt_cycles_apart(cycles: xr.Dataset) -> Iterator[str]:
+    """Name cycles far longer or deeper than the others, which the means leave out."""
+    if not cycles_apart(cycles).any():
         return
-    highest, middle = float(drop.max()), float(np.median(drop))
-    at = in_words(float(cycles["peak_time"].values[drop.argmax()]), "s")
-    yield (
-        f"At {at} the force falls by {in_words(highest, 'N')}, {highest / middle:.2g} times the "
-        f"median of all falls, {in_words(float(middle), 'N')}: a knock, or a slip of another kind. "
-        "It is one of the cycles, and means over them contain it."
-    )
-
-
-def _stands_out(values: Floats, times: float) -> bool:
-    """Return whether the largest value is many times the median, and far beyond all others.
-
-    Of few values these others span all that is known.
-    """
-    if len(values) < FEWEST_CYCLES:
-        return False
-    low, high = np.percentile(values, (10.0, 90.0))
-    if len(values) < MANY_CYCLES:
-        others = np.sort(values)[:-1]
-        low, high = others[0], others[-1]
-    largest, middle = float(values.max()), float(np.median(values))
-    return largest >= times * middle and largest - middle >= BEYOND * (high - low)
+    period, drop = cycles["period"].values, cycles["drop"].values
+    starts, peaks = cycles["start"].values, cycles["peak_time"].values
+    deep = stand_apart(drop)
+    for at in np.flatnonzero(deep)[:NAMED]:
+        yield (
+            f"At {in_words(float(peaks[at]), 's')} the force falls by "
+            f"{in_words(float(drop[at]), 'N')}, {drop[at] / np.median(drop):.2g} times the median "
+            f"of all falls, {in_words(float(np.median(drop)), 'N')}: a knock, or a slip of another "
+            "kind. Means over the cycles leave it out."
+        )
+    long, middle = stand_apart(period), float(np.median(period))
+    long[1:] &= ~deep[:-1]  # a loading after a deep fall is as long as that is deep
+    found = [
+        f"from {in_words(float(starts[at]), 's')} on takes {in_words(float(period[at]), 's')}, "
+        f"{period[at] / middle:.2g} times the median, {in_words(middle, 's')}"
+        for at in np.flatnonzero(long)[:NAMED]
+    ]
+    if found:
+        more = np.count_nonzero(long) - len(found)
+        others = f", and {more} more are as long" if more else ""
+        yield (
+            f"The cycle {'; that '.join(found)}{others}: if the drive paused, analyse the parts "
+            "before and after by themselves. Means over the cycles leave "
+            f"{'it' if len(found) == 1 else 'them'} out."
+        )
 
 
 def doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:

@@ -8,8 +8,8 @@ from math import log10, pi
 import numpy as np
 
 from stiction.analysis.motion.doubts.cycles import (
-    doubt_highest_fall,
-    doubt_longest_cycle,
+    doubt_cycles_apart,
+    doubt_loading,
     doubt_mean_period,
     doubt_quiet,
 )
@@ -71,8 +71,8 @@ def warnings(
         *_implausible_friction(record, friction, cycles),
         *_doubt_clipping(record),
         *doubt_mean_period(cycles),
-        *doubt_longest_cycle(cycles),
-        *doubt_highest_fall(cycles),
+        *doubt_loading(cycles),
+        *doubt_cycles_apart(cycles),
         *doubt_quiet(record, friction, cycles),
         *_loading([each for each in stated if each.quantity == LOADING_RATE]),
         *_mass(wrong.get(SWING), kind),
@@ -187,15 +187,22 @@ def _implausible_friction(record: Record, friction: Friction, cycles: xr.Dataset
 
 def _loading(its: Sequence[StatedQuantity]) -> Iterator[str]:
     """Doubt the rate of loading as stated, by the whole record or by the parts of a change."""
-    if len(its) == 2 and any(each.agrees for each in its):
-        good, other = sorted(its, key=lambda each: not each.agrees)
-        if other.agrees is None:
+    good = [each for each in its if each.agrees]
+    if good:
+        others = [each for each in its if each.agrees is None and each.part]
+        found = [
+            f"{each.part} at {in_words(each.found, 'N/s')}, "
+            f"{each.found / good[0].stated:.3g} times that"
+            for each in others
+        ]
+        if found:
+            when = " and ".join(each.part for each in good).capitalize()
+            latter = "the latter by itself" if len(found) == 1 else "each other part by itself"
             yield (
-                f"{good.part.capitalize()} the force rises with stiffness times drive velocity as "
-                f"stated, {in_words(good.stated, 'N/s')}; {other.part} at "
-                f"{in_words(other.found, 'N/s')}, {other.found / good.stated:.3g} times that: "
-                "what needs the velocity is given of the former only. Analyse the latter by "
-                "itself, with its own velocity."
+                f"{when} the force rises with stiffness times drive velocity as stated, "
+                f"{in_words(good[0].stated, 'N/s')}; {', '.join(found)}: "
+                "what needs the velocity is given of the former only. Analyse "
+                f"{latter}, with its own velocity."
             )
         return
     for each in its:

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.course import MANY, ORDERED, change_of_period, order
+from stiction.analysis.motion.changes.cycles import parts_of
+from stiction.analysis.motion.course import MANY, ORDERED, order
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.regime.evidence import Regime
@@ -103,20 +104,24 @@ class Shapes(NamedTuple):
 
 
 def by_parts(record: Record, found: Swings) -> Regime:
-    """Classify cycles whose period may change once: then each part has a kind of its own."""
-    seen, at = by_shape(record, found), change_of_period(found.lasting["period"])
-    if at is None:
+    """Classify cycles whose period may change: then each part has a kind of its own."""
+    seen, parts = by_shape(record, found), parts_of(found.lasting["period"])
+    if len(parts) < 2:
         return seen
-    tables = [found.lasting.part(part) for part in (slice(at), slice(at, None))]
-    early, late = (by_shape(record, found._replace(table=table)) for table in tables)
+    tables = [found.lasting.part(part) for part in parts]
+    each = [by_shape(record, found._replace(table=table)) for table in tables]
     lasts = [float(table["period"].sum()) for table in tables]
     changed = {"changed_at": float(tables[1]["start"][0])}
-    if early.kind == late.kind:
-        sure = min(early.confidence, late.confidence)
-        return Regime(early.kind, sure, seen.evidence | changed, early.runner_up)
-    main, other = (early, late) if lasts[0] >= lasts[1] else (late, early)
-    share = max(lasts) / sum(lasts)
-    return Regime(main.kind, share * main.confidence, main.evidence | changed, other.kind)
+    main = each[int(np.argmax(lasts))]
+    others = [
+        (long, part) for long, part in zip(lasts, each, strict=True) if part.kind != main.kind
+    ]
+    if not others:
+        sure = min(part.confidence for part in each)
+        return Regime(main.kind, sure, seen.evidence | changed, main.runner_up)
+    share = 1.0 - sum(long for long, _ in others) / sum(lasts)
+    other = max(others, key=lambda pair: pair[0])[1].kind
+    return Regime(main.kind, share * main.confidence, main.evidence | changed, other)
 
 
 def by_shape(record: Record, found: Swings) -> Regime:

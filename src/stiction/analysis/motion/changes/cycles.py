@@ -1,0 +1,108 @@
+"""Changes among cycles: parts with their own period, a changing rate of loading, cycles apart."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.motion.course import ORDERED, order
+from stiction.arrays import Floats, xr
+
+FEW_CYCLES = 4  # in each part
+CHANGED = 0.25  # logarithm of the ratio of two periods, or rates: a quarter more or less
+# Of a split of a constant period with noise, the gain in the sum of squares over the variance is
+# larger than that once in a thousand records of up to a thousand cycles
+SURE = 20.0
+# A cycle apart: times the median, and its distance from it over the span of the others, a tenth of
+# these left out at each end where there are many; of measured stick-slip the largest comes to 1.4
+FAR, BEYOND, FEWEST, MANY = 2.0, 5.0, 5, 10
+RARE = 4  # one in so many at most
+
+
+def parts_of(period: Floats) -> list[slice]:
+    """Return the parts of cycles with a period of their own, as after each step of the velocity.
+
+    Each part differs from its neighbours by far more than its cycles do; a single part is none.
+    """
+    size = np.log(np.maximum(period, 1e-300))
+    edges = [0, *sorted(_splits(size, 0, _variance(size))), len(size)]
+    while len(edges) > 2:
+        margins = [
+            _margin(size[a:b], size[b:c])
+            for a, b, c in zip(edges, edges[1:], edges[2:], strict=False)
+        ]
+        if min(margins) >= 0.0:
+            break
+        del edges[1 + int(np.argmin(margins))]
+    return [slice(a, b) for a, b in pairwise(edges)]
+
+
+def _variance(size: Floats) -> float:
+    """Return the variance from cycle to cycle, of which single steps are no part."""
+    steps = np.abs(np.diff(size))
+    return 0.5 * (float(np.median(steps)) / 0.6745) ** 2 if len(steps) else 0.0
+
+
+def _splits(size: Floats, first: int, variance: float) -> list[int]:
+    """Return where a sequence is best split in two, and each part again (binary segmentation)."""
+    places = np.arange(FEW_CYCLES, len(size) - FEW_CYCLES + 1)
+    if not len(places):
+        return []
+    total = np.cumsum(size - size.mean())[places - 1]
+    gain = total**2 * (1.0 / places + 1.0 / (len(size) - places))
+    best = int(np.argmax(gain))
+    if not gain[best] > SURE * variance:
+        return []
+    k = int(places[best])
+    early, late = (
+        _splits(part, begin, variance) for part, begin in ((size[:k], first), (size[k:], first + k))
+    )
+    return [*early, first + k, *late]
+
+
+def _margin(before: Floats, after: Floats) -> float:
+    """Return by how much two parts differ beyond what makes a change; negative if it is none."""
+    change = abs(float(np.median(after) - np.median(before)))
+    spread = max(float(np.ptp(np.percentile(part, (10.0, 90.0)))) for part in (before, after))
+    return change - max(CHANGED, 2.0 * spread)
+
+
+def steady_change(rate: Floats) -> tuple[float, float] | None:
+    """Return the first and last rate of loading (N/s) of cycles, if it goes on rising or falling.
+
+    Each rate is the median of a quarter of the cycles. A drive that is accelerated makes it do so.
+    """
+    if len(rate) < 2 * FEW_CYCLES or not abs(order(rate)) >= -ORDERED or rate.min() <= 0.0:
+        return None
+    part = len(rate) // 4
+    first, last = float(np.median(rate[:part])), float(np.median(rate[-part:]))
+    return (first, last) if abs(np.log(last / first)) > CHANGED else None
+
+
+def cycles_apart(cycles: xr.Dataset) -> NDArray[np.bool_]:
+    """Return which cycles are far longer or deeper than all others: a pause, a knock, a slip.
+
+    None are where the period changes: then each part has its own.
+    """
+    period, drop = cycles["period"].values, cycles["drop"].values
+    if len(period) < FEWEST or len(parts_of(period)) > 1:
+        return np.zeros(len(period), bool)
+    return stand_apart(period) | stand_apart(drop)
+
+
+def stand_apart(values: Floats) -> NDArray[np.bool_]:
+    """Return which values are far above the median, and far beyond all others, if these are rare.
+
+    Of few values the others span all that is known.
+    """
+    if len(values) < FEWEST:
+        return np.zeros(len(values), bool)
+    middle = float(np.median(values))
+    far = values >= FAR * middle
+    if not far.any() or np.count_nonzero(far) * RARE > len(values):
+        return np.zeros(len(values), bool)
+    others = values[~far]
+    ends = np.percentile(others, (10.0, 90.0)) if len(others) >= MANY else others
+    return np.asarray(far & (values - middle >= BEYOND * np.ptp(ends)))
