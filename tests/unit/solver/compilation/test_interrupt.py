@@ -31,7 +31,8 @@ def test_what_somebody_froze_stays_frozen():
         frozen = gc.get_freeze_count()
         with compiling():
             kept = [[k] for k in range(2 * MANY)]
-        assert gc.get_freeze_count() == frozen
+        # threads may end frozen objects meanwhile; those kept would be far more
+        assert abs(gc.get_freeze_count() - frozen) < MANY
         assert len(kept) == 2 * MANY
     finally:
         gc.unfreeze()
