@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.motion.changes.cycles import parts_of
 
 RIG = {"normal_load": 10.0, "stiffness": 1e3, "drive_velocity": 1e-3}
 
@@ -94,3 +95,14 @@ def test_pauses_and_deep_falls_are_named_and_left_out_of_the_means(number):
     assert "paused" not in said
     assert found.friction.kinetic.force == pytest.approx(1.5, abs=0.01)
     assert found.summary["mean"].sel(quantity="drop") == pytest.approx(1.0, rel=0.02)
+
+
+@pytest.mark.parametrize("count", [40, 6000])
+def test_parts_of_many_cycles(count):
+    """Periods that grow evenly, without noise, took 145 s: each four of them seemed a part."""
+    growing, equal = np.linspace(0.1, 1.0, count), np.full(count, 0.37)
+    stepped = np.round(np.repeat([0.3, 0.5, 0.3, 0.61], count // 4), 2)
+    for period, parts in ((growing, 1), (equal, 1), (stepped, 4)):
+        found = parts_of(period)
+        assert len(found) == parts
+        assert [*range(count)] == [k for part in found for k in range(count)[part]]

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.course import ORDERED, order
+from stiction.analysis.motion.course import DEVIATION, ORDERED, order
 from stiction.arrays import Floats, xr
 
 FEW_CYCLES = 4  # in each part
@@ -27,43 +27,47 @@ def parts_of(period: Floats) -> list[slice]:
     Each part differs from its neighbours by far more than its cycles do; a single part is none.
     """
     size = np.log(np.maximum(period, 1e-300))
-    edges = [0, *sorted(_splits(size, 0, _variance(size))), len(size)]
-    while len(edges) > 2:
-        margins = [
-            _margin(size[a:b], size[b:c])
-            for a, b, c in zip(edges, edges[1:], edges[2:], strict=False)
-        ]
-        if min(margins) >= 0.0:
-            break
-        del edges[1 + int(np.argmin(margins))]
+    edges = [0, *_splits(size), len(size)]
+    margins = [_margin(size, edges, k) for k in range(1, len(edges) - 1)]
+    while margins and min(margins) < 0.0:
+        k = int(np.argmin(margins))
+        del edges[k + 1], margins[k]
+        for beside in range(max(k - 1, 0), min(k + 1, len(margins))):
+            margins[beside] = _margin(size, edges, beside + 1)
     return [slice(a, b) for a, b in pairwise(edges)]
 
 
 def _variance(size: Floats) -> float:
     """Return the variance from cycle to cycle, of which single steps are no part."""
     steps = np.abs(np.diff(size))
-    return 0.5 * (float(np.median(steps)) / 0.6745) ** 2 if len(steps) else 0.0
+    return 0.5 * (DEVIATION * float(np.median(steps))) ** 2 if len(steps) else 0.0
 
 
-def _splits(size: Floats, first: int, variance: float) -> list[int]:
-    """Return where a sequence is best split in two, and each part again (binary segmentation)."""
-    places = np.arange(FEW_CYCLES, len(size) - FEW_CYCLES + 1)
-    if not len(places):
-        return []
-    total = np.cumsum(size - size.mean())[places - 1]
-    gain = total**2 * (1.0 / places + 1.0 / (len(size) - places))
-    best = int(np.argmax(gain))
-    if not gain[best] > SURE * variance:
-        return []
-    k = int(places[best])
-    early, late = (
-        _splits(part, begin, variance) for part, begin in ((size[:k], first), (size[k:], first + k))
-    )
-    return [*early, first + k, *late]
+def _splits(size: Floats) -> list[int]:
+    """Return where a sequence is best split in two, and each part again (binary segmentation).
+
+    A part whose values all lie within half a change is not split: no edge in it is a change.
+    """
+    found, waiting, least = [], [(0, len(size))], SURE * _variance(size)
+    while waiting:
+        first, last = waiting.pop()
+        part, count = size[first:last], last - first
+        places = np.arange(FEW_CYCLES, count - FEW_CYCLES + 1)
+        if not len(places) or np.ptp(part) < 0.5 * CHANGED:
+            continue
+        total = np.cumsum(part - part.mean())[places - 1]
+        gain = total**2 * (1.0 / places + 1.0 / (count - places))
+        best = int(np.argmax(gain))
+        if gain[best] > least:
+            at = first + int(places[best])
+            found.append(at)
+            waiting += [(first, at), (at, last)]
+    return sorted(found)
 
 
-def _margin(before: Floats, after: Floats) -> float:
-    """Return by how much two parts differ beyond what makes a change; negative if it is none."""
+def _margin(size: Floats, edges: list[int], k: int) -> float:
+    """Return by how much the parts about an edge differ beyond a change; negative if it is none."""
+    before, after = size[edges[k - 1] : edges[k]], size[edges[k] : edges[k + 1]]
     change = abs(float(np.median(after) - np.median(before)))
     spread = max(float(np.ptp(np.percentile(part, (10.0, 90.0)))) for part in (before, after))
     return change - max(CHANGED, 2.0 * spread)
