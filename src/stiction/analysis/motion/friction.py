@@ -22,9 +22,11 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import part_means, part_starts
+from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.robust import correlation_time, part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, xr
+from stiction.recording.sensor import ORDER, white_noise
 from stiction.text.quantity_text import percent
 
 PARTS = 400  # number of means of a record in which its break-away is sought
@@ -118,8 +120,9 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
     )
     static = None
+    rounding = _rounding(record.force) if count else 0.0
     if regime.loads and count:
-        static = _over(peak, peak / load_at_peak, load)
+        static = _over(peak, peak / load_at_peak, load, rounding)
     else:
         missing["static"] = (
             f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
@@ -127,7 +130,7 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     kinetic = None
     if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR) and count:
         reduced = 0.5 * (peak / load_at_peak + trough / load_at_trough)
-        kinetic = _over(0.5 * (peak + trough), reduced, load)
+        kinetic = _over(0.5 * (peak + trough), reduced, load, rounding)
     elif comes_to_rest(record.slip_speed):
         missing["kinetic"] = "the mass comes to rest"
     elif "turns" in regime.evidence:
@@ -232,15 +235,35 @@ def _peak_excess(values: Floats, step: int) -> float:
     return float(max(meet))
 
 
-def _over(forces: Floats, reduced: Floats, load: float) -> Measured:
-    """Return the friction of independent forces, and of those as they were under one load."""
-    return Measured(*_statistics(forces), *(each / load for each in _statistics(reduced)))
+def _rounding(force: Floats) -> float:
+    """Return the standard deviation (N) of the rounding that noise leaves in a digitised force."""
+    step = resolution(force)
+    if not step or len(force) <= ORDER:
+        return 0.0
+    noise = white_noise(force, step)
+    return float(step / 12.0**0.5 * np.exp(-2.0 * (np.pi * noise / step) ** 2))
+
+
+def _over(forces: Floats, reduced: Floats, load: float, rounding: float = 0.0) -> Measured:
+    """Return the friction of forces, and of those as they were under one load.
+
+    Rounding (N) may be the same for all of them: no mean is better than that.
+    """
+    force, error, spread = _statistics(forces)
+    mu, mu_error, mu_spread = (each / load for each in _statistics(reduced))
+    error, mu_error = np.hypot(error, rounding), np.hypot(mu_error, rounding / load)
+    return Measured(force, float(error), spread, mu, float(mu_error), mu_spread)
 
 
 def _statistics(values: Floats) -> tuple[float, float, float]:
-    """Return mean, standard error and spread of independent values."""
-    spread = float(values.std(ddof=1)) if len(values) > 1 else np.nan
-    return float(values.mean()), spread / len(values) ** 0.5, spread
+    """Return mean, standard error and spread of values, of which neighbours may be alike."""
+    mean, spread = _mean_and_spread(values)
+    return mean, spread * (correlation_time(values) / len(values)) ** 0.5, spread
+
+
+def _mean_and_spread(values: Floats) -> tuple[float, float]:
+    """Return mean and standard deviation of values."""
+    return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
 
 
 def _sliding(
@@ -253,6 +276,6 @@ def _sliding(
     slides, load = record.time >= begin, record.normal_load or np.nan
     force, reduced = record.force[slides], record.force[slides] / relative[slides]
     blocks = _over(part_means(force, BLOCKS), part_means(reduced, BLOCKS), load)
-    return _over(force, reduced, load)._replace(
-        error=blocks.error, coefficient_error=blocks.coefficient_error
-    )
+    mean, spread = _mean_and_spread(force)
+    mu, mu_spread = (each / load for each in _mean_and_spread(reduced))
+    return Measured(mean, blocks.error, spread, mu, blocks.coefficient_error, mu_spread)

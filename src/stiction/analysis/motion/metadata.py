@@ -14,13 +14,16 @@ from stiction.analysis.motion.drift import find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
 from stiction.arrays import Floats, xr
+from stiction.recording.sensor import white_noise
 from stiction.text.units import in_words
 
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
 LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
 SLOW_SLIP = 0.1
+REACH = 3.0  # standard deviations of noise: a force that is nearer to a peak may be on it
 RESTED = 1.1  # times two falls: rest makes a period longer; less may be another asymmetry
 PARTS = 200  # of a record, for the speed of a drive that may turn
 TO_AND_FRO = 0.5  # of its reach: a drive that comes less far on the whole turns
@@ -181,11 +184,28 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
     if kind == HARMONIC:
         how = f"period of its swings{' less the rest' if rests else ''}"
     swing = float(np.median(swings))
-    lowest = HEAVIER if kind == HARMONIC else SLOW_SLIP
+    lowest, highest = HEAVIER, LIGHTER
+    if kind != HARMONIC:
+        longer, shorter = _unseen_ends(record, cycles)
+        lowest, highest = SLOW_SLIP * shorter**2, LIGHTER * longer**2
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
     error = 2.0 * found * _error(swings) / swing
-    return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, LIGHTER, how)
+    return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, highest, how)
+
+
+def _unseen_ends(record: Record, cycles: xr.Dataset) -> tuple[float, float]:
+    """Return by which factors slips may last longer, or shorter, than their falls are seen to.
+
+    A force that is within noise, or a step of its converter, of a peak or a trough may have left
+    it. Half a cosine begins and ends so, and the spring is loaded as slowly before and after it.
+    """
+    reach = REACH * white_noise(record.force) + resolution(record.force)
+    falls = cycles["trough_time"].values - cycles["peak_time"].values
+    share = min(reach / float(np.median(cycles["drop"])), 0.25)
+    hidden = 2.0 * float(np.arccos(1.0 - 2.0 * share)) / pi  # of a slip, at both ends
+    rate = max(float(np.median(cycles["stick_slope"])), 1e-300)
+    return 1.0 / (1.0 - hidden), max(1.0 - reach / rate / float(np.median(falls)), 0.0)
 
 
 def _error(values: np.ndarray) -> float:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats, Indices
 
+CORRELATED = 8  # values: of fewer no correlation is known
 CUT = 0.1  # share of the values left out at each end
 FAR = 8.0  # times the typical step from sample to sample
 FARTHER = 2.0  # times the motion on either side: a fast movement is not an outlier
@@ -63,6 +64,34 @@ def part_means(values: Floats, parts: int) -> Floats:
     """Return the means of equal parts of some values, see `part_starts`."""
     starts = part_starts(len(values), parts)
     return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
+
+
+def correlation_time(values: Floats) -> float:
+    """Return how many values in succession count as one independent value: 1 at least.
+
+    Twice the sum of the autocorrelations, less 1, as far as pairs of them are positive (C. J.
+    Geyer, Stat. Sci. 7, 473 (1992)). Values that alternate count as independent, and so do a few.
+
+    >>> correlation_time(np.tile([1.0, -1.0], 10))
+    1.0
+    """
+    count, left = len(values), values - values.mean() if len(values) else values
+    if count < CORRELATED or not left.any():
+        return 1.0
+    from scipy.fft import irfft, rfft
+
+    power = np.abs(rfft(left, 2 * count)) ** 2
+    share = irfft(power)[: count // 2]
+    share = share[: len(share) // 2 * 2].reshape(-1, 2).sum(axis=1) / share[0]
+    ends = np.flatnonzero(share <= 0.0)
+    return max(2.0 * float(share[: ends[0] if len(ends) else None].sum()) - 1.0, 1.0)
+
+
+def uniform_mean(values: Floats, length: int) -> Floats:
+    """Return the running mean over `length` values."""
+    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
+
+    return np.asarray(uniform_filter1d(values, max(length, 1), mode="nearest"))
 
 
 def trimmed_mean(values: Floats) -> Mean:

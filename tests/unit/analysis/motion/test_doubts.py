@@ -568,3 +568,31 @@ def test_creep_in_coarse_steps_contradicts_nothing(drop, steps, noise):
     rig = {"stiffness": 1e3, "drive_velocity": 1e-3}
     found = st.analyse(st.Record(time=time, force=step * np.round(force / step), **rig))
     assert "contradict this force" not in found.missing.get("creep", "")
+
+
+@pytest.mark.parametrize(("noise", "seed"), inside(12, (0.0, 0.02), (0.0, 99.0)))
+def test_a_slip_whose_ends_noise_hides_contradicts_no_mass(noise, seed):
+    """Half a cosine: noise of a hundredth of the drop hid a tenth of it at each end."""
+    time = np.arange(0.0, 30.0, 1e-3)
+    own = 0.1
+    phase = np.clip((time % 1.0 - 0.95) / (0.5 * own), 0.0, 1.0)
+    force = 1.0 + np.minimum(time % 1.0, 0.95) - 0.475 * (1.0 - np.cos(np.pi * phase))
+    force += 0.95 * noise * np.random.default_rng(int(seed)).standard_normal(len(time))
+    rig = {"stiffness": 1e3, "drive_velocity": 1e-3, "mass": 1e3 * (own / 2.0 / np.pi) ** 2}
+    found = st.analyse(st.Record(time=time, force=force, normal_load=10.0, **rig))
+    assert "check mass" not in " ".join(found.warnings)
+    heavy = found.record.model_copy(update={"mass": 30.0 * rig["mass"]})
+    assert "check mass" in " ".join(st.analyse(heavy).warnings)
+
+
+@pytest.mark.parametrize(("noise", "samples"), [(0.63, 100), (0.36, 24), (0.3, 60), (0.24, 10)])
+def test_drops_of_a_vibration_that_noise_falsifies_are_doubted(noise, samples):
+    """Of a vibration of 2 N the report said 2.17 N, or 1.88 N, and no more."""
+    turns = np.arange(0.0, 200.0, 1.0 / samples)
+    force = 3.0 + np.sin(2.0 * np.pi * turns)
+    assert "In noise" not in doubts_in_words(turns, force)
+    force = force + noise * np.random.default_rng(samples).standard_normal(len(turns))
+    found = st.analyse(st.Record(time=turns, force=force))
+    drop = re.search(r"of the same variance without that noise, ([\d.]+) N", str(found))
+    assert float(drop[1]) == pytest.approx(2.0, rel=0.03)
+    assert float(found.cycles["drop"].mean()) != pytest.approx(2.0, rel=0.03)

@@ -73,3 +73,28 @@ def test_a_short_first_loading_is_seen_in_a_long_record(cycles):
     friction = st.analyse(st.Record(time=time, force=force + noise, normal_load=10.0)).friction
     assert friction.break_away.force == pytest.approx(2.0, abs=0.02)
     assert friction.break_away.coefficient == pytest.approx(0.2, abs=0.002)
+
+
+def test_a_load_that_grows_is_no_drift():
+    load = 10.0 + 0.4 * TIME
+    found = st.analyse(st.Record(time=TIME, force=stick_slip(load), load=load))
+    assert "drifts" not in " ".join(found.warnings)
+
+
+def test_the_error_of_cycles_on_a_slow_wave_is_not_that_of_independent_ones():
+    """Over one and a half turns the mean is off by a fifth of its height; it was 0.24 +- 0.002."""
+    random = np.random.default_rng(1)
+    for noise in (0.0, 2e-3):
+        wave = 0.02 * np.cos(3.0 * np.pi * TIME / TIME[-1])
+        force = 1.75 + 0.25 * (TIME / 0.25 % 1.0) + wave + noise * random.standard_normal(len(TIME))
+        found = st.analyse(st.Record(time=TIME, force=force, normal_load=10.0)).friction
+        for each in found.static, found.kinetic:
+            assert each.error > 2.5 * each.spread / 80.0**0.5
+            assert each.coefficient_error == pytest.approx(0.1 * each.error)
+
+
+def test_peaks_that_a_converter_rounds_alike_are_not_known_without_error():
+    step = 0.04
+    force = step * np.round((1.713 + 0.25 * (TIME / 0.5 % 1.0)) / step)
+    found = st.analyse(st.Record(time=TIME, force=force, normal_load=10.0)).friction
+    assert found.static.error == pytest.approx(step / 12.0**0.5, rel=0.05)

@@ -14,11 +14,18 @@ from stiction.analysis.motion.changes.cycles import (
 )
 from stiction.analysis.motion.course import QUIET
 from stiction.analysis.motion.friction import Friction
+from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import Record
+from stiction.analysis.signals.robust import uniform_mean
 from stiction.arrays import xr
+from stiction.recording.sensor import white_noise
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 QUIET_SHARE = 0.15  # of the record
+# By how much drops of a vibration differ from those of a sine of the same variance, and noise over
+# drops, that are worth a word; cycles that show it
+OFF, LOUD, MANY = 0.03, 0.03, 8
 NAMED = 3  # cycles apart; more are counted
 
 
@@ -99,4 +106,28 @@ def doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Itera
         yield (
             f"{when} the force has no such cycles, for {lasts}: the report is of the cycles. "
             "Analyse that part by itself."
+        )
+
+
+def doubt_drops_in_noise(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt the drops of a vibration in noise: an extreme of noise is no mean of it.
+
+    Noise raises peaks, and the averages that it requires lower them. A sine has the variance of an
+    eighth of its squared drop; white noise adds its own to that.
+    """
+    if kind != HARMONIC or cycles.sizes["cycle"] < MANY:
+        return
+    noise, drop = white_noise(record.force), float(cycles["drop"].mean())
+    first, last = np.searchsorted(
+        record.time, [float(cycles["start"][0]), float(cycles["trough_time"][-1])]
+    )
+    force, length = record.force[first:last], round((last - first) / cycles.sizes["cycle"])
+    variance = float((force - uniform_mean(force, length)).var()) - noise**2
+    sine = (8.0 * max(variance, 0.0)) ** 0.5
+    if noise > LOUD * drop and sine > 0.0 and abs(drop / sine - 1.0) > OFF:
+        yield (
+            f"In noise of {in_words(noise, 'N')} (standard deviation) the drops are not accurate: "
+            f"their mean, {in_words(drop, 'N')}, is {percent(abs(drop / sine - 1.0))} "
+            f"{'above' if drop > sine else 'below'} that of a sine of the same variance without "
+            f"that noise, {in_words(sine, 'N')}."
         )

@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
+    doubt_drops_in_noise,
     doubt_loading,
     doubt_mean_period,
     doubt_quiet,
@@ -79,6 +80,7 @@ def warnings(
         *_mains(kind, cycles),
         *doubt_few_samples(record, cycles),
         *doubt_filter(record, cycles),
+        *doubt_drops_in_noise(record, kind, cycles),
         *_drift(record, kind, cycles),
         *_zero(record, friction, cycles),
         *doubt_times(record),
@@ -252,6 +254,8 @@ def _remedy_of_mass(ratio: float, kind: str) -> str:
 def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
     if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
         return
+    if record.load_variation() > VARIES:
+        return  # of which the force follows
     drift: Drift = find_drift(record, cycles)
     if drift.stands_out:
         late = drift.start > float(record.time[0])
