@@ -189,7 +189,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     alike = cycles.isel(cycle=slice(0)) if turns else cycles  # those of two strokes are none
     doubts = (
         warnings(record, regime.kind, alike, friction, stated) if run is None else unsteady(run)
-    ) + subtracted_lines(found.lines)
+    ) + subtracted_lines(found.lines, found.ringing)
     unreal = why_no_friction(friction, cycles) if run is None else ""
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)
@@ -245,8 +245,9 @@ def _oscillation(record: Record, run: Trajectory | None, cycles: xr.Dataset) -> 
 def _friction(
     record: Record, found: Swings, usual: xr.Dataset, regime: Regime, turns: str
 ) -> Friction:
-    """Find the friction of a record without its hum, as far as what `turns` round leaves any."""
-    clean = record.model_copy(update={"force": found.force}) if found.lines else record
+    """Find the friction without hum and ringing, as far as what `turns` round leaves any."""
+    changed = found.lines or found.ringing
+    clean = record.model_copy(update={"force": found.force}) if changed else record
     friction = find_friction(clean, regime, usual)
     if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)

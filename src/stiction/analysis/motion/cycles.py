@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.course import built_up, dies_out
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
@@ -18,6 +19,7 @@ from stiction.analysis.motion.disturbance import (
     slow_wave,
 )
 from stiction.analysis.motion.hesitations import cycle_corners
+from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_frequencies
@@ -27,6 +29,7 @@ from stiction.analysis.signals.turning_points import TurningPoints, turning_poin
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
 
+FEWEST = 3  # cycles beside a ringing
 LINES = 4  # subtracted at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least
 OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
@@ -112,6 +115,8 @@ class Swings(NamedTuple):
         (n,), N, without these lines and without wild samples.
     wave : float
         From crest to trough of a slower wave that carries the cycles, N; 0 if there is none.
+    ringing : Ringing or None
+        What dies out within the record beside the cycles, as after a knock; `force` is without it.
     """
 
     table: CycleTable
@@ -122,6 +127,7 @@ class Swings(NamedTuple):
     force: Floats
     lines: tuple[Line, ...] = ()
     wave: float = 0.0
+    ringing: Ringing | None = None
 
     @property
     def lasting(self) -> CycleTable:
@@ -146,8 +152,9 @@ def swings(record: Record) -> Swings:
     if force is not record.force:
         record = record.model_copy(update={"force": force})
     found, grid = _swings(record), even_grid(record.time)
-    if grid is None:
-        return found
+    lasting = _cycles_beside_a_ringing(record, found)
+    if grid is None or lasting is not None:
+        return found if lasting is None else lasting
     for _ in range(LINES):
         carried = _cycles_on_a_wave(record, grid, found)
         if carried is not None:
@@ -157,6 +164,19 @@ def swings(record: Record) -> Swings:
             break
         record, found = without
     return found
+
+
+def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
+    """Return stick-slip that goes on before or after swings that die out, as after a knock."""
+    ringing = None if record.slip_speed is not None else ringing_of(record.time, found.table)
+    if ringing is None:
+        return None
+    smooth = without_ringing(record.time, record.force, ringing)
+    left = _swings(record.model_copy(update={"force": smooth}))
+    left = left._replace(table=beside(left.table, ringing), ringing=ringing)
+    enough = len(left.table) >= FEWEST and not left.dying
+    sticks = enough and rest_share(left.table.median("rise_share")) >= STICKING
+    return left if sticks else None
 
 
 def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings) -> Swings | None:

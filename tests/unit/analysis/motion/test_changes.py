@@ -106,3 +106,20 @@ def test_parts_of_many_cycles(count):
         found = parts_of(period)
         assert len(found) == parts
         assert [*range(count)] == [k for part in found for k in range(count)[part]]
+
+
+@pytest.mark.parametrize("height", [-8.0, 5.0, 15.0])
+@pytest.mark.parametrize("number", [8, 18])
+def test_stick_slip_goes_on_beside_a_knock_that_rings(number, height):
+    """It was a vibration that dies down, of a mass that slides steadily."""
+    time, force = saw(np.ones(number), rate=400.0)
+    since = time - 0.5 * number - 0.3
+    rings = height * np.exp(-since / 0.15) * np.cos(2.0 * np.pi * 20.0 * since)
+    knocked = force + np.where(since > 0.0, rings, 0.0)
+    found = st.analyse(st.Record(time=time, force=knocked, normal_load=10.0))
+    assert found.regime.kind == "stick-slip"
+    assert found.summary["mean"].sel(quantity="drop") == pytest.approx(1.0, rel=0.05)
+    assert found.friction.static.force == pytest.approx(2.0, abs=0.02)
+    assert "as after a knock" in " ".join(found.warnings)
+    dying = st.analyse(st.Record(time=time, force=1.5 + np.where(since > 0.0, rings, 0.0)))
+    assert dying.regime.kind == "settling"

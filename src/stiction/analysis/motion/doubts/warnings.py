@@ -7,6 +7,7 @@ from math import log10, pi
 
 import numpy as np
 
+from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
     doubt_drops_in_noise,
@@ -89,9 +90,16 @@ def warnings(
     return tuple(found)
 
 
-def subtracted_lines(lines: tuple[Line, ...]) -> tuple[str, ...]:
-    """Return a sentence for each line that was subtracted from the force."""
+def subtracted_lines(lines: tuple[Line, ...], ringing: Ringing | None) -> tuple[str, ...]:
+    """Return a sentence for each line, and a ringing, that was taken out of the force."""
     found = []
+    if ringing is not None:
+        lasts = in_words(ringing.end - ringing.begin, "s")
+        found.append(
+            f"From {in_words(ringing.begin, 's')} on, for {lasts}, the force rings by up to "
+            f"{in_words(ringing.height, 'N')}, less and less, as after a knock, or where cycles "
+            "end: there a straight line replaced it before the search for cycles."
+        )
     for line in lines:
         hum = ", probably mains hum," if of_mains(line.frequency) else ""
         found.append(
