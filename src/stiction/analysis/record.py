@@ -321,6 +321,12 @@ class Record(Described):
         sure = rest > CERTAIN * (2.0 / len(self)) ** 0.5 * noise
         return float((8.0 * rest) ** 0.5 / self.load.mean()) if sure else 0.0
 
+    def before(self, end: float) -> Self:
+        """Return the part of the record before a time, s."""
+        last = int(np.searchsorted(self.time, end))
+        cut = {name: values[:last] for name, values in self.channels().items()}
+        return self.model_copy(update={"time": self.time[:last], **cut})
+
     def channels(self) -> dict[str, Floats]:
         """Return the measured channels by name, (n,) each, in SI; the force first."""
         found = {name: getattr(self, name) for name in CHANNELS}

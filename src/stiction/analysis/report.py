@@ -15,6 +15,7 @@ from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.changes.cycles import cycles_apart
+from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import summary
 from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.doubts.warnings import (
@@ -248,6 +249,10 @@ def _friction(
     """Find the friction without hum and ringing, as far as what `turns` round leaves any."""
     changed = found.lines or found.ringing
     clean = record.model_copy(update={"force": found.force}) if changed else record
+    if "levels" in regime.evidence:
+        first = clean.before(levels(clean)[0].end)
+        several = "the force stays at several levels, each with its own: see the parts"
+        return find_friction(first, regime, usual).without_kinetic(several)
     friction = find_friction(clean, regime, usual)
     if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)

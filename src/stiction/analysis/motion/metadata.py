@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import parts_of, steady_change
+from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.drift import find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
@@ -289,7 +290,7 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | No
     if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
         return None
     drift = find_drift(record, cycles)
-    if not isfinite(drift.error):
+    if not isfinite(drift.error) or (not cycles.sizes["cycle"] and levels(record)):
         return None
     how = "line through the middles of cycles" if cycles.sizes["cycle"] else "its second half"
     return StatedQuantity("drift of the force", "N/s", drift.rate, drift.error, nan, nan, nan, how)

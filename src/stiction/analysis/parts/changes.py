@@ -1,4 +1,7 @@
-"""The parts of a record in which cycles have a period of their own, as steps of the drive make."""
+"""The parts of a record with their own period of cycles, or level of the force.
+
+Steps of the velocity of the drive, or of the load, make them.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import parts_of
+from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.parts.wording import number
 from stiction.arrays import Floats, xr
 from stiction.text.sections import Section, Table
@@ -26,12 +30,24 @@ COLUMNS = {
     "drop": ("N", "drop"),
 }
 
+# of each level of a force without cycles
+LEVEL = {
+    "begin": "s",
+    "end": "s",
+    "force": "N",
+    "error": "N",
+    "coefficient": "1",
+    "coefficient_error": "1",
+}
+
 
 def section(found: Analysis) -> Section | None:
     """Return a row for each part; None where there is a single one."""
     parts: xr.Dataset | None = found.parts["changes"]
     if parts is None:
         return None
+    if "coefficient" in parts:
+        return _section_of_levels(parts)
     names = [name for name in COLUMNS if np.isfinite(parts[name].values).any()]
     rows = []
     for k in range(parts.sizes["part"]):
@@ -47,9 +63,31 @@ def section(found: Analysis) -> Section | None:
     return Section("Parts", lines, Table(headings, rows))
 
 
+def _section_of_levels(parts: xr.Dataset) -> Section:
+    """Return a row for each level of a force without cycles."""
+    rows = []
+    for k in range(parts.sizes["part"]):
+        row = {name: float(parts[name][k]) for name in LEVEL}
+        mu = with_error(row["coefficient"], row["coefficient_error"], "1")
+        force = with_error(row["force"], row["error"], "N")
+        known = mu if np.isfinite(row["coefficient"]) else ""
+        rows.append((in_words(row["begin"], "s"), in_words(row["end"], "s"), known, force))
+    lines = ["The force stays at levels one after the other; its way between them is left out."]
+    return Section("Parts", lines, Table(("from", "to", "µ", "force"), rows))
+
+
 def find(found: Analysis) -> xr.Dataset | None:
     """Return the means over each part of a record, with standard errors; None for one part."""
     cycles = found.cycles
+    if "levels" in found.regime.evidence:
+        its = levels(found.record)
+        return xr.Dataset(
+            {
+                name: ("part", [getattr(each, name) for each in its], {"units": unit})
+                for name, unit in LEVEL.items()
+            },
+            {"part": ("part", np.arange(1, len(its) + 1))},
+        )
     if isinstance(found.source, Trajectory) or not found.regime.loads:
         return None
     places = parts_of(cycles["period"].values)

@@ -123,3 +123,30 @@ def test_stick_slip_goes_on_beside_a_knock_that_rings(number, height):
     assert "as after a knock" in " ".join(found.warnings)
     dying = st.analyse(st.Record(time=time, force=1.5 + np.where(since > 0.0, rings, 0.0)))
     assert dying.regime.kind == "settling"
+
+
+def test_a_sliding_mass_driven_in_steps_has_a_friction_at_each_level():
+    """It was one kinetic friction, with an error, and a drift of the load cell."""
+    time = np.arange(0.0, 80.0, 0.01)
+    levels = np.array([0.2, 0.23, 0.2, 0.26])
+    step = np.minimum(time // 20.0, 3.0).astype(int)
+    mu = levels[step] + np.where(step > 0, levels[step - 1] - levels[step], -0.2) * np.exp(
+        -(time % 20.0) / 1.5
+    )
+    noise = 5e-3 * np.random.default_rng(1).standard_normal(len(time))
+    found = st.analyse(st.Record(time=time, force=10.0 * mu + noise, normal_load=10.0))
+    table = found.parts["changes"]
+    assert table["coefficient"].values == pytest.approx(levels, abs=1e-3)
+    assert table["begin"].values == pytest.approx(20.0 * np.arange(4), abs=10.0)
+    assert found.friction.kinetic is None
+    assert found.warnings == ()
+    assert "several levels" in str(found)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_friction_that_wanders_stays_at_no_level(seed):
+    random = np.random.default_rng(seed)
+    force = 100.0 + 0.3 * np.cumsum(random.standard_normal(4000)) * (seed % 2)
+    force += 10.0 * random.standard_normal(4000) + 3.0 * np.exp(-np.arange(4000) / 200.0)
+    record = st.Record(time=0.01 * np.arange(4000), force=force)
+    assert "levels" not in st.analysis.classify(record).evidence

@@ -380,8 +380,10 @@ def test_words_say_no_more_than_a_force_shows() -> None:
     holds = np.where(time % 5.0 < 3.0, 1.0 + 0.1 * np.exp(-10.0 * (time % 5.0)), 0.95)
     stiff = {"stiffness": "1 kN/m", "mass": "250 g"}
     for force, known, words in (
-        (np.where(time < 10.0, 1.0, 1.4), {}, "The force settles, and the mass comes to slide"),
-        (np.where(time < 10.0, 1.4, 1.0), {}, "slides steadily, or it rests"),
+        (np.where(time < 10.0, 1.0, 1.4), {}, "The force stays at several levels"),
+        (np.where(time < 10.0, 1.4, 1.0), {}, "At a lower level it may rest"),
+        (1.0 + 0.4 * np.exp(-time), {}, "slides steadily, or it rests"),
+        (1.4 - 0.4 * np.exp(-time), {}, "The force settles, and the mass comes to slide"),
         (2.0 + np.exp(-time) * np.sin(25.0 * time), {}, "The vibration dies down"),
         (swing, {}, "The force swings 9 times, every 1.99"),
         (swing, stiff, " times as quickly: friction, load or drive change so"),

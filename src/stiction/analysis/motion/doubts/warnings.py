@@ -7,6 +7,7 @@ from math import log10, pi
 
 import numpy as np
 
+from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
@@ -263,7 +264,9 @@ def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
     if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
         return
     if record.load_variation() > VARIES:
-        return  # of which the force follows
+        return  # which the force follows
+    if not cycles.sizes["cycle"] and levels(record):
+        return
     drift: Drift = find_drift(record, cycles)
     if drift.stands_out:
         late = drift.start > float(record.time[0])

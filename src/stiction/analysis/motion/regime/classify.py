@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
@@ -80,6 +81,9 @@ def regime_of(record: Record, found: Swings) -> Regime:
         period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))
     seen = by_course(record, found)
+    stays = levels(record) if record.slip_speed is None else []
+    if stays:
+        return seen._replace(evidence=seen.evidence | {"levels": len(stays)})
     frequency = seen.evidence.get("hump")
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
 

@@ -77,6 +77,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "swings": ("{} swings, each smaller than the last but for noise", _whole),
     "last_over_first": ("the last force drop is {} times the first", _three_digits),
     "turns": ("{} peaks and troughs make no complete cycle", _whole),
+    "levels": ("it stays at {} levels, one after the other", _whole),
     "change": ("the force changes by {} from beginning to end", _force),
     "span": ("it spans {}, averaged over a 32nd of the time", _force),
     "scatter": ("it scatters by {} about that", _force),

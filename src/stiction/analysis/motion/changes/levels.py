@@ -1,0 +1,95 @@
+"""Levels at which a force stays one after the other, as where a sliding mass is driven in steps."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.analysis.record import Record
+from stiction.analysis.signals.robust import correlation_time, part_means
+from stiction.arrays import Floats
+
+PARTS = 200  # means of a record
+LONG = 12  # of them, in each level; levels take so much of the record together
+MOST = 0.6
+# Standard deviations of a mean: by how much those of a level differ from its median, the standard
+# deviation of all of them, and the change to the next level. A random walk is 1.4 in 12 steps and
+# comes no farther than its root of their number
+WITHIN, EVEN, CHANGED = 5.0, 2.0, 12.0
+WORTH = 0.02  # of the force: a change that is less is not worth a level
+QUICK = 1.0  # of the shorter level: a change takes no longer
+
+
+class Level(NamedTuple):
+    """When a force stays at a level (s), its mean (N), the standard error of that, and of mu."""
+
+    begin: float
+    end: float
+    force: float
+    error: float
+    coefficient: float
+    coefficient_error: float
+
+
+def levels(record: Record) -> list[Level]:
+    """Return the levels of a force, one after the other; none if there are not two or more.
+
+    They are sought in the force under one load, if the load is measured.
+    """
+    if len(record) < 4 * PARTS:
+        return []
+    relative = record.relative_load()
+    reduced = record.force / relative
+    if not np.isfinite(reduced).all():
+        return []
+    means, raw, times = (part_means(x, PARTS) for x in (reduced, record.force, record.time))
+    noise = float(np.median(np.abs(np.diff(means)))) / 0.6745 / 2.0**0.5
+    runs = _runs(means, noise)
+    if len(runs) < 2 or sum(run.stop - run.start for run in runs) < MOST * PARTS:
+        return []
+    if not all(_changes(means, noise, *pair) for pair in pairwise(runs)):
+        return []
+    half, load = 0.5 * (times[1] - times[0]), record.normal_load or np.nan
+    found = []
+    for run in runs:
+        (force, error), (mu, mu_error) = _mean(raw[run]), _mean(means[run] / load)
+        ends = float(times[run.start] - half), float(times[run.stop - 1] + half)
+        found.append(Level(*ends, force, error, mu, mu_error))
+    return found
+
+
+def _runs(means: Floats, noise: float) -> list[slice]:
+    """Return the long runs of means that stay about their median."""
+    runs, first = [], 0
+    while first <= len(means) - LONG:
+        end = first + LONG
+        if not _stays(means[first:end], noise):
+            first += 1
+            continue
+        while end < len(means) and abs(means[end] - np.median(means[first:end])) < WITHIN * noise:
+            end += 1
+        runs.append(slice(first, end))
+        first = end
+    return runs
+
+
+def _stays(means: Floats, noise: float) -> bool:
+    """Return whether means stay about their median as independent ones do."""
+    far = np.abs(means - np.median(means)).max()
+    return bool(far < WITHIN * noise and means.std() < EVEN * noise)
+
+
+def _changes(means: Floats, noise: float, one: slice, two: slice) -> bool:
+    """Return whether a level follows another at once, and differs from it."""
+    before, after = float(np.median(means[one])), float(np.median(means[two]))
+    least = max(CHANGED * noise, WORTH * max(abs(before), abs(after)))
+    shorter = min(int(run.stop - run.start) for run in (one, two))
+    return abs(after - before) > least and two.start - one.stop <= QUICK * shorter
+
+
+def _mean(values: Floats) -> tuple[float, float]:
+    """Return the mean of a level, and its standard error."""
+    error = float(values.std(ddof=1)) * (correlation_time(values) / len(values)) ** 0.5
+    return float(values.mean()), error
