@@ -48,9 +48,9 @@ IMPOSED = {  # by the evidence
     f"{BY_STROKES}",
     "straight": "The force rises and falls evenly, as where a drive goes back and forth and the "
     "mass sticks, or the load changes so. No vibration has such a shape.",
-    "levels": "The force stays at several levels, one after the other, as where the velocity of the "
-    "drive, or the load, changes in steps while the mass slides. At a lower level it may rest, as "
-    "where the drive has stopped.",
+    "levels": "The force stays at several levels, one after the other, as where the velocity of "
+    "the drive, or the load, changes in steps while the mass slides. At a lower level it may "
+    "rest, as where the drive has stopped.",
     "plateaus": "The force goes back and forth between two levels, as where the drive does so, or "
     f"the load changes in steps. {BY_STROKES}",
 }

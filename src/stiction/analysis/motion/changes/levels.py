@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import correlation_time, part_means
+from stiction.analysis.signals.robust import correlation_time, median, part_means
 from stiction.arrays import Floats
 
 PARTS = 200  # means of a record
@@ -40,12 +40,13 @@ def levels(record: Record) -> list[Level]:
     """
     if len(record) < 4 * PARTS:
         return []
-    relative = record.relative_load()
-    reduced = record.force / relative
-    if not np.isfinite(reduced).all():
+    raw, times = (part_means(x, PARTS) for x in (record.force, record.time))
+    means = raw if record.load is None else part_means(record.force / record.relative_load(), PARTS)
+    if not np.isfinite(means).all():
         return []
-    means, raw, times = (part_means(x, PARTS) for x in (reduced, record.force, record.time))
     noise = float(np.median(np.abs(np.diff(means)))) / 0.6745 / 2.0**0.5
+    if not np.ptp(means) > CHANGED * noise:
+        return []
     runs = _runs(means, noise)
     if len(runs) < 2 or sum(run.stop - run.start for run in runs) < MOST * PARTS:
         return []
@@ -61,24 +62,19 @@ def levels(record: Record) -> list[Level]:
 
 
 def _runs(means: Floats, noise: float) -> list[slice]:
-    """Return the long runs of means that stay about their median."""
-    runs, first = [], 0
-    while first <= len(means) - LONG:
-        end = first + LONG
-        if not _stays(means[first:end], noise):
-            first += 1
+    """Return the long runs of means that stay about their median, as independent ones do."""
+    windows = np.lib.stride_tricks.sliding_window_view(means, LONG)
+    far = np.abs(windows - np.median(windows, axis=1)[:, None]).max(axis=1)
+    stays = (far < WITHIN * noise) & (windows.std(axis=1) < EVEN * noise)
+    runs, end = [], 0
+    for first in np.flatnonzero(stays):
+        if first < end:
             continue
-        while end < len(means) and abs(means[end] - np.median(means[first:end])) < WITHIN * noise:
+        end = int(first) + LONG
+        while end < len(means) and abs(means[end] - median(means[first:end])) < WITHIN * noise:
             end += 1
-        runs.append(slice(first, end))
-        first = end
+        runs.append(slice(int(first), end))
     return runs
-
-
-def _stays(means: Floats, noise: float) -> bool:
-    """Return whether means stay about their median as independent ones do."""
-    far = np.abs(means - np.median(means)).max()
-    return bool(far < WITHIN * noise and means.std() < EVEN * noise)
 
 
 def _changes(means: Floats, noise: float, one: slice, two: slice) -> bool:
