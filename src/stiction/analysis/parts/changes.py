@@ -23,10 +23,10 @@ if TYPE_CHECKING:
 # columns of each part: unit, meaning; each mean has its standard error
 COLUMNS = {
     "period": ("s", "period"),
-    "stick_slope": ("N/s", "rate of loading"),
-    "velocity": ("m/s", "rate over stiffness"),
-    "peak": ("N", "static: peaks"),
-    "middle": ("N", "kinetic: middles"),
+    "stick_slope": ("N/s", "loading"),
+    "velocity": ("m/s", "velocity"),
+    "peak": ("N", "peaks"),
+    "middle": ("N", "middles"),
     "drop": ("N", "drop"),
 }
 
@@ -59,7 +59,11 @@ def section(found: Analysis) -> Section | None:
         )
         rows.append((*ends, str(int(row["number"])), *means))
     headings = ("from", "to", "cycles", *(COLUMNS[name][1] for name in names))
-    lines = ["The period of the cycles changes: each part has means of its own."]
+    lines = [
+        "The period of the cycles changes: each part has means of its own. The velocity is the "
+        "rate of loading over the stiffness; static friction is that of the peaks, kinetic that "
+        "of the middles between peaks and troughs."
+    ]
     return Section("Parts", lines, Table(headings, rows))
 
 
