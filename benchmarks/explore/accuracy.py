@@ -17,6 +17,7 @@ import numpy as np
 from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
 from benchmarks.explore.systems.general import general_system
 from benchmarks.explore.systems.set_valued import system
+from benchmarks.explore.systems.slow import slow_system
 from benchmarks.explore.systems.unsteady import unsteady_system
 from benchmarks.explore.systems.with_state import state_system
 from benchmarks.section import Section, Table
@@ -36,6 +37,7 @@ DRAWN = {
     "state": state_system,
     "unsteady": unsteady_system,
     "general": general_system,
+    "slow": slow_system,
 }
 SHARES = (0.5, 0.9, 0.99, 0.999, 1.0)
 WORST = 10

@@ -15,6 +15,8 @@ from stiction.solver.segments import Stretch, begin, fastest_swing, speeds, syst
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 
+# Of the force, as the error of its rounding: slip that grows out of it is known no better
+ROUNDING = 1e-15
 LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
 LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
 TINY = float(np.finfo(np.float64).tiny)
@@ -29,7 +31,8 @@ class Accuracy(NamedTuple):
     speed : slip speed below which these are absolute, m/s; free_x, free_y : elongation rates that
     friction alone can cause, mu_0 W/sqrt(m k), m/s: limits of the scale of a fast slip, so that the
     springs' own motion is resolved; longest : step size that still resolves drive and load, s;
-    drive : its speed along x, or along y if it has none there, m/s, upper limit of a slip's scale;
+    drive : its speed along x, or along y if it has none there, m/s, upper limit of a slip's scale,
+    but no smaller than rounding lets the fastest slip be solved;
     square_x, square_y : m/k, the square of the time in which each spring swings by a radian, s^2;
     touch : least spare friction of a true stick, m/s; inside : relative error that samples inside
     a step may have: below the tolerance they are solved for; least : smallest motion about steady
@@ -89,7 +92,9 @@ def accuracy(
     without a drive a millionth of the speed that friction can give the mass on its spring, which is
     also the upper limit; without either a tiny share of the initial speeds. Friction that weakens
     at the rate g = -F'(0)/m per second lets slip grow from k V/(m g^2), which must then be
-    resolved; k is the acting stiffness, and g the steepest rate up to some V.
+    resolved; k is the acting stiffness, and g the steepest rate up to some V. Slip that the
+    rounding of forces makes in 1/g, or in a radian of the spring, is no error; where a law has
+    states, friction that rises with any slip keeps it smaller.
     """
     along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
     law: Any = slider.law
@@ -104,16 +109,19 @@ def accuracy(
     speed, k = (across, system.k_y) if across > 0.0 else (along or 1e-6 * free, system.k_x)
     if free > 0.0:
         speed = min(speed, free)
-    weakening = 0.0 if has_state(law) else steepest_weakening(law, speed) * load
-    speed = max(speed / (1.0 + weakening**2 / (k * system.mass)), LEAST_SPEED * elastic, TINY)
-    local = tolerance(rtol)
+    local, weakening, rounding = tolerance(rtol), 0.0, 0.0
+    if not has_state(law):
+        weakening = steepest_weakening(law, speed) * load
+        rounding = ROUNDING * free / (1.0 + weakening / sqrt(k * system.mass)) / local
+    speed = speed / (1.0 + weakening**2 / (k * system.mass))
+    speed = max(speed, rounding, LEAST_SPEED * elastic, TINY)
     # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
     newton = min(0.2, 100.0 * sqrt(local)) * local
     rate = fastest_swing(stretch.problem)
     longest = 0.5 * pi / rate if rate > 0.0 else inf
-    drive = along or across or inf
-    touch = local * speed
     least = LEAST_MOTION * (along + across + free_x + free_y) / local
+    drive = max(along or across or inf, least)
+    touch = local * speed
     return Accuracy(
         local, newton, speed, free_x, free_y, longest, drive, square_x, square_y, touch, inside,
         least,

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled, inlined
-from stiction.solver.exact.pursuit import land, pursuit
+from stiction.solver.exact.pursuit import INSTANT, land, pursuit
 from stiction.solver.exact.record import StepRecord, keep_step
 from stiction.solver.exact.sampling import end_of_step, sample_slip, sample_stick
 from stiction.solver.exact.slip_frame import (
@@ -193,6 +193,23 @@ def at_rest(problem: Problem, motion: Motion, accuracy: Accuracy) -> bool:
 
 
 @inlined
+def beyond_floats(start: Outset, motion: Motion, accuracy: Accuracy) -> Motion:
+    """Return a slip that changes faster than the clock goes as it is an instant later (M50a).
+
+    Slip that friction and springs end, or turn back, within an instant is at rest, if they slow it
+    by more than the rounding of forces. One that takes off, and that friction weakens faster, has
+    the speed that counts as zero. All other slip stays as it is.
+    """
+    t, u_x, u_y, r, e_x, e_y = motion
+    slows = start.f - start.a_1
+    if r == 0.0:
+        r = accuracy.tolerance * accuracy.speed
+    elif slows > INSTANT * start.f and r < slows * INSTANT * abs(t):
+        r = 0.0
+    return Motion(t, u_x, u_y, r, e_x, e_y)
+
+
+@inlined
 def advance(
     problem: Problem,
     state: State,
@@ -261,7 +278,12 @@ def advance(
             problem, frame, start, state, smooth, accuracy, times, samples, k, record
         )
         if not done:
-            return STEP_UNDERFLOW, state, k, turn
+            r = motion.r
+            motion = beyond_floats(start, motion, accuracy)
+            if motion.r == r:
+                return STEP_UNDERFLOW, state, k, turn
+            state = State(motion, at_takeoff(state.memory), state.counts)
+            continue
         if smooth < t_end and state.motion.t >= smooth:
             state = State(state.motion, after_cut(state.memory), state.counts)
     code = COMPLETED if state.motion.t >= t_end else RUNNING
