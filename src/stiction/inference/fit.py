@@ -9,10 +9,10 @@ import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.drive import ConstantVelocity
-from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
 from stiction.inference.calibration import study
-from stiction.inference.library import SIMULATIONS, Library, Plan, build, plan
+from stiction.inference.library import SIMULATIONS, Library, Plan, build, plan, refuse_too_few
 from stiction.inference.observation import Conditions, Observation, observe_all
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
@@ -121,11 +121,7 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
     ResultError
         If too few of its simulations have cycles.
     """
-    if len(library.scores) < FEWEST:
-        raise ResultError(
-            f"only {len(library.scores)} of {library.wanted} simulated records have cycles of "
-            f"stick and slip, {FEWEST} are needed: check the priors, or simulate more"
-        )
+    refuse_too_few("simulated records", len(library.scores), library.wanted, FEWEST)
     observed = np.concatenate([each.features for each in seen])
     place = None if folder is None else folder / f"learned-{library.wanted}.npz"
     learned = study(library.features, library.scores, place)

@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from hashlib import sha256
+from math import ceil
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
+from stiction.errors import ResultError
 from stiction.inference.features import BEND, Cycles, FeatureGroup, features, find_cycles, parts
 from stiction.inference.jitter import Jitter, SampledMotion, move
 from stiction.inference.observation import Conditions
@@ -32,6 +34,7 @@ SPARE = 2  # cycles simulated beyond those that are used: the first begins from 
 LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
 NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names of priors
+SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
 FORMAT = 5  # of stored simulations and of what is learned from them
 
 
@@ -260,6 +263,24 @@ def dummy(conditions: Conditions) -> dict[str, Floats]:
     """Return channels of a sawtooth, which has as many features as any record."""
     saw = np.tile(np.concatenate([np.linspace(0.0, 1.0, 40), np.linspace(1.0, 0.0, 5)]), 8)
     return dict.fromkeys(conditions.noise, saw + 0.01)
+
+
+def refuse_too_few(what: str, usable: int, simulated: int, fewest: int) -> None:
+    """Refuse to learn from too few simulations with cycles; say how many would do.
+
+    Raises
+    ------
+    ResultError
+        If fewer than `fewest` have cycles.
+    """
+    if usable >= fewest:
+        return
+    enough = SAFE * fewest * simulated / max(usable, 1)
+    more = f", or take simulations = {ceil(enough / 100.0) * 100}" if usable else ""
+    raise ResultError(
+        f"only {usable} of {simulated} {what} have cycles of stick and slip, {fewest} are needed: "
+        f"check the priors{more}"
+    )
 
 
 def cache_folder() -> Path:

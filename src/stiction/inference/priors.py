@@ -216,7 +216,9 @@ def read_priors(slider: Slider, stated: Mapping[str, Mapping[str, Any]]) -> dict
     priors, faults = {}, []
     for path, table in stated.items():
         try:
-            prior = read_prior(table, Kind("a value", unit(slider, path), "1"))
+            its = unit(slider, path)
+            example = "1 deg" if its == "rad" else f"1 {its}".rstrip()
+            prior = read_prior(table, Kind(path, its, example))
             priors[path] = within_range(slider, path, prior)
         except PydanticCustomError as error:
             faults.append(Fault(path, error.message()))

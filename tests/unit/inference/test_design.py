@@ -7,7 +7,7 @@ import pytest
 from tests.uncertain import TEXT
 
 import stiction as st
-from stiction.inference.library import Plan
+from stiction.inference.library import Plan, refuse_too_few
 from stiction.inference.next_test import design as module
 from stiction.inference.next_test import further
 from stiction.inference.next_test.advice import Advice, Expected, expectation, misses
@@ -138,8 +138,36 @@ def test_a_test_that_is_surely_better_is_named_though_another_may_be_better_stil
     assert sure.startswith("Most is learned of jitter from this: the force across.")
     assert perhaps.startswith("Perhaps more from this, but that is not sure: under 8 N, 0.53")
     assert "the force across" in repr(advice)
+    text = " ".join(advice.sentences())
+    assert f"Whether it tells more than {AGAIN} is not sure" not in text
+    assert f"Not surely better than {AGAIN}" not in text
     unsure = replace(advice, tests=(tests[0], tests[1], tests[3]))
     assert unsure.sentences()[0].startswith("None of these tests clearly tells more of jitter")
+
+
+def test_a_test_that_may_be_no_better_than_the_same_again_is_not_recommended_and_dismissed():
+    """The force across told most, and was two sentences later "no better than" a repetition."""
+
+    def expected(test, *numbers):
+        return Expected(test, *(np.array([x]) for x in (0.1, 0.1, *numbers)), 1.0)
+
+    tests = (
+        expected("the present test", 1.0, 1.0, 1.0),
+        expected("the force across", 0.53, 0.47, 0.65),
+        expected("under 8 N", 0.86, 0.73, 1.04),
+        expected(AGAIN, 0.66, 0.44, 0.90),
+    )
+    plan = PLAN._replace(priors={"jitter": Normal(0.0, 1.0)})
+    said = Advice(plan, "jitter", tests, (), (), 200).sentences()
+    assert said[1] == f"Whether it tells more than {AGAIN} is not sure: more simulations would say."
+    assert said[2] == f"Not surely better than {AGAIN}: under 8 N."
+
+
+def test_too_few_cycles_say_how_many_simulations_would_do():
+    with pytest.raises(st.ResultError, match=r"check the priors, or take simulations = 200$"):
+        refuse_too_few("rigs", 65, 100, 100)
+    with pytest.raises(st.ResultError, match=r"check the priors$"):
+        refuse_too_few("rigs", 0, 100, 100)
 
 
 def test_a_record_of_the_present_test_is_repeated_as_it_is():

@@ -53,7 +53,11 @@ def test_shares_and_quantiles_are_inverse():
         ({"phi": "{low = 1, high = 2}"}, "degree or radian?"),
         ({"mu_0": '{low = 0.0, high = 0.3, scale = "log"}'}, "low must be above 0"),
         ({"mu_0": '{low = 0.1, high = 0.3, scale = "cubic"}'}, "write one of linear, log"),
-        ({"k_x": '{value = "1 kN/m", uncertainty = "5 s"}'}, "not a unit of"),
+        (
+            {"k_x": '{value = "1 kN/m", uncertainty = "5 s"}'},
+            "'5 s' is in s, not a unit of k_x; write for",
+        ),
+        ({"phi": '{value = "2 deg", uncertainty = "1 mm"}'}, "write for example '1 deg'"),
     ],
 )
 def test_a_fault_names_its_parameter(given, said):

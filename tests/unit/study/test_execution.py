@@ -20,6 +20,7 @@ import xarray as xr
 from tests.waiting import PATIENCE, until
 
 import stiction as st
+from stiction.study.execution.sweep import Recent, Tally
 from stiction.study.store.store import PENDING
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
@@ -265,3 +266,16 @@ def workers(watch) -> list[int]:
         answers = watch.run(os.getpid, on_error="return")
         found = [answer for answer in answers.values() if isinstance(answer, int)]
     return found
+
+
+@pytest.mark.parametrize(("workers", "compilation"), [(1, 10.0), (4, 1.0), (16, 0.1)])
+def test_the_rate_leaves_compilation_out(workers, compilation):
+    """From the third round of tasks of 1 s on several workers, it is theirs."""
+    recent, told = Recent(), []
+    for done in range(1, 12 * workers + 1):
+        seconds = compilation + (done - 1) // workers + 1.0
+        tally = Tally(1000, 0, done, 0, seconds, recent.since(done, seconds))
+        if done % workers == 0 and done // workers > max(2, 0.1 * compilation + 1):
+            told.append(tally.rate)
+    assert told == pytest.approx([workers] * len(told))
+    assert tally.left == pytest.approx((1000 - 12 * workers) / workers)

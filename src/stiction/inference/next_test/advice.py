@@ -217,8 +217,13 @@ class Advice:
                 f"None of these tests clearly tells more of {self.of} than the present one, whose "
                 f"typical error is {before}."
             )
-        if idle := self.no_better():
-            found.append(f"No better than {AGAIN}: {', '.join(idle)}.")
+        idle = self.not_surely_better()
+        if best is not None and best.test in idle:
+            found.append(
+                f"Whether it tells more than {AGAIN} is not sure: more simulations would say."
+            )
+        if others := [test for test in idle if best is None or test != best.test]:
+            found.append(f"Not surely better than {AGAIN}: {', '.join(others)}.")
         if self.skipped:
             found.append(
                 "Left out, as the rig does not stick and slip there in the middle of its priors: "
@@ -231,8 +236,8 @@ class Advice:
         found.append(f"Expected over {self.simulations} rigs drawn from the priors.")
         return found
 
-    def no_better(self) -> Sequence[str]:
-        """Return the names of tests that tell no more than one more test of the present kind."""
+    def not_surely_better(self) -> Sequence[str]:
+        """Return the names of tests within the interval of one more test of the present kind."""
         i = self.index
         (again,) = (test for test in self.tests if test.test == AGAIN)
         others = (test for test in self.ranked if test is not again)

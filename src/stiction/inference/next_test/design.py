@@ -10,7 +10,7 @@ from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.inference.fit import check, one_sided
-from stiction.inference.library import Plan, features_from, plan, simulate_all
+from stiction.inference.library import Plan, features_from, plan, refuse_too_few, simulate_all
 from stiction.inference.next_test.advice import Advice, Expected, expectation, misses, whole
 from stiction.inference.next_test.further import (
     AGAIN,
@@ -190,11 +190,7 @@ def expectations(
         return features[:, number * width : (number + 1) * width][:, columns]
 
     complete = whole(seen(0, present.channels))
-    if complete.sum() < FEWEST:
-        raise ResultError(
-            f"only {complete.sum()} of {len(complete)} rigs drawn from the priors have cycles of "
-            f"stick and slip, {FEWEST} are needed: check the priors, or simulate more"
-        )
+    refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST)
     truth = scores[complete]
     before = misses([seen(0, present.channels)[complete]], truth)
     yield expectation(trial, present.name, truth, before, before)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -106,6 +107,8 @@ class Tally(NamedTuple):
         Runs that failed in this sweep.
     seconds : float
         Time since this sweep began.
+    since : tuple of int and float
+        Runs and seconds from which the rate is counted: compilation comes once.
     """
 
     runs: int
@@ -113,11 +116,13 @@ class Tally(NamedTuple):
     now: int
     failed: int
     seconds: float
+    since: tuple[int, float] = (0, 0.0)
 
     @property
     def rate(tally) -> float:
-        """Runs per second."""
-        return tally.now / tally.seconds if tally.seconds > 0.0 else 0.0
+        """Runs per second, of late."""
+        runs, seconds = tally.now - tally.since[0], tally.seconds - tally.since[1]
+        return runs / seconds if seconds > 0.0 else 0.0
 
     @property
     def left(tally) -> float:
@@ -127,6 +132,35 @@ class Tally(NamedTuple):
 
 
 Report = Callable[[Tally], None]
+LATER = 1.1  # times the time of the first task: until then others began beside it
+
+
+class Recent:
+    """The latter half of the time since the first task came: what is quick there stays quick.
+
+    Before that task there is compilation; soon after it come those that began beside it.
+
+    Examples
+    --------
+    >>> recent = Recent()
+    >>> [recent.since(done, seconds) for done, seconds in ((1, 5.0), (2, 5.1), (3, 6.0), (9, 7.0))]
+    [(0, 0.0), (0, 0.0), (2, 5.1), (3, 6.0)]
+    """
+
+    def __init__(self) -> None:
+        """Begin without any task."""
+        self._came: deque[tuple[int, float]] = deque()
+        self._first = 0.0
+
+    def since(self, done: int, seconds: float) -> tuple[int, float]:
+        """Return the runs and seconds where that half begins, and take note of these."""
+        came = self._came
+        self._first = self._first if came else seconds
+        while len(came) > 1 and came[1][1] <= 0.5 * (self._first + seconds):
+            came.popleft()
+        begins = came[0] if came and seconds >= LATER * self._first else (0, 0.0)
+        came.append((done, seconds))
+        return begins
 
 
 def sweep(
@@ -196,12 +230,14 @@ def do(
     """Do blocks of a study on an engine."""
     layout, begun = store.layout, perf_counter()
     left = sum(runs_of(layout.region(task)) for task in tasks)
-    tally = Tally(layout.runs, layout.runs - left, 0, 0, 0.0)
+    tally, recent = Tally(layout.runs, layout.runs - left, 0, 0, 0.0), Recent()
     for came in (engine or Cores()).results(partial(do_block, study, store), tasks):
+        now, seconds = tally.now + came.runs, perf_counter() - begun
         tally = tally._replace(
-            now=tally.now + came.runs,
+            now=now,
             failed=tally.failed + came.failed,
-            seconds=perf_counter() - begun,
+            seconds=seconds,
+            since=recent.since(now, seconds),
         )
         if progress is not None:
             progress(tally)
