@@ -22,6 +22,7 @@ from stiction.result.file import (
     as_written,
     damaged_parts,
     is_netcdf,
+    new_netcdf,
     seal_tables,
     sign,
     write_table,
@@ -68,10 +69,10 @@ def write_stored(
     attributes["sensors"] = json.dumps({name: _fields(each) for name, each in sensors.items()})
     attributes["origin"] = "" if origin is None else origin.to_json()
     attributes[SEAL] = seal_tables({"record": ColumnTable(columns, attributes)})
-    h5netcdf: Any = import_module("h5netcdf")  # slow to import
+    table = ColumnTable(columns, attributes)
     with whole(target) as part:
-        with h5netcdf.File(part, "w") as file:
-            write_table(file, ColumnTable(columns, attributes))
+        with new_netcdf(part, table) as file:
+            write_table(file, table)
         sign(part)
     return target
 

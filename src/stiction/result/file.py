@@ -12,13 +12,16 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib import import_module
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from stiction.errors import ResultError, argument
+from stiction.machine import shortage
 from stiction.result.table import STICKS, VARIABLES, Column, ColumnTable
 from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
@@ -27,6 +30,7 @@ from stiction.storage.kinds import HDF5, RESULT, use_of
 from stiction.storage.version import own_version
 
 STICK_GROUP = "sticks"  # group of a result file
+GROWING = 2.0  # times its size, the memory of a file that grows in it
 CHUNK = 2**16  # samples per checksum of HDF5
 ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
@@ -38,12 +42,26 @@ MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 def write_result(samples: ColumnTable, sticks: ColumnTable, path: Path) -> None:
     """Write samples and sticks with checksums."""
-    h5netcdf: Any = import_module("h5netcdf")  # slow to import
     seal = seal_tables({"samples": samples, "sticks": sticks})
-    with h5netcdf.File(path, "w") as file:
+    with new_netcdf(path, samples, sticks) as file:
         write_table(file, ColumnTable(samples.columns, {**samples.attributes, SEAL: seal}))
         write_table(file.create_group(STICK_GROUP), sticks)
     sign(path)
+
+
+@contextmanager
+def new_netcdf(path: Path, *tables: ColumnTable) -> Iterator[Any]:
+    """Yield a file to write tables into, made in memory: HDF5 crashes where a disk is full.
+
+    Only tables that do not fit into memory once more go straight to the disk.
+    """
+    h5netcdf: Any = import_module("h5netcdf")  # slow to import
+    size = sum(column.values.nbytes for each in tables for column in each.columns.values())
+    made = path if shortage(GROWING * size) else BytesIO()
+    with h5netcdf.File(made, "w") as file:
+        yield file
+    if isinstance(made, BytesIO):
+        path.write_bytes(made.getbuffer())
 
 
 def write_table(group: Any, table: ColumnTable) -> None:

@@ -26,6 +26,9 @@ except ImportError:  # Windows: a process cannot lock a folder
 WORKSHOP = ".stiction-"  # prefix of a workshop's name
 AT_ONCE = 32  # files synced at a time: this takes a disk hardly longer than one file
 NETCDF = (".nc",)  # suffix of results and of records
+FORBIDDEN = (errno.EACCES, errno.EPERM, errno.EROFS)  # errors of folders that are not the user's
+FULL = (errno.ENOSPC, errno.EDQUOT)
+ELSEWHERE = "choose another folder"  # remedy of the former
 UNSYNCABLE = (errno.EINVAL, errno.ENOTSUP)  # errors of file systems that cannot sync a folder
 
 
@@ -42,8 +45,8 @@ def placeable(path: str | Path, suffixes: Collection[str] = ()) -> Path:
     Raises
     ------
     ResultError
-        If its name has another one, its folder does not exist, or something other than a file is
-        there.
+        If its name has another one, its folder does not exist or cannot be written to, or something
+        other than a file is there.
     """
     target = Path(path)
     if suffixes and target.suffix.lower() not in suffixes:
@@ -56,6 +59,7 @@ def placeable(path: str | Path, suffixes: Collection[str] = ()) -> Path:
         raise ResultError(f"{target}: folder {target.parent} does not exist; make it first")
     if target.exists() and not target.is_file():
         raise ResultError(f"{target}: exists and is not a file; choose another name")
+    _refuse_unwritable(target, target.parent)
     return target
 
 
@@ -65,12 +69,35 @@ def usable_folder(folder: Path) -> None:
     Raises
     ------
     ResultError
-        If something else is there, or its parent folder does not exist.
+        If something else is there, its parent folder does not exist, or neither can be written to.
     """
     if folder.exists() and not folder.is_dir():
         raise ResultError(f"{folder}: exists and is not a folder; choose another name")
     if not folder.exists() and not folder.parent.is_dir():
         raise ResultError(f"{folder}: folder {folder.parent} does not exist; make it first")
+    _refuse_unwritable(folder, folder if folder.exists() else folder.parent)
+
+
+def _refuse_unwritable(target: Path, folder: Path) -> None:
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise ResultError(
+            f"{target}: cannot be written: folder {folder} may not be written to; {ELSEWHERE}"
+        )
+
+
+def reason(error: OSError) -> str:
+    """Return why something cannot be written, and the remedy.
+
+    Examples
+    --------
+    >>> reason(OSError(errno.EROFS, "Read-only file system"))
+    'Read-only file system; choose another folder'
+    >>> reason(OSError(errno.ENOSPC, "No space left on device"))
+    'No space left on device; make room'
+    """
+    remedy = {**dict.fromkeys(FORBIDDEN, ELSEWHERE), **dict.fromkeys(FULL, "make room")}
+    known = remedy.get(error.errno or 0, "")
+    return f"{error.strerror or error}{known and f'; {known}'}"
 
 
 def make_folder(folder: Path) -> Path:
@@ -84,7 +111,7 @@ def make_folder(folder: Path) -> Path:
     try:
         folder.mkdir(exist_ok=True)
     except OSError as error:
-        raise ResultError(f"{folder}: cannot be made: {error.strerror or error}") from None
+        raise ResultError(f"{folder}: cannot be made: {reason(error)}") from None
     return folder
 
 
@@ -103,7 +130,7 @@ def whole(target: Path) -> Iterator[Path]:
             yield part
             place({part: target})
     except OSError as error:
-        raise ResultError(f"{target}: cannot be written: {error.strerror or error}") from None
+        raise ResultError(f"{target}: cannot be written: {reason(error)}") from None
 
 
 def place(made: Mapping[Path, Path]) -> None:

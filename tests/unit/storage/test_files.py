@@ -9,7 +9,7 @@ import pytest
 from tests.power import Disk
 
 import stiction as st
-from stiction.storage.files import WORKSHOP, placeable, whole, workshop
+from stiction.storage.files import WORKSHOP, placeable, usable_folder, whole, workshop
 
 OLD, NEW = b"the old content", b"what is new"
 
@@ -110,3 +110,30 @@ def test_a_name_of_another_format_is_refused(name, suffixes, remedy):
 
 def test_capitals_make_no_other_format(tmp_path):
     assert placeable(tmp_path / "A.NC", (".nc",)) == tmp_path / "A.NC"
+
+
+FULL = """
+import resource, sys
+import stiction as st
+run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
+resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
+run.save(sys.argv[1])
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="needs limits of the system")
+def test_a_result_on_a_full_disk_is_one_error(tmp_path):
+    """HDF5 printed hundreds of lines, and crashed at exit."""
+    command = [sys.executable, "-c", FULL, str(tmp_path / "run.nc")]
+    ended = subprocess.run(command, capture_output=True, text=True)
+    assert ended.returncode == 1
+    assert "run.nc: cannot be written: File too large" in ended.stderr.splitlines()[-1]
+    assert "h5py" not in ended.stderr
+    assert not [*tmp_path.iterdir()]
+
+
+def test_a_folder_that_is_read_only_is_refused_before_the_work(tmp_path, monkeypatch):
+    monkeypatch.setattr(os, "access", lambda path, mode: path != tmp_path)  # root may write to any
+    for refuse in (placeable, usable_folder):
+        with pytest.raises(st.ResultError, match=r"may not be written to; choose another folder"):
+            refuse(tmp_path / "new.nc")

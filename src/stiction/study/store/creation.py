@@ -8,8 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.errors import ResultError
-from stiction.storage.files import place, workshop
+from stiction.storage.files import place, usable_folder, workshop
 from stiction.storage.version import own_version
 from stiction.study.plan.study import Study
 from stiction.study.store.kept import TIME, flag_attributes, stored_variables, trace_times
@@ -30,8 +29,7 @@ if TYPE_CHECKING:
 def create(study: Study, path: str | Path) -> Store:
     """Create the store of a new study, or open it if another sweep was faster."""
     target = Path(path)
-    if not target.parent.is_dir():
-        raise ResultError(f"{target}: no folder {target.parent}; make it first")
+    usable_folder(target)
     with errors_as_message(target), workshop(target.parent) as room:
         part = lay_out(study, room / "store")
         try:

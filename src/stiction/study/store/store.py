@@ -22,7 +22,7 @@ from stiction import errors
 from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
-from stiction.storage.files import place, workshop
+from stiction.storage.files import place, reason, workshop
 from stiction.storage.foreign import opening, refuse_links, refuse_size
 from stiction.storage.kinds import STORE, use_of
 from stiction.storage.version import own_version
@@ -198,8 +198,8 @@ def errors_as_message(path: Path) -> Iterator[None]:
         yield
     except OSError as error:
         raise ResultError(
-            f"{path}: cannot be written: {error.strerror or error}; its content is intact: "
-            "make room, then repeat the command"
+            f"{path}: cannot be written: {reason(error)}; its content is intact; "
+            "afterwards repeat the command"
         ) from None
 
 
