@@ -6,6 +6,7 @@ import shlex
 import signal
 import subprocess
 import sys
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -336,6 +337,31 @@ def test_work_that_lasts_says_so_through_a_pipe(capsys, monkeypatch):
     assert capsys.readouterr() == ("", "")
 
 
+@pytest.mark.parametrize("verb", ["plot", "stability", "map"])
+def test_drawing_is_not_silent(verb, tmp_path, monkeypatch, capsys):
+    """A map of 18 runs said nothing for 12 s."""
+    begun = []
+
+    @contextmanager
+    def note(title):
+        begun.append(title)
+        yield lambda fraction: None
+
+    monkeypatch.setattr(progress, "progress", note)
+    source = tmp_path / "source"
+    slider = st.presets.nakano_popov_2020()
+    if verb == "plot":
+        source = st.simulate(slider, "20 ms", sample_rate="1 kHz").save(tmp_path / "run.nc")
+    elif verb == "stability":
+        source.write_text(slider.to_toml())
+    else:
+        base = st.Description(slider, st.Initial(), st.Settings(duration="2 ms"))
+        axes = {"phi": st.Grid("1 deg", "3 deg", 2)}
+        st.sweep(st.Study(base=base, axes=axes, measures=["stick_count"]), source)
+    assert inside(verb, source, "-o", tmp_path / "drawn.png") == 0
+    assert begun == ["drawing"]
+
+
 def test_compilation_is_no_measure_of_the_time_left():
     """After 5 s of compilation at 2 %, a run of 10 s was said to take 4 minutes."""
     assert progress.line("simulating", 0.02, 5.0, since=(0.02, 4.9)) == "simulating: 2 % after 5 s"
@@ -390,3 +416,33 @@ def test_work_that_is_over_soon_says_nothing(capsys):
     with progress.progress("simulating") as report:
         report(1.0)
     assert capsys.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_a_description_in_utf_16_is_named(encoding, tmp_path, capsys):
+    path = tmp_path / "my.toml"
+    path.write_text(st.presets.nakano_popov_2020().to_toml(), encoding=encoding)
+    assert inside("audit", path) == 2
+    assert "is not text in UTF-8; it is UTF-16, as Windows programs write it: save it" in words(
+        capsys
+    )
+
+
+def test_a_description_in_another_encoding_says_how_to_save_it(tmp_path, capsys):
+    path = tmp_path / "my.toml"
+    path.write_text(st.presets.nakano_popov_2020().to_toml() + "# \u00b5\n", encoding="latin-1")
+    assert inside("audit", path) == 2
+    assert "save it in UTF-8" in words(capsys)
+
+
+def words(capsys):
+    return " ".join(capsys.readouterr().err.split())
+
+
+def test_a_percentage_as_coefficient_is_named():
+    slider = st.presets.nakano_popov_2020()
+    friction = st.Coulomb(mu_0=40.0)
+    run = st.simulate(slider.replace(friction=friction), "1 ms", sample_rate="1 kHz")
+    assert "if a percentage is meant, write 0.4" in report_lines(run, Path("run.nc"))[-1]
+    run = st.simulate(slider, "1 ms", sample_rate="1 kHz")
+    assert "percentage" not in " ".join(report_lines(run, Path("run.nc")))

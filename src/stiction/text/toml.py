@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 import errno
 import json
 import re
@@ -28,6 +29,7 @@ MISWRITTEN = {  # a number of other programs or languages, and how TOML has it
     re.compile(r"=\s*[-+]?\.\d"): "a digit stands before the point: 0.4",
     re.compile(r"=\s*[-+]?\d+\.(?!\d)"): "a digit stands after the point: 1.0",
 }
+UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 OF_STUDIES = ("axes", "study")  # tables of a description that is swept
 
 
@@ -59,8 +61,8 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         message = TOO_DEEP
     except OSError as error:
         message = f"{error.strerror or 'cannot be read'}; {_instead(path, written) or WRITE}"
-    except UnicodeDecodeError:
-        message = f"is not text in UTF-8; {_instead(path, written) or WRITE}"
+    except UnicodeDecodeError as error:
+        message = f"is not text in UTF-8; {_instead(path, written) or _encoding(error.object)}"
     except ValueError as error:  # invalid TOML, and integers of thousands of digits
         use = _instead(path, written)
         message = f"is not TOML: {error}{_remedy(error, text)}{use and f'; {use}'}"
@@ -68,6 +70,13 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         tame(raw, where)
         return tame(with_changes(raw, changes), where) if changes else raw
     raise DescriptionError.of(where, message)
+
+
+def _encoding(content: bytes) -> str:
+    """Return what to do with a file that is not UTF-8."""
+    if content.startswith(UTF_16) or 0 in content[:2]:
+        return "it is UTF-16, as Windows programs write it: save it in UTF-8"
+    return WRITE if 0 in content else "if a text editor shows it, save it in UTF-8"
 
 
 def _remedy(error: ValueError, text: str) -> str:
@@ -137,6 +146,8 @@ def _text_of(path: Path) -> str:
         raise OSError(str(error)) from None
     if len(content) > LARGEST:
         raise OSError(errno.EFBIG, f"has more than {LARGEST:,} bytes")
+    if 0 in content[:2]:  # UTF-16 without a mark at its beginning
+        raise UnicodeDecodeError("utf-8", content, 0, 2, "a character has two bytes")
     return content.decode("utf-8-sig")
 
 

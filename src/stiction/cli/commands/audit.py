@@ -84,5 +84,7 @@ def audit(
         found = examine(rig, report, record=seen, simulations=simulations, library=kept)
     print_sections(title, found.tables())
     if output is not None:
-        say(f"wrote {found.write_html(output, title)}")
+        with progress("drawing"):
+            written = found.write_html(output, title)
+        say(f"wrote {written}")
     return 0 if found.ok else 1

@@ -51,11 +51,14 @@ def map(
         The figure to write (.png, .pdf or .svg); by default STUDY.png beside the store. Example: -o
         map.png.
     """
+    from stiction.cli.progress import progress
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
     from stiction.study.view.mapping import map as look
 
     cut = dict(parse_assignment(text, "--at") for text in at or ())
     target = drawable(output or study.with_suffix(".png"))
-    found = look(study, of or (), cut, trust=trust)
-    say(f"wrote {write(figure_of(found.plot), target)}")
+    with progress("drawing"):
+        found = look(study, of or (), cut, trust=trust)
+        written = write(figure_of(found.plot), target)
+    say(f"wrote {written}")

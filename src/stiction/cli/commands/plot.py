@@ -22,9 +22,12 @@ def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
     output
         The figure to write: .png, .pdf or .svg. Example: -o my.png.
     """
+    from stiction.cli.progress import progress
     from stiction.plotting.door import plot as draw
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
 
     drawable(output)
-    say(f"wrote {write(figure_of(draw, result, trust=trust), output)}")
+    with progress("drawing"):
+        written = write(figure_of(draw, result, trust=trust), output)
+    say(f"wrote {written}")

@@ -54,6 +54,7 @@ def stability(
         The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary of
         stability in the plane of two. Example: -o map.png.
     """
+    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.errors import StictionError
     from stiction.linear_stability.examination import OVER
@@ -73,7 +74,9 @@ def stability(
     found = examine(slider, paths, ranges or None)
     print_sections(str(config or preset), found.tables())
     if output is not None:
-        say(f"wrote {write(figure_of(found.plot), output)}")
+        with progress("drawing"):
+            written = write(figure_of(found.plot), output)
+        say(f"wrote {written}")
 
 
 def number(text: str) -> Any:

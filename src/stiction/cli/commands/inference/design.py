@@ -123,4 +123,6 @@ def design(
         from stiction.plotting.page.canvas import figure_of
         from stiction.plotting.page.save import write
 
-        say(f"wrote {write(figure_of(plot_design, found), output)}")
+        with progress("drawing"):
+            written = write(figure_of(plot_design, found), output)
+        say(f"wrote {written}")

@@ -133,11 +133,14 @@ def warnings(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
 def write_figures(plots: Mapping[str, Any], folder: Path) -> None:
     """Write figures by their names, as `stiction.plotting` draws what belongs to each."""
     from stiction import plotting
+    from stiction.cli.progress import progress
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import write
     from stiction.storage.files import make_folder
 
     make_folder(folder)
     for name, what in plots.items():
-        drawn = figure_of(getattr(plotting, f"plot_{name}"), what)
-        say(f"wrote {write(drawn, folder / f'{name}.png')}")
+        with progress("drawing"):
+            drawn = figure_of(getattr(plotting, f"plot_{name}"), what)
+            written = write(drawn, folder / f"{name}.png")
+        say(f"wrote {written}")
