@@ -12,9 +12,11 @@ import numpy as np
 import pytest
 from matplotlib import pyplot
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.markers import MarkerStyle
 from matplotlib.patches import FancyArrowPatch
+from matplotlib.path import Path as Outline
 from PIL import Image
 from tests.drawn import inside
 
@@ -23,11 +25,12 @@ from stiction import theory
 from stiction.analysis.creep.first_slip import first_slip_time, mean_creep_velocity
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.spectrum import rate_spectrogram, spectrogram
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
+from stiction.plotting.inference.posterior import draw_parameter
 from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import canvas, figure_of, fix_ticks
 from stiction.plotting.page.parameter import Scale, label_decades
@@ -39,6 +42,7 @@ from stiction.plotting.run.overview import plot_run
 from stiction.plotting.run.time_series import (
     cut_open,
     draw_line,
+    draw_slip_speed,
     envelope,
     oscillations,
 )
@@ -170,6 +174,35 @@ def test_zero_slip_shows_rests_inside_the_circle(fine: st.Trajectory) -> None:
     assert radius.max() <= 2.0 + 1e-9
     assert radius.min() < 1.99
     assert circle.get_xlabel() == "$F_X$ (N)"
+    box = arc.get_legend().get_window_extent()
+    for line in arc.lines:
+        drawn = line.get_transform().transform(line.get_xydata())
+        whole = drawn[np.isfinite(drawn).all(axis=1)]
+        assert not Outline(whole).intersects_bbox(box, filled=False)
+
+
+def test_slips_shorter_than_a_dot_are_seen() -> None:
+    """The tip of a force microscope slips for a 3000th of the axis: the first slips were white."""
+    slider = st.presets.nakano_popov_2020().replace(
+        mass="1e-11 kg", k_x="0.5 N/m", k_y="40 N/m", phi="5 deg", normal_load="20 nN",
+        friction=st.ExponentialWeakening(0.5, 0.3, "10 um/s"), drive=st.ConstantVelocity("1 um/s"),
+    )  # fmt: skip
+    run = st.simulate(slider, "40 ms", sample_rate="1 MHz")
+    with style():
+        figure = Figure(figsize=(4.0, 1.2), dpi=300)
+        page = FigureCanvasAgg(figure)
+        ax = figure.add_axes((0.1, 0.1, 0.8, 0.8))
+        draw_slip_speed(ax, run)
+        ax.set_axis_off()
+        page.draw()
+    shade = 255 - np.asarray(page.buffer_rgba())[..., 0].astype(float)
+    for end in run.stick_intervals[1:-1, 1]:
+        after = (run.samples["time"] >= end) & (run.samples["time"] < end + 2e-5)
+        top = float(run.samples["slip_speed"][after].max())
+        column, up = ax.transData.transform((end, 0.9 * top))
+        if up > ax.bbox.y0:
+            near = shade[len(shade) - 1 - round(up), round(column) - 2 : round(column) + 3]
+            assert near.max() > 100.0
 
 
 def test_creep_agrees_with_theory(paper_run: st.Trajectory) -> None:
@@ -882,3 +915,18 @@ def test_a_window_keeps_its_size_while_its_figure_is_written(tmp_path: Path) -> 
 
 def refuse(*_: object) -> None:
     raise AssertionError("resized")
+
+
+def test_a_sharp_posterior_leaves_its_prior_visible() -> None:
+    """A posterior 500 times narrower than the prior made both invisible."""
+    before, after = (
+        xr.DataArray(
+            np.random.default_rng(4).normal(0.6, width, 4000), name="mu_0", attrs={"units": "1"}
+        )
+        for width in (0.1, 0.0002)
+    )
+    ax = Figure().add_subplot()
+    draw_parameter(ax, after, before, True)
+    prior, posterior = ax.patches
+    assert prior.get_data().values.max() > 0.15 * ax.get_ylim()[1]
+    assert posterior.get_data().values.max() > 0.9 * ax.get_ylim()[1]

@@ -23,7 +23,7 @@ from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
 from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
-from stiction.plotting.run.time_series import STILL, envelope
+from stiction.plotting.run.time_series import STILL, envelope, say_only
 from stiction.result.table import ColumnTable, sample_table
 from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole
@@ -237,15 +237,16 @@ def series(figure: Figure, run: ColumnTable, times: Floats) -> list[Line2D]:
         ("ψ (deg)", 1.0, (("psi", "", BLUE),)),
         ("slip speed (m/s)", 1.0, (("slip_speed", "", GREEN),)),
     )
-    cursors = []
+    cursors, slow = [], slowest_slip(run)
     for number, (label, factor, curves) in enumerate(rows):
         ax = figure.add_axes((0.06 + 0.32 * number, 0.08, 0.265, 0.27))
         for name, words, color in curves:
             ax.plot(*envelope(run["time"], factor * run[name]), color=color, lw=0.8, label=words)
         if len(curves) > 1:
             ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=9)
-        if name == "slip_speed":
-            slow = slowest_slip(run)
+        if name == "slip_speed" and not (run[name] > slow).any():
+            say_only(ax, "no slip")
+        elif name == "slip_speed":
             ax.set_yscale("log", nonpositive="clip")
             ax.set_ylim(slow, max(3.0 * float(np.nanmax(run[name])), 10.0 * slow))
         low, high = ax.get_ylim()

@@ -139,7 +139,7 @@ def zero_slip(run: Trajectory, window: tuple[float, float]) -> Figure:
             shade_sticks(ax, (run.stick_intervals - window[0]) * 1e3)
         draw_friction_circle(circle, run, window)
         slip, stick = draw_friction_arc(arc, run, window)
-        arc.legend([slip, stick], ["slip", "stick"], loc="lower left")
+        arc.legend([slip, stick], ["slip", "stick"], loc="upper left")
         for ax, title in (
             (speed, "(a) Slip speed"),
             (force, "(b) Friction"),

@@ -247,7 +247,7 @@ def test_a_slip_slower_than_a_millionth_of_the_drive_is_shown_at_rest():
     assert figure.axes[-1].get_ylabel() == "slip speed (m/s), grey: at rest"
     series(figure, samples, times)
     force, slip = figure.axes[2], figure.axes[-1]
-    assert slip.get_ylim()[0] == pytest.approx(1e-11)
+    assert [text.get_text() for text in slip.texts] == ["no slip"]
     assert force.get_ylabel() == "spring force (kN)"  # 209 N
     legend = force.get_legend()
     assert [text.get_text() for text in legend.get_texts()] == ["$k_y u_y$", "$k_x u_x$"]
@@ -303,3 +303,12 @@ def test_axes_of_a_film_have_units_and_ticks_that_suit_them():
     force, angle, _ = strips
     assert angle.get_ylim() == pytest.approx((-1.0, 1.0), abs=0.1)  # it stays zero
     assert angle.yaxis.label.get_window_extent().x0 > force.get_window_extent().x1
+
+
+def test_a_film_of_a_run_without_slip_says_so():
+    """The axis of the slip speed was empty."""
+    description = st.simulate(st.presets.nakano_popov_2020(), "5 ms").description
+    times = np.linspace(1e-3, 5e-3, 10)
+    figure = Figure(figsize=(12.8, 7.2), dpi=100)
+    series(figure, in_window(description, times), times)
+    assert [text.get_text() for text in figure.axes[2].texts] == ["no slip"]

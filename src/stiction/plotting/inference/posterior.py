@@ -27,6 +27,7 @@ SHARES = (0.95, 0.5)  # of the posterior inside each contour
 SMOOTH = 1.2  # bins: width of the smoothing of a two-dimensional histogram
 OUTER = 0.002  # share of the prior beyond each end of an axis
 PLAIN = {"deg": " (deg)", "1": ""}  # units without a metric prefix, as on axes
+SHARPEST = 6.0  # times as tall as its prior, a posterior is drawn; a sharper one, lower
 SHOWN = 5  # cycles
 RANK_BINS = 10  # of a histogram of ranks
 
@@ -73,10 +74,15 @@ def draw_parameter(ax: Axes, after: xr.DataArray, before: xr.DataArray, identifi
     prior, posterior = before.values / scale, after.values / scale
     low, high = np.quantile(prior, [OUTER, 1.0 - OUTER])
     bins = np.linspace(low, high, BINS + 1)
-    look: dict[str, Any] = {"density": True, "histtype": "stepfilled"}
-    ax.hist(prior, bins.tolist(), color=PALE, edgecolor=GREY, linewidth=0.6, label="prior", **look)
     fine = np.linspace(posterior.min(), posterior.max(), FEW_BINS + 1) if identified else bins
-    ax.hist(posterior, fine.tolist(), color=BLUE, alpha=0.55, label="posterior", **look)
+    wide, sharp = (
+        np.histogram(values, edges, density=True)[0]
+        for values, edges in ((prior, bins), (posterior, fine))
+    )
+    sharp *= min(1.0, SHARPEST * wide.max() / sharp.max())
+    look: dict[str, Any] = {"fill": True, "linewidth": 0.6}
+    ax.stairs(wide, bins, facecolor=PALE, edgecolor=GREY, label="prior", **look)
+    ax.stairs(sharp, fine, facecolor=(BLUE, 0.55), edgecolor=BLUE, label="posterior", **look)
     if identified:
         for edge in np.quantile(posterior, [0.025, 0.975]):
             ax.axvline(edge, color=BLUE, linewidth=0.8, linestyle=(0, (4, 2)))

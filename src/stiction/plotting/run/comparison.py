@@ -33,6 +33,7 @@ from stiction.plotting.run.curves import (
     mark_early_end,
 )
 from stiction.plotting.run.time_series import (
+    EDGE,
     fastest_drive,
     say_only,
     set_speed_limits,
@@ -179,7 +180,8 @@ def draw_speeds(ax: Axes, curves: Sequence[RunCurve]) -> None:
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
     for curve in curves:
         slip, mean = curve.slip, curve.speed
-        ax.fill_between(slip.time, mean, slip.high, color=curve.color, alpha=0.18, linewidth=0)
+        band = ax.fill_between(slip.time, mean, slip.high, color=curve.color, linewidth=EDGE)
+        band.set_facecolor((curve.color, 0.18))
         draw_curve(ax, curve, slip.time, mean)
         mark_early_end(ax, curve, slip.time[-1], mean[-1])
     fit_time(ax, curves)

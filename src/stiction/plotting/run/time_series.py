@@ -390,7 +390,8 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
         return draw_line(ax, run.samples["time"], shown, GREEN)
     slip = average_slip(run)
     mean = np.where(slip.mean > 1e-7 * largest, slip.mean, np.nan)
-    ax.fill_between(slip.time, mean, slip.high, color=GREEN, alpha=BAND, linewidth=0)
+    band = ax.fill_between(slip.time, mean, slip.high, color=GREEN, linewidth=EDGE)
+    band.set_facecolor((GREEN, BAND))  # the edge shows slips shorter than a dot
     line = draw_line(ax, slip.time, mean, GREEN)
     set_speed_limits(ax, [(slip, fastest_drive(run))])
     return line
