@@ -31,6 +31,7 @@ IN_WORDS = {
     "bool": "True or False",
     "Path": "a path",
     "ArrayLike": "numbers",
+    "Source": "a record, a run or a path",
     "Quantity": "a number or text with a unit",
     "Callable": "a function",
     "Ends": "two numbers or texts with units",

@@ -7,13 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from stiction.analysis.record import Record
 from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
 from stiction.inference.calibration import study
 from stiction.inference.library import SIMULATIONS, Library, Plan, build, plan, refuse_too_few
-from stiction.inference.observation import Conditions, Observation, observe_all
+from stiction.inference.observation import Conditions, Observation, Source, observe_all
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
 
@@ -21,7 +20,7 @@ FEWEST = 300  # simulations with cycles, below which nothing is learned
 
 
 def fit(
-    records: Record | Sequence[Record],
+    records: Source | Sequence[Source],
     rig: Rig | str | Path,
     *,
     simulations: int = SIMULATIONS,
@@ -40,10 +39,10 @@ def fit(
 
     Parameters
     ----------
-    records : Record or sequence of Record
-        Of one rig, at the same or at other velocities and loads, with at least six whole cycles of
-        stick and slip each. ``drive_velocity`` and ``normal_load`` of a record replace those of the
-        rig.
+    records : Record, Trajectory, str or Path, or a sequence of these
+        Records of one rig, or their files, at the same or at other velocities and loads, with at
+        least six whole cycles of stick and slip each. A run is taken as if it was measured.
+        ``drive_velocity`` and ``normal_load`` of a record replace those of the rig.
     rig : Rig, str or Path
         The description with its priors; see `stiction.inference.priors`.
     simulations : int, optional

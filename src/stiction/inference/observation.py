@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from math import floor, log10
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.record import Record
+from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import MOST_MISSING, even_grid
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
@@ -24,6 +26,9 @@ from stiction.inference.features import (
 from stiction.recording.sensor import LowPass, white_noise
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
+from stiction.trajectory import Trajectory
+
+Source = Record | Trajectory | str | Path  # of a record: a run is taken as if measured
 
 PER_CYCLE = 200  # samples: more are averaged
 # numbers of cycles, so that a library serves many records
@@ -211,12 +216,20 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     return Observation(conditions, seen, thin["force"], found)
 
 
-def observe_all(records: Record | Sequence[Record], slider: Slider) -> list[Observation]:
+def observe_all(records: Source | Sequence[Source], slider: Slider) -> list[Observation]:
     """Observe one or several records of a rig."""
-    given = [records] if isinstance(records, Record) else [*records]
+    given = [records] if isinstance(records, Source) else [*records]
     if not given:
         raise ResultError("no record is given; name one or several")
-    return [observe(each, slider, f"record {number}") for number, each in enumerate(given, 1)]
+    return [
+        observe(record_from(each), slider, f"record {number}")
+        for number, each in enumerate(given, 1)
+    ]
+
+
+def record_from(source: Source) -> Record:
+    """Return a record as it is, that of a run, or that of a file of either."""
+    return as_record(read_source(source) if isinstance(source, str | Path) else source)
 
 
 def noise_of(record: Record, channel: str, values: Floats) -> Noise:

@@ -14,7 +14,7 @@ from stiction.inference.features import features, find_cycles, of_trend
 from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, move, stretch
 from stiction.inference.library import build, draw, synthesise
-from stiction.inference.observation import Noise, Trend, near, observe, trend
+from stiction.inference.observation import Noise, Trend, near, observe, observe_all, trend
 from stiction.inference.priors import Normal
 from stiction.recording.sensor import LowPass, low_pass
 
@@ -309,3 +309,20 @@ def test_no_time_of_a_part_lies_beyond_its_end():
         np.testing.assert_allclose(part, times[begin:], rtol=1e-15)
         short += times[begin] + duration < times[399]
     assert short > 0
+
+
+def test_a_record_is_taken_from_its_file_and_from_a_run(record, rig, tmp_path):
+    """A path was "must be a Record or a sequence, is 'data.csv'", though audits take one."""
+    path = tmp_path / "data.csv"
+    np.savetxt(path, np.column_stack([record.time, record.force]), "%.9g", ",", header="t (s),F (N)",
+               comments="")  # fmt: skip
+    plain = observe(st.read_record(path), rig.slider)
+    for given in (path, str(path), [path]):
+        (seen,) = observe_all(given, rig.slider)
+        assert seen.conditions == plain.conditions
+        np.testing.assert_array_equal(seen.features, plain.features)
+    run = st.simulate(rig.slider, "1 ms", sample_rate="1 kHz")
+    with pytest.raises(st.ResultError, match="record 1"):  # of too few samples
+        observe_all(run, rig.slider)
+    with pytest.raises(st.StictionError, match="a record, a run or a path or a sequence, is 5"):
+        st.fit(5, rig)

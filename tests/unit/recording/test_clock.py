@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import stiction as st
 from stiction.recording.guess.clock import rate_of
 
 EVEN = np.arange(20_000) * 1e-3
@@ -25,3 +26,19 @@ EVEN = np.arange(20_000) * 1e-3
 )
 def test_gaps_do_not_change_the_rate(time, rate, rel):
     assert rate_of(time) == pytest.approx(rate, rel=rel)
+
+
+def test_times_that_run_backwards_are_named(tmp_path):
+    """A file with its last sample first had "fewer than 2 samples"."""
+    path = tmp_path / "data.csv"
+    path.write_text("t (s),F (N)\n" + "".join(f"{t},1.0\n" for t in range(9, -1, -1)))
+    with pytest.raises(st.ResultError, match="backwards, from 9 s to 0 s; put the lines in order"):
+        st.read_record(path)
+
+
+def test_a_misspelt_argument_is_compared_with_all_arguments(tmp_path):
+    """`stifness` was meant to be `times`."""
+    path = tmp_path / "data.csv"
+    path.write_text("t (s),F (N)\n0,1\n1,2\n")
+    with pytest.raises(st.StictionError, match=r"unknown argument 'stifness'; .* 'stiffness'"):
+        st.read_record(path, stifness="1 N/m")

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.fit import check
@@ -18,7 +17,7 @@ from stiction.inference.mechanism.classifier import Classifier, Simulations, sim
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
-from stiction.inference.observation import Observation, observe_all, steadiness
+from stiction.inference.observation import Observation, Source, observe_all, steadiness
 from stiction.inference.priors import Rig
 
 SIMULATIONS = 1000  # of each mechanism, by default
@@ -26,7 +25,7 @@ SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
 
 
 def mechanism(
-    records: Record | Sequence[Record],
+    records: Source | Sequence[Source],
     rig: Rig | str | Path,
     *,
     simulations: int = SIMULATIONS,
@@ -47,7 +46,7 @@ def mechanism(
 
     Parameters
     ----------
-    records : Record or sequence of Record
+    records : Record, Trajectory, str or Path, or a sequence of these
         As for `stiction.fit`.
     rig : Rig, str or Path
         The description with its priors, one of them of the misalignment ``phi``.

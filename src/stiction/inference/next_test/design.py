@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from stiction.analysis.record import Record
+from stiction.arguments import is_list
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.inference.fit import check, one_sided
@@ -25,7 +25,7 @@ from stiction.inference.next_test.further import (
     with_cycle,
     with_noise,
 )
-from stiction.inference.observation import PER_CYCLE, Conditions, observe
+from stiction.inference.observation import PER_CYCLE, Conditions, Source, observe, record_from
 from stiction.inference.priors import Rig
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical
@@ -38,7 +38,7 @@ FEWEST = 100  # rigs with cycles in the present test, below which nothing is lea
 
 def design(
     rig: Rig | str | Path,
-    record: Record | None = None,
+    record: Source | None = None,
     *,
     of: str = "phi",
     channels: Sequence[str] = ("force",),
@@ -63,7 +63,7 @@ def design(
     ----------
     rig : Rig, str or Path
         The description with its priors; see `stiction.inference.priors`.
-    record : Record, optional
+    record : Record, Trajectory, str or Path, optional
         Of the present test: its channels, cycles, velocity, load and noise are taken.
     of : str, optional
         The parameter of interest, by its path: ``"phi"``, ``"friction.mu_0"``.
@@ -104,12 +104,16 @@ def design(
     check(known)
     slider = known.slider
     name, wanted = read(
-        known, of, channels=tuple(channels), angles=tuple(angles),
-        velocities=None if velocities is None else tuple(velocities),
-        loads=None if loads is None else tuple(loads),
+        known, of, channels=several(channels), angles=several(angles),
+        velocities=None if velocities is None else several(velocities),
+        loads=None if loads is None else several(loads),
         noise=noise, position_noise=position_noise, simulations=simulations,
     )  # fmt: skip
-    now = usual_conditions(slider) if record is None else observe(record, slider).conditions
+    now = (
+        usual_conditions(slider)
+        if record is None
+        else observe(record_from(record), slider).conditions
+    )
     measured = wanted.channels if record is None else tuple(now.noise)
     present = with_noise(now, slider, wanted)
     if record is None:
@@ -121,6 +125,15 @@ def design(
     found = expectations(trial, Further("the present test", measured), tests, scores, features)
     assumed = assumptions(() if record is None else measured, present, wanted)
     return Advice(trial, name, tuple(found), (*skipped,), (*assumed,), len(scores))
+
+
+def several(given: Any) -> tuple[Any, ...]:
+    """Return values as a tuple, one alone as well.
+
+    >>> several("3 deg"), several(["1 deg", "3 deg"])
+    (('3 deg',), ('1 deg', '3 deg'))
+    """
+    return tuple(given) if is_list(given) else (given,)
 
 
 def read(rig: Rig, of: str, **given: Any) -> tuple[str, Wanted]:

@@ -51,6 +51,11 @@ def blocks(
         values = np.cumsum(values) - values[0]
         notes.append(f"{name} holds the interval before each sample: times are their sum")
     back = np.flatnonzero(np.diff(values) < 0.0)
+    if len(values) > 2 and len(back) == len(values) - 1:
+        raise ResultError(
+            f"{path}: the times run backwards, from {values[0]:g} s to {values[-1]:g} s; put the "
+            "lines in order"
+        )
     found, start, faults = [], 0, Faults()
     for at in [*back.tolist(), len(values) - 1]:
         first, last = float(values[start]), float(values[at])
