@@ -29,17 +29,13 @@ bound of w climbs to the root and never passes it: no bracket, no failure.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 from numpy.typing import ArrayLike
 
 from stiction.arguments import is_numeric, name_arguments
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, echo
-
-if TYPE_CHECKING:
-    from stiction.system.slider import Slider
+from stiction.system.slider import Slider
 
 # Zeros and infinities below are limits (no misalignment, no end of creep), not accidents.
 _limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")

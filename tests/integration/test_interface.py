@@ -2,6 +2,7 @@
 
 import inspect
 import pydoc
+import typing
 
 import numpy as np
 import pytest
@@ -194,3 +195,13 @@ def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
     assert f"<td>{run.statistics.stick_count}</td>" in run._repr_html_()
     assert "<td>slider.phi</td><td>1 deg</td>" in slider._repr_html_()
     assert "COMPLETED" in run._repr_html_() or "completed" in run._repr_html_()
+
+
+@pytest.mark.parametrize("room", [st, st.theory], ids=["st", "st.theory"])
+def test_hints_of_public_functions_can_be_evaluated(room):
+    """Tools that check arguments do so: `typing.get_type_hints(st.stability)` raised NameError."""
+    functions = [each for name in dir(room) if inspect.isroutine(each := getattr(room, name))]
+    assert len(functions) > 10
+    for each in functions:
+        if each.__module__.startswith("stiction"):
+            typing.get_type_hints(each)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -24,12 +24,10 @@ from stiction.linear_stability.linear import (
 )
 from stiction.linear_stability.roots import Critical, critical
 from stiction.names import draw, old_attributes
+from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, Table, as_html, as_text
 from stiction.text.units import Quantity, in_words
-
-if TYPE_CHECKING:
-    from stiction.system.description import Description
 
 OVER = ("phi", "drive.velocity")
 DIGITS = 6  # shown of a critical value

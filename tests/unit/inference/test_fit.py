@@ -314,8 +314,8 @@ def test_no_time_of_a_part_lies_beyond_its_end():
 def test_a_record_is_taken_from_its_file_and_from_a_run(record, rig, tmp_path):
     """A path was "must be a Record or a sequence, is 'data.csv'", though audits take one."""
     path = tmp_path / "data.csv"
-    np.savetxt(path, np.column_stack([record.time, record.force]), "%.9g", ",", header="t (s),F (N)",
-               comments="")  # fmt: skip
+    rows = np.column_stack([record.time, record.force])
+    np.savetxt(path, rows, "%.9g", ",", header="t (s),F (N)", comments="")
     plain = observe(st.read_record(path), rig.slider)
     for given in (path, str(path), [path]):
         (seen,) = observe_all(given, rig.slider)
