@@ -104,6 +104,8 @@ def test_theory_over_the_plane(store):
         (["amplitud"], {"friction.mu_inf": 0.15}, "did you mean 'amplitude'"),
         ([], {"friction.mu_in": 0.15}, "did you mean 'friction.mu_inf'"),
         ([], {"phi": 3}, "degree or radian"),
+        ([], {"phi": "3 mm"}, "'3 mm' is in mm, not a unit of an angle"),
+        ([], {"friction.mu_inf": 15}, "15 is beyond the study, which has 0.15 to 0.18"),
     ],
 )
 def test_what_cannot_be_drawn(store, measures, cut, says):

@@ -46,7 +46,7 @@ def map(
         period.
     at
         A cut through a study of more dimensions, NAME=VALUE; the nearest value of the study is
-        used. Repeat it for several. Example: --at "phi = 1 deg".
+        used, and one beyond its ends refused. Repeat it for several. Example: --at "phi = 1 deg".
     output
         The figure to write (.png, .pdf or .svg); by default STUDY.png beside the store. Example: -o
         map.png.

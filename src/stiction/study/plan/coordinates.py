@@ -53,7 +53,8 @@ def number(value: Any, unit: str) -> float:
     value = bare(value)
     if unit == "deg" and not isinstance(value, str):
         return to_si(value, Kind("an angle", "rad", "1 deg"))  # says what to write instead
-    return to_si(value, Kind("such a quantity", unit, f"1 {unit}".rstrip()))
+    kind = "an angle" if unit == "deg" else "such a quantity"
+    return to_si(value, Kind(kind, unit, f"1 {unit}".rstrip()))
 
 
 def values_at(

@@ -105,7 +105,7 @@ def map(
         Measures to draw, a panel each; by default the regime, if it was kept.
     at : mapping, optional
         From a dimension to the value at which it is cut (a number, or text with its unit); the
-        nearest value of the study is taken.
+        nearest value of the study is taken, and one beyond its ends refused.
     trust : bool, optional
         Whether the text of a friction law in the store may be run; see `stiction.load`.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ from stiction.arrays import xr
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.names import by_new_names
 from stiction.storage.foreign import opening, refuse_size
-from stiction.study.plan.coordinates import number
+from stiction.study.plan.coordinates import Coordinate, number
 from stiction.study.plan.study import Study
 from stiction.study.store import seal
 from stiction.study.store.kept import stored_variables
@@ -65,6 +65,7 @@ def view_study(path: str | Path, cut: Mapping[str, Quantity], trust: bool = Fals
         known = study.coordinates[dim]
         try:
             wanted = number(value, known.unit)
+            found += [Fault(dim, message) for message in beyond(known, wanted)]
             at[dim] = int(np.argmin(np.abs(known.values - wanted)))
         except PydanticCustomError as error:
             found.append(Fault(dim, error.message()))
@@ -78,6 +79,15 @@ def view_study(path: str | Path, cut: Mapping[str, Quantity], trust: bool = Fals
     refuse_size(path, part.nbytes)
     with opening(path, "is damaged"):
         return View(study, part.load(), at, refined_changes(path))
+
+
+def beyond(known: Coordinate, wanted: float) -> Iterator[str]:
+    """Say if a value lies beyond those of a study, by more than half of their distance there."""
+    values = np.unique(known.values)
+    gaps = np.diff(values)
+    if len(gaps) and not -gaps[0] <= 2.0 * (wanted - values[0]) <= 2.0 * np.ptp(values) + gaps[-1]:
+        ends = f"{values[0]:.6g} to {values[-1]:.6g} {known.unit}".rstrip()
+        yield f"{wanted:.6g} {known.unit}".rstrip() + f" is beyond the study, which has {ends}"
 
 
 def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
