@@ -17,6 +17,7 @@ from stiction.inference.library import Library, Plan
 from stiction.inference.observation import TREND, Observation, Trend, steadiness
 from stiction.inference.regression_abc import Sample, quantiles
 from stiction.names import draw
+from stiction.result.file import new_netcdf
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.system.parameter import unit
 from stiction.text.paths import last_part
@@ -228,11 +229,14 @@ class Fit:
 
         Further datasets become groups of their name: ``fit.save("fit.nc", mechanism=odds.data)``.
         """
-        target = placeable(path, NETCDF)
-        with whole(target) as part:
-            self.data.to_netcdf(part, engine="h5netcdf")
-            for name, data in {"prior": self.prior, **groups}.items():
-                data.to_netcdf(part, mode="a", group=name, engine="h5netcdf")
+        from xarray.backends import H5NetCDFStore
+
+        target, further = placeable(path, NETCDF), {"prior": self.prior, **groups}
+        size = sum(each.nbytes for each in (self.data, *further.values()))
+        with whole(target) as part, new_netcdf(part, size) as file:
+            self.data.dump_to_store(H5NetCDFStore(file))
+            for name, data in further.items():
+                data.dump_to_store(H5NetCDFStore(file.create_group(name)))
         return target
 
 

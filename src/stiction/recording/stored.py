@@ -25,6 +25,7 @@ from stiction.result.file import (
     new_netcdf,
     seal_tables,
     sign,
+    size_of,
     write_table,
 )
 from stiction.result.table import Column, ColumnTable, as_table, cf_attributes
@@ -71,7 +72,7 @@ def write_stored(
     attributes[SEAL] = seal_tables({"record": ColumnTable(columns, attributes)})
     table = ColumnTable(columns, attributes)
     with whole(target) as part:
-        with new_netcdf(part, table) as file:
+        with new_netcdf(part, size_of(table)) as file:
             write_table(file, table)
         sign(part)
     return target

@@ -43,20 +43,19 @@ MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 def write_result(samples: ColumnTable, sticks: ColumnTable, path: Path) -> None:
     """Write samples and sticks with checksums."""
     seal = seal_tables({"samples": samples, "sticks": sticks})
-    with new_netcdf(path, samples, sticks) as file:
+    with new_netcdf(path, size_of(samples, sticks)) as file:
         write_table(file, ColumnTable(samples.columns, {**samples.attributes, SEAL: seal}))
         write_table(file.create_group(STICK_GROUP), sticks)
     sign(path)
 
 
 @contextmanager
-def new_netcdf(path: Path, *tables: ColumnTable) -> Iterator[Any]:
-    """Yield a file to write tables into, made in memory: HDF5 crashes where a disk is full.
+def new_netcdf(path: Path, size: int) -> Iterator[Any]:
+    """Yield a file for `size` bytes of arrays, made in memory: HDF5 crashes where a disk is full.
 
-    Only tables that do not fit into memory once more go straight to the disk.
+    Only arrays that do not fit into memory once more go straight to the disk.
     """
     h5netcdf: Any = import_module("h5netcdf")  # slow to import
-    size = sum(column.values.nbytes for each in tables for column in each.columns.values())
     made = path if shortage(GROWING * size) else BytesIO()
     with h5netcdf.File(made, "w") as file:
         yield file
@@ -78,6 +77,11 @@ def write_table(group: Any, table: ColumnTable) -> None:
         )
         column.attrs.update(attributes)
         column[...] = values
+
+
+def size_of(*tables: ColumnTable) -> int:
+    """Return the size of the arrays of tables, bytes."""
+    return sum(column.values.nbytes for each in tables for column in each.columns.values())
 
 
 class DamageError(ResultError):

@@ -2,6 +2,7 @@
 
 import shutil
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -46,6 +47,18 @@ def test_the_file_opens_with_xarray(found, tmp_path):
     median = np.degrees(found["phi"].median)
     assert float(after["phi"].median()) == pytest.approx(median, rel=0.05)
     assert set(after) == set(before) == {"phi", "k_x", "k_y", "mu_0", "mu_inf", "jitter"}
+
+
+def test_a_fit_on_a_full_disk_is_one_error(found, tmp_path, monkeypatch):
+    """HDF5, which crashes there, writes into memory."""
+
+    def full(path, content):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(ResultError, match="cannot be written: No space left on device; make room"):
+        found.save(tmp_path / "fit.nc")
+    assert not [*tmp_path.iterdir()]
 
 
 def test_coverage_is_measured_on_records_left_out_and_reported(found, tmp_path):
