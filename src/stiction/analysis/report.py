@@ -165,6 +165,12 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     trust : bool, optional
         For a file; see `stiction.load`.
 
+    Raises
+    ------
+    ResultError
+        If a file cannot be read; see `stiction.read_record` and `stiction.load`. What a run or
+        record does not tell is no error: `Analysis.missing` says why.
+
     Examples
     --------
     >>> import stiction as st

@@ -122,6 +122,12 @@ def read_records(
     sidecar : str or Path, optional
         As of `read_record`, whose other arguments this takes too.
 
+    Raises
+    ------
+    ResultError, DescriptionError
+        As of `read_record`, the faults of all files at once; also if no file is given, or a folder
+        holds none.
+
     Examples
     --------
     >>> import stiction as st
