@@ -39,7 +39,7 @@ def fit(
 
     Parameters
     ----------
-    records : Record, Trajectory, str or Path, or a sequence of these
+    records : Record, Trajectory, str, Path or sequence of Record, Trajectory, str or Path
         Records of one rig, or their files, at the same or at other velocities and loads, with at
         least six whole cycles of stick and slip each. A run is taken as if it was measured.
         ``drive_velocity`` and ``normal_load`` of a record replace those of the rig.

@@ -46,7 +46,7 @@ def mechanism(
 
     Parameters
     ----------
-    records : Record, Trajectory, str or Path, or a sequence of these
+    records : Record, Trajectory, str, Path or sequence of Record, Trajectory, str or Path
         As for `stiction.fit`.
     rig : Rig, str or Path
         The description with its priors, one of them of the misalignment ``phi``.
