@@ -143,6 +143,29 @@ def test_a_sliding_mass_driven_in_steps_has_a_friction_at_each_level():
     assert "several levels" in str(found)
 
 
+@pytest.mark.parametrize("rest", [8.0, 15.0, 30.0, 50.0])
+@pytest.mark.parametrize("steps", [1, 2])
+def test_what_is_recorded_before_a_test_is_no_level_of_sliding(rest, steps):
+    """Most records begin with the zero of the force, some end with it; it was averaged, too."""
+    time = np.arange(0.0, 80.0 + rest, 0.01)
+    since = np.maximum(time - rest, 0.0)
+    force = 2.0 * (1.0 - np.exp(-since / 0.3)) + 0.3 * since * np.exp(1.0 - since) / 2.0
+    force += 0.4 * (steps - 1) * (since > 40.0)
+    noise = 5e-3 * np.random.default_rng(1).standard_normal(len(time))
+    found = st.analyse(st.Record(time=time, force=force + noise, normal_load=10.0))
+    assert found.friction.break_away.force == pytest.approx(2.0 + 0.3 / 2.0, abs=0.05)
+    if steps == 1:
+        assert found.friction.kinetic.coefficient == pytest.approx(0.2, abs=1e-3)
+        assert found.parts["changes"] is None
+        assert "next to zero" not in str(found)
+        lifted = np.where(time > time[-1] - 20.0, 0.0, force) + noise
+        ended = st.analyse(st.Record(time=time, force=lifted, normal_load=10.0))
+        assert ended.friction.kinetic.coefficient == pytest.approx(0.2, abs=1e-3)
+        assert "next to zero later" in str(ended)
+    else:
+        assert found.parts["changes"]["force"].values == pytest.approx([2.0, 2.4], abs=1e-2)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_friction_that_wanders_stays_at_no_level(seed):
     random = np.random.default_rng(seed)

@@ -19,6 +19,7 @@ MOST = 0.6
 # comes no farther than its root of their number
 WITHIN, EVEN, CHANGED = 5.0, 2.0, 12.0
 WORTH = 0.02  # of the force: a change that is less is not worth a level
+UNLOADED = 0.05  # of the largest level: a force that stays below is that of no load
 QUICK = 1.0  # of the shorter level: a change takes no longer
 
 
@@ -34,9 +35,10 @@ class Level(NamedTuple):
 
 
 def levels(record: Record) -> list[Level]:
-    """Return the levels of a force, one after the other; none if there are not two or more.
+    """Return the levels of sliding in a force that stays at two levels or more; else none.
 
-    They are sought in the force under one load, if the load is measured.
+    They are sought in the force under one load, if the load is measured. One at which the spring
+    is unloaded, as before and after a test, is none of sliding: one may be left.
     """
     if len(record) < 4 * PARTS:
         return []
@@ -58,7 +60,15 @@ def levels(record: Record) -> list[Level]:
         (force, error), (mu, mu_error) = _mean(raw[run]), _mean(means[run] / load)
         ends = float(times[run.start] - half), float(times[run.stop - 1] + half)
         found.append(Level(*ends, force, error, mu, mu_error))
-    return found
+    least = UNLOADED * max(abs(each.force) for each in found)
+    return [each for each in found if abs(each.force) > least]
+
+
+def is_last(record: Record, level: Level) -> bool:
+    """Return whether the spring is unloaded after a level, for a good part of the record."""
+    later = record.force[np.searchsorted(record.time, level.end) :]
+    long = len(later) * PARTS > LONG * len(record) // 2
+    return long and abs(float(np.median(later))) < UNLOADED * abs(level.force)
 
 
 def _runs(means: Floats, noise: float) -> list[slice]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.analysis.motion.changes.levels import levels
+from stiction.analysis.motion.changes.levels import is_last, levels
 from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
@@ -82,8 +82,10 @@ def regime_of(record: Record, found: Swings) -> Regime:
         return _or_hum(record, period, SAME, by_parts(record, found))
     seen = by_course(record, found)
     stays = levels(record) if record.slip_speed is None else []
-    if stays:
+    if len(stays) > 1:
         return seen._replace(evidence=seen.evidence | {"levels": len(stays)})
+    if stays and is_last(record, stays[0]):
+        return seen._replace(evidence=seen.evidence | {"unloaded": stays[0].end})
     frequency = seen.evidence.get("hump")
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
 
