@@ -23,7 +23,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import correlation_time, part_means, part_starts
+from stiction.analysis.signals.robust import part_means, part_starts, standard_error
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, xr
 from stiction.recording.sensor import ORDER, white_noise
@@ -258,7 +258,7 @@ def _over(forces: Floats, reduced: Floats, load: float, rounding: float = 0.0) -
 def _statistics(values: Floats) -> tuple[float, float, float]:
     """Return mean, standard error and spread of values, of which neighbours may be alike."""
     mean, spread = _mean_and_spread(values)
-    return mean, spread * (correlation_time(values) / len(values)) ** 0.5, spread
+    return mean, standard_error(values), spread
 
 
 def _mean_and_spread(values: Floats) -> tuple[float, float]:

@@ -87,6 +87,12 @@ def correlation_time(values: Floats) -> float:
     return max(2.0 * float(share[: ends[0] if len(ends) else None].sum()) - 1.0, 1.0)
 
 
+def standard_error(values: Floats) -> float:
+    """Return the standard error of the mean of values, of which neighbours may be alike."""
+    spread = float(values.std(ddof=1)) if len(values) > 1 else np.nan
+    return float(spread * (correlation_time(values) / len(values)) ** 0.5)
+
+
 def uniform_mean(values: Floats, length: int) -> Floats:
     """Return the running mean over `length` values."""
     from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import correlation_time, median, part_means
+from stiction.analysis.signals.robust import median, part_means, standard_error
 from stiction.arrays import Floats
 
 PARTS = 200  # means of a record
@@ -97,5 +97,4 @@ def _changes(means: Floats, noise: float, one: slice, two: slice) -> bool:
 
 def _mean(values: Floats) -> tuple[float, float]:
     """Return the mean of a level, and its standard error."""
-    error = float(values.std(ddof=1)) * (correlation_time(values) / len(values)) ** 0.5
-    return float(values.mean()), error
+    return float(values.mean()), standard_error(values)
