@@ -38,6 +38,21 @@ def deviation(found: np.ndarray, reference: np.ndarray) -> float:
     return float(np.hypot(*(found[:, :n] - reference[:, :n])).max()) / largest
 
 
+def without_instants(found: np.ndarray, reference: np.ndarray, allowed: float) -> np.ndarray:
+    """Return a force in which single samples at a rapid slip are those of the reference.
+
+    Such a sample lies between two that differ by no more than `allowed` of the largest force, and
+    beside it the reference jumps by half of what it is off at least. It tells that the instant of
+    the slip is off, by however little; by how much, the samples of the loading after it tell.
+    """
+    n = min(found.shape[1], reference.shape[1])
+    off = np.hypot(*(found[:, :n] - reference[:, :n]))
+    above = np.pad(off > allowed * np.hypot(*reference).max(), 1)
+    jump = np.pad(np.hypot(*np.diff(reference[:, :n])), 1)
+    single = above[1:-1] & ~above[:-2] & ~above[2:] & (2.0 * np.maximum(jump[:-1], jump[1:]) >= off)
+    return np.where(single, reference[:, :n], found[:, :n])
+
+
 def response(system: System, share: float, rtol: float, reference: np.ndarray) -> float:
     """Return by how much the forces change if the mass, or the load, changes by a share.
 

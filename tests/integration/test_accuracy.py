@@ -10,9 +10,16 @@ import numpy as np
 import pytest
 from benchmarks.explore import accuracy
 from benchmarks.explore.accuracy import BOUNDS, CHAOTIC, IN_STEPS, look
-from benchmarks.explore.deviation import FINEST, deviation, forces, response
+from benchmarks.explore.deviation import (
+    FINEST,
+    deviation,
+    forces,
+    response,
+    without_instants,
+)
 from benchmarks.explore.draw import Draw
 from benchmarks.explore.systems.general import general_system
+from benchmarks.explore.systems.seismic import seismic_system
 from benchmarks.explore.systems.set_valued import System
 
 import stiction as st
@@ -202,6 +209,35 @@ def test_a_drive_may_be_as_slow_as_a_plate_of_the_crust(seed):
     assert run.status.ok
     assert run.sticks["stick_end"].values[0] == pytest.approx(first, rel=1e-6)
     assert run.statistics.steps < 100_000
+
+
+@pytest.mark.parametrize("number", [59, 103, 157])
+def test_bristles_may_be_driven_as_slowly(number):
+    """Rounding of forces was an error: 6 million steps, more than 1e8, and half a million."""
+    drawn = seismic_system(1 if number < 150 else 3, number)
+    found, run = forces(drawn, drawn.rtol)
+    assert run.status.ok
+    assert run.statistics.steps < 10_000
+    sharp, _ = forces(drawn, FINEST)
+    assert deviation(found, sharp) < IN_STEPS * tolerance(drawn.rtol)
+
+
+@pytest.mark.parametrize("number", [40, 138])
+def test_faults_that_are_loaded_slowly_keep_the_bound(number):
+    """Slips up to a billion times as fast as the drive; the two largest errors of 150."""
+    seen = look(1, number, kind="seismic")
+    assert not seen.left_out
+    assert max(seen.off) < BOUNDS["in steps"]
+
+
+def test_the_instant_of_a_rapid_slip_is_told_by_the_samples_after_it():
+    """One sample is between two instants; what stays off after it counts."""
+    reference = np.array([[0.0, 1.0, 2.0, 0.0, 1.0, 2.0], [0.0] * 6])
+    late, worse = reference.copy(), reference.copy()
+    late[0, 3] = 2.5
+    worse[0, 3:] = 2.5
+    assert deviation(without_instants(late, reference, 0.1), reference) == 0.0
+    assert deviation(without_instants(worse, reference, 0.1), reference) == 1.25
 
 
 @pytest.mark.parametrize("rtol", [1e-5, 1e-7, 1e-9])

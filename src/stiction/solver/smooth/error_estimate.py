@@ -13,7 +13,7 @@ from typing import NamedTuple
 from numpy.polynomial import Polynomial
 
 from stiction.friction.law import Vector
-from stiction.solver.accuracy import Accuracy
+from stiction.solver.accuracy import ROUNDING, Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import coordinate, slip_at
@@ -56,6 +56,19 @@ class Within(NamedTuple):
     d_y: float
     slid_x: float
     slid_y: float
+
+
+class Balanced(NamedTuple):
+    """The slip velocity (m/s) at which forces balance at a point of a step, and whether it is one.
+
+    Then by how much slower it would be, had the mass slid further, and how much of it may be what
+    the rounding of forces makes.
+    """
+
+    found: bool
+    slip: Vector
+    slower: Vector
+    rounding: float
 
 
 @inlined
@@ -108,7 +121,7 @@ def balance(
     w: Workspace,
     enough: float,
     further: Vector,
-) -> tuple[bool, Vector, Vector]:
+) -> Balanced:
     """Solve for slip and states at `c` in the step; write the states to the row `INSIDE`.
 
     They are x with x - p + weight (p' - h f(x)) = 0 (M70), p being the polynomial and f the
@@ -147,13 +160,16 @@ def balance(
         if n > 2:
             size = larger(correct_states_inside(d_x, d_y, w), size)
         if not size < 1e100:
-            return False, (at.s_x, at.s_y), (0.0, 0.0)
-        d_x, d_y = (yy * lost_x - xy * lost_y) * per, (xx * lost_y - yx * lost_x) * per
-        slower = at.s_xx * d_x + at.s_xy * d_y, at.s_xy * d_x + at.s_yy * d_y
+            break
         if size < enough or size * size < enough:
-            return True, slip_at(eps, q_x, q_y), slower
+            d_x, d_y = (yy * lost_x - xy * lost_y) * per, (xx * lost_y - yx * lost_x) * per
+            slower = at.s_xx * d_x + at.s_xy * d_y, at.s_xy * d_x + at.s_yy * d_y
+            by_x = abs(at.s_xx * yy - at.s_xy * yx) + abs(at.s_xy * yy - at.s_yy * yx)
+            by_y = abs(at.s_xy * xx - at.s_xx * xy) + abs(at.s_yy * xx - at.s_xy * xy)
+            rounding = ROUNDING * abs(g * per) * (by_x * abs(a_x) + by_y * abs(a_y))
+            return Balanced(True, slip_at(eps, q_x, q_y), slower, rounding)
         at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
-    return False, (at.s_x, at.s_y), (0.0, 0.0)
+    return Balanced(False, (at.s_x, at.s_y), (0.0, 0.0), 0.0)
 
 
 @inlined
@@ -174,11 +190,12 @@ def local_error(
 ) -> float:
     """Return the relative error of the step's cubic, and write the error itself.
 
-    It is relative to the slip, or to the motion about steady sliding if that is slower. Where slip
-    follows the springs, the cubic misses no force, and its error is that of the distance (M70b).
+    It is relative to the slip, or to the motion about steady sliding if that is slower; slip that
+    the rounding of forces makes is no error (M70c). Where slip follows the springs, the cubic
+    misses no force, and its error is that of the distance (M70b).
     """
     p = within(w, INTERIOR)
-    found, (s_x, s_y), (by_x, by_y) = balance(
+    found, (s_x, s_y), (by_x, by_y), rounding = balance(
         problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 0.1, distance_error(w)
     )
     if not found:
@@ -186,6 +203,7 @@ def local_error(
     e_x, e_y = p.s_x - s_x, p.s_y - s_y
     w.error[0], w.error[1] = e_x, e_y
     speed = slowest(h, w, accuracy.speed) + sqrt(s_x * s_x + s_y * s_y)
+    speed = max(speed, rounding / accuracy.tolerance)
     x, y = e_x + by_x, e_y + by_y
     error = sqrt(max(e_x * e_x + e_y * e_y, x * x + y * y)) / speed
     for k in range(2, w.size.shape[0]):

@@ -50,7 +50,8 @@ def sample(
             write_states(inner, LAST, samples, k)
         else:  # the weight grows from zero at the start, where the polynomial is exact
             p = less_error(w, within(w, x), x)
-            _, slip, _ = balance(problem, start, h, x, x, p, w, accuracy.newton, (0.0, 0.0))
+            nothing = (0.0, 0.0)
+            slip = balance(problem, start, h, x, x, p, w, accuracy.newton, nothing).slip
             u_x, u_y = u_x - h * p.slid_x, u_y - h * p.slid_y
             f = acting(problem, slip, at(problem.load, start.t + dt), w, INSIDE, UNWANTED)
             write(problem, u_x, u_y, slip, (f[0], f[1]), samples, k)

@@ -19,6 +19,7 @@ from tests.unit.solver.smooth.systems import (
     begun,
 )
 
+from stiction.solver.accuracy import ROUNDING
 from stiction.solver.smooth import error_estimate, newton
 from stiction.solver.smooth.workspace import INSIDE, START, workspace
 from stiction.solver.stepping.radau import DEFECT_WEIGHT, INTERIOR
@@ -85,10 +86,10 @@ def test_a_balance_inside_a_step(name, drive, c, weight, h):
     """(M70): y - P + weight (P_c - h f(y)) = 0."""
     problem, start, w = solved_step(name, h, drive)
     p = plain(error_estimate.within)(w, c)
-    found, at, _ = plain(error_estimate.balance)(problem, start, h, c, weight, p, w, 1e-20, NONE)
-    assert found
+    balanced = plain(error_estimate.balance)(problem, start, h, c, weight, p, w, 1e-20, NONE)
+    assert balanced.found
     value, by_c, slid = polynomials(w, c)
-    s, z = np.array(at[:2]), w.values[INSIDE, 2:]
+    s, z = np.array(balanced.slip), w.values[INSIDE, 2:]
     a, dz = Equations(name, drive).rates(c * h, h * slid, s, z)
     off = np.array([*s, *z]) - value + weight * (by_c - h * np.array([*a, *dz]))
     scale = [hypot(*MOTION[2:])] * 2 + list(w.size[2:])
@@ -107,11 +108,11 @@ def test_the_error_of_a_step(name, h):
     p = plain(error_estimate.within)(w, INTERIOR)
     of = problem, start, h, INTERIOR, DEFECT_WEIGHT
     farther = plain(error_estimate.distance_error)(w)
-    _, at, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE)
-    s, z = np.array(at[:2]), w.values[INSIDE, 2:].copy()
+    s = np.array(plain(error_estimate.balance)(*of, p, w, 1e-20, NONE).slip)
+    z = w.values[INSIDE, 2:].copy()
     off = value - [*s, *z]
     p = p._replace(slid_x=p.slid_x + farther[0], slid_y=p.slid_y + farther[1])
-    _, other, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE)  # (M70b)
+    other = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE).slip  # (M70b)
     slip = max(hypot(*off[:2]), hypot(*(value[:2] - other[:2])))
     parts = [slip / (EXACT.speed + hypot(*s)), *np.abs(off[2:] / w.size[2:])]
     # one iteration with a fresh Jacobian, or two: its error is quadratic in the correction
@@ -126,10 +127,28 @@ def test_a_balance_farther_along(h):
         problem, start, w = solved_step(name, h, "steady")
         of = problem, start, h, INTERIOR, DEFECT_WEIGHT
         p = plain(error_estimate.within)(w, INTERIOR)
-        _, slip, slower = plain(error_estimate.balance)(*of, p, w, 1e-20, (3e-9, -2e-9))
+        _, slip, slower, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, (3e-9, -2e-9))
         p = p._replace(slid_x=p.slid_x + 3e-9, slid_y=p.slid_y - 2e-9)
-        _, other, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE)
+        other = plain(error_estimate.balance)(*of, p, w, 1e-20, NONE).slip
         assert (slip[0] - other[0], slip[1] - other[1]) == pytest.approx(slower, rel=1e-2)
+
+
+@pytest.mark.parametrize("name", LAWS)
+@pytest.mark.parametrize("h", [1e-5, 1e-3])
+def test_the_slip_that_rounding_makes(name, h):
+    """That of springs longer by some roundings, along either axis or both (M70c)."""
+    problem, start, w = solved_step(name, h, "steady")
+    balance, of = plain(error_estimate.balance), (h, INTERIOR, DEFECT_WEIGHT)
+    p = plain(error_estimate.within)(w, INTERIOR)
+    known = balance(problem, start, *of, p, w, 1e-20, NONE)
+    share, moved = 1e-7, []
+    for x, y in ((1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, -1.0)):
+        longer = start._replace(
+            u_x=start.u_x * (1.0 + share * x), u_y=start.u_y * (1.0 + share * y)
+        )
+        slip = balance(problem, longer, *of, p, w, 1e-20, NONE).slip
+        moved.append(hypot(slip[0] - known.slip[0], slip[1] - known.slip[1]))
+    assert 0.3 < max(moved) / (known.rounding * share / ROUNDING) < 1.01
 
 
 def test_the_error_of_the_distance_slid():
@@ -166,9 +185,9 @@ def test_a_balance_over_many_decades_takes_few_iterations(name, h, monkeypatch):
 
     monkeypatch.setitem(balance.__globals__, "evaluate", noted)
     p = plain(error_estimate.within)(w, INTERIOR)
-    found, (s_x, _), _ = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 1e-12, NONE)
-    assert found
-    assert s_x > 0.5 * h
+    balanced = balance(problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 1e-12, NONE)
+    assert balanced.found
+    assert balanced.slip[0] > 0.5 * h
     assert len(points) <= 6  # without the damping 8 to 10
 
 
@@ -179,8 +198,8 @@ def test_without_a_balance_the_error_is_infinite(name):
     assert plain(error_estimate.local_error)(problem, start, 1e-3, w, EXACT) == inf
     problem, start, w = solved_step(name, 1e-3)
     p = plain(error_estimate.within)(w, 0.5)
-    found, _, _ = plain(error_estimate.balance)(problem, start, 1e-3, 0.5, 0.5, p, w, 0.0, NONE)
-    assert not found  # nothing is exact enough
+    balanced = plain(error_estimate.balance)(problem, start, 1e-3, 0.5, 0.5, p, w, 0.0, NONE)
+    assert not balanced.found  # nothing is exact enough
 
 
 def test_the_distance_slid_is_that_of_the_stages():
