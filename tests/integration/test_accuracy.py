@@ -211,10 +211,10 @@ def test_a_drive_may_be_as_slow_as_a_plate_of_the_crust(seed):
     assert run.statistics.steps < 100_000
 
 
-@pytest.mark.parametrize("number", [59, 103, 157])
-def test_bristles_may_be_driven_as_slowly(number):
-    """Rounding of forces was an error: 6 million steps, more than 1e8, and half a million."""
-    drawn = seismic_system(1 if number < 150 else 3, number)
+@pytest.mark.parametrize(("seed", "number"), [(1, 59), (1, 103), (3, 157)])
+def test_bristles_may_be_driven_as_slowly(seed, number):
+    """Rounding of forces was an error: 6 million steps, over 1e8, and over 200 000."""
+    drawn = seismic_system(seed, number)
     found, run = forces(drawn, drawn.rtol)
     assert run.status.ok
     assert run.statistics.steps < 10_000

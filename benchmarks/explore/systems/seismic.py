@@ -12,18 +12,24 @@ from typing import Any
 import stiction as st
 from benchmarks.explore.draw import Draw
 from benchmarks.explore.systems.set_valued import System, damping
-from benchmarks.explore.systems.with_state import LAWS, Sliding
+from benchmarks.explore.systems.with_state import LAWS, Sliding, bristles, of_contacts
 from stiction.presets.preset import on_a_line
 
 APART = 5_000_011  # between numbers of drawing these and others
 CYCLES = 3.0  # of loading and slip, after the first
+DRIVEN = (1e-8, 1e-2)  # speeds of a drive over that of bristles
 
 
 def seismic_system(seed: int, number: int) -> System:
     """Return the system of a number: on a line, or misaligned in the plane."""
     draw = Draw(seed, APART + number)
     kind: Any = draw.among(LAWS)
-    found = bristles(draw, kind) if "sigma_0" in kind._fields else contacts(draw, kind)
+    if "sigma_0" in kind._fields:
+        found = bristles(draw, kind, *DRIVEN)
+        swings = 20.0 * pi * sqrt(found.mass / found.k)
+        found = found._replace(time=found.time + swings)
+    else:
+        found = contacts(draw, kind)
     common = {
         "mass": found.mass,
         "k_x": found.k,
@@ -47,34 +53,10 @@ def contacts(draw: Draw, kind: Any) -> Sliding:
     load, a = draw.decades(1.0, 1e7), draw.decades(2e-3, 2e-2)
     D = draw.decades(1e-6, 1e-2)
     b, speed = a * draw.decades(1.1, 3.0), draw.decades(1e-7, 1e-5)
-    states: tuple[float, ...] = (b, D)
-    if len(kind.states()) == 2:
-        states = (0.5 * b, D, 0.5 * b, D * draw.decades(2.0, 30.0))
-    law = kind(a, *states, draw.between(0.3, 0.8), speed)
+    law = of_contacts(draw, kind, a, b, D, speed)
     V = speed * draw.decades(1e-6, 1.0)
     k = (b - a) * load / D * draw.decades(1e-3, 1.0)
     faster = draw.decades(1e2, 1e9)
     falls = (b - a) * load * log(faster)
-    return Sliding(
-        law,
-        load,
-        k,
-        (falls / (faster * V)) ** 2 / k,
-        V,
-        (1.1 * law.mu_star * load + CYCLES * falls) / (k * V),
-    )
-
-
-def bristles(draw: Draw, kind: Any) -> Sliding:
-    """Return a mass on bristles whose drive is slow beside the law's speed."""
-    load, mass, stiff = draw.decades(0.1, 30.0), draw.decades(1e-3, 10.0), draw.decades(1e3, 1e6)
-    mu, speed = draw.between(0.2, 0.8), draw.decades(1e-4, 0.1)
-    damped = 2.0 * draw.decades(0.05, 2.0) * sqrt(stiff * mass)
-    viscous = draw.decades(1e-3, 1.0) * 0.1 * mu * load / speed
-    if kind is st.laws.LuGre:
-        law = kind(mu, mu * draw.between(1.0, 1.6), speed, stiff, damped, viscous)
-    else:
-        law = kind(mu, speed, stiff, damped, viscous)
-    k, V = stiff * draw.decades(1e-4, 0.3), speed * draw.decades(1e-8, 1e-2)
-    swings = 20.0 * pi * sqrt(mass / k)
-    return Sliding(law, load, k, mass, V, 1.5 * mu * load / (k * V) + swings)
+    mass = (falls / (faster * V)) ** 2 / k
+    return Sliding(law, load, k, mass, V, (1.1 * law.mu_star * load + CYCLES * falls) / (k * V))
