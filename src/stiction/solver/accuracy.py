@@ -94,7 +94,7 @@ def accuracy(
     at the rate g = -F'(0)/m per second lets slip grow from k V/(m g^2), which must then be
     resolved; k is the acting stiffness, and g the steepest rate up to some V. Slip that the
     rounding of forces makes in 1/g, or in a radian of the spring, is no error; where a law has
-    states, friction that rises with any slip keeps it smaller.
+    states, each step tells how much that is (M70c).
     """
     along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
     law: Any = slider.law
