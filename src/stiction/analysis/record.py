@@ -16,9 +16,10 @@ from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
 from stiction.names import draw
 from stiction.recording.guess.clock import rate_of
+from stiction.recording.noise import ORDER, white_noise
 from stiction.recording.origin import Origin
 from stiction.recording.request import SignedForce
-from stiction.recording.sensor import ORDER, Sensor, white_noise
+from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
 from stiction.system.springs import ROUND

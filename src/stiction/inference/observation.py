@@ -23,7 +23,8 @@ from stiction.inference.features import (
     features,
     find_cycles,
 )
-from stiction.recording.sensor import LowPass, white_noise
+from stiction.recording.noise import white_noise
+from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.trajectory import Trajectory

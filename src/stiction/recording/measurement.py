@@ -23,9 +23,10 @@ from stiction.recording.guess.choice import (
 from stiction.recording.guess.clock import Block, blocks, check_stated, rate_of
 from stiction.recording.guess.displacement import unwrap
 from stiction.recording.guess.remarks import Said, what_is_said
+from stiction.recording.noise import noise_level
 from stiction.recording.origin import Origin, Use
 from stiction.recording.request import MARKS, SIGNS, ReadingOptions, Request, request
-from stiction.recording.sensor import Sensor, noise_level
+from stiction.recording.sensor import Sensor
 from stiction.recording.table import FileTable, Remark, number_of
 from stiction.text.units import in_words
 

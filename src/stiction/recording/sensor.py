@@ -1,11 +1,11 @@
-"""A sensor: from a quantity to its samples, and what these tell of the errors in between."""
+"""A sensor: from a quantity to its samples."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from importlib import import_module
-from math import ceil, comb, hypot, inf, log2, sqrt
+from math import ceil, hypot, inf, log2
 from typing import Annotated, Any, NamedTuple, Self
 
 import numpy as np
@@ -34,14 +34,6 @@ KINDS_OF_RATES = {
 FASTEST = 0.4  # of the sample rate: a faster filter cannot be distinguished from none
 AtLeastZero = Annotated[Number, Field(ge=0)]
 Order = Annotated[int, Field(ge=1), Field(le=12)]
-ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
-NORMAL = 0.6744897501960817  # median of |x| of a standard normal x
-FEWEST = 64  # samples
-CODES = 12  # different values at least, by which a lattice is recognised
-REPEATED = 4  # samples for each of them, on average
-LARGEST = 100_000  # steps of a difference: larger ones count as that
-OFF_LATTICE = 0.15  # of a step: how far a value may lie off
-ON_LATTICE = 0.99  # of the values
 
 
 class LowPass(NamedTuple):
@@ -273,87 +265,3 @@ def _sections(low_pass: LowPass, rate: float) -> tuple[Floats, Floats]:
     signal: Any = import_module("scipy.signal")  # slow to import
     sections = signal.butter(low_pass.order, low_pass.cut, fs=rate, output="sos")
     return sections, signal.sosfilt_zi(sections)
-
-
-class NoiseLevel(NamedTuple):
-    """Standard deviation of white noise, and the step between readings; 0 where none is seen."""
-
-    noise: float
-    quantisation: float
-
-
-def noise_level(values: Floats) -> NoiseLevel:
-    """Estimate noise and quantisation of equally spaced samples.
-
-    See `white_noise`. A quantisation of step q adds q^2/12 to the
-    variance (B. Widrow & I. Kollar, Quantization Noise, Cambridge 2008, chapter 4). Noise below a
-    third of a step is not resolved and comes out as 0. Noise that a filter has taken away
-    near half the sample rate is not seen either.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> random = np.random.default_rng(1)
-    >>> smooth = np.sin(np.linspace(0.0, 20.0, 20000))
-    >>> round(noise_level(smooth + 0.01 * random.standard_normal(20000)).noise, 3)
-    0.01
-    """
-    if len(values) < FEWEST:
-        return NoiseLevel(0.0, 0.0)
-    step = lattice(values)
-    total = white_noise(values, step)
-    left = total**2 - step**2 / 12.0
-    resolved = left > (step / 3.0) ** 2
-    return NoiseLevel(left**0.5 if resolved else 0.0, step)
-
-
-def white_noise(values: Floats, step: float = 0.0) -> float:
-    """Return the standard deviation of white noise on something smooth, in multiples of a `step`.
-
-    It follows from differences of fourth order, which cancel whatever is smooth over five samples
-    (T. Gasser, L. Sroka & C. Jennen-Steinmetz, Biometrika 73, 625 (1986)), by the median of their
-    size, which a few slips do not move.
-    """
-    weights = sqrt(comb(2 * ORDER, ORDER))  # root of the sum of their squares
-    return _median(np.abs(np.diff(values, ORDER)), step) / (NORMAL * weights)
-
-
-def _median(values: Floats, step: float) -> float:
-    """Return the median of sizes; of multiples of a step, spread evenly over half a step around."""
-    if step == 0.0:
-        return float(np.median(values))
-    number = np.rint(values / step).astype(np.int64)
-    counts = np.bincount(np.minimum(number, LARGEST))
-    below = np.cumsum(counts) - counts
-    at = int(np.searchsorted(np.cumsum(counts), 0.5 * len(values)))
-    low, wide = max(at - 0.5, 0.0), 1.0 if at else 0.5
-    return step * (low + wide * (0.5 * len(values) - float(below[at])) / float(counts[at]))
-
-
-def lattice(values: Floats) -> float:
-    """Return the step of which all values are multiples, up to a constant; 0 if there is none.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> smooth = np.sin(np.arange(2000.0))
-    >>> round(lattice(0.25 * np.rint(40.0 * smooth)), 9), lattice(smooth)
-    (0.25, 0.0)
-    """
-    codes = np.unique(values)
-    if len(codes) < CODES or REPEATED * len(codes) > len(values):
-        return 0.0
-    codes = _merge(codes)
-    gaps = np.diff(codes)
-    step = float(np.median(gaps[gaps < 1.5 * gaps.min()]))
-    # the number of steps is known near the first code, and is followed outwards
-    number = np.concatenate([[0.0], np.cumsum(np.rint(gaps / step))])
-    slope, at = np.polyfit(number, codes, 1)
-    off = np.abs(codes - (at + slope * number))
-    return float(slope) if np.mean(off < OFF_LATTICE * slope) >= ON_LATTICE else 0.0
-
-
-def _merge(codes: Floats) -> Floats:
-    """Return sorted values without those that differ from the one before by rounding alone."""
-    apart = np.diff(codes, prepend=-np.inf) > 1e-9 * float(np.ptp(codes))
-    return codes[apart]

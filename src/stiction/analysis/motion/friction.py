@@ -26,7 +26,7 @@ from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import part_means, part_starts, standard_error
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, xr
-from stiction.recording.sensor import ORDER, white_noise
+from stiction.recording.noise import ORDER, white_noise
 from stiction.text.quantity_text import percent
 
 PARTS = 400  # number of means of a record in which its break-away is sought
@@ -169,9 +169,8 @@ def _find_break_away(
 def _means(force: Floats, time: Floats) -> tuple[Floats, Floats, float]:
     """Return means over equal parts of a force, their times, and the noise of each (N)."""
     forces, times = (part_means(x, PARTS) for x in (without_spikes(force), time))
-    bent = np.diff(force, 2)
     size = float(np.median(np.diff(part_starts(len(force), PARTS), append=len(force))))
-    noise = float(np.median(np.abs(bent))) / 0.6745 / 6.0**0.5 / size**0.5
+    noise = white_noise(force, order=2) / size**0.5
     return forces, times, noise
 
 

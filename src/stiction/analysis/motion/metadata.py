@@ -18,7 +18,7 @@ from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
 from stiction.arrays import Floats, xr
-from stiction.recording.sensor import white_noise
+from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
 
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity

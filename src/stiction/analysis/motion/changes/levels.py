@@ -10,6 +10,7 @@ import numpy as np
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import median, part_means, standard_error
 from stiction.arrays import Floats
+from stiction.recording.noise import white_noise
 
 PARTS = 200  # means of a record
 LONG = 12  # of them, in each level; levels take so much of the record together
@@ -46,7 +47,7 @@ def levels(record: Record) -> list[Level]:
     means = raw if record.load is None else part_means(record.force / record.relative_load(), PARTS)
     if not np.isfinite(means).all():
         return []
-    noise = float(np.median(np.abs(np.diff(means)))) / 0.6745 / 2.0**0.5
+    noise = white_noise(means, order=1)
     if not np.ptp(means) > CHANGED * noise:
         return []
     runs = _runs(means, noise)

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
-from stiction.recording.sensor import ORDER, white_noise
+from stiction.recording.noise import ORDER, white_noise
 from stiction.recording.strokes import strokes as strokes_of
 
 # The lesser of both levels over the larger; share of time between half of either, 0.23 for a sine

@@ -18,7 +18,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import uniform_mean
 from stiction.arrays import xr
-from stiction.recording.sensor import white_noise
+from stiction.recording.noise import white_noise
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 

@@ -1,0 +1,103 @@
+"""What samples tell of a sensor's errors: white noise, and the steps of a digitised reading."""
+
+from __future__ import annotations
+
+from math import comb, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.arrays import Floats
+
+ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
+NORMAL = 0.6744897501960817  # median of |x| of a standard normal x
+FEWEST = 64  # samples
+CODES = 12  # different values at least, by which a lattice is recognised
+REPEATED = 4  # samples for each of them, on average
+LARGEST = 100_000  # steps of a difference: larger ones count as that
+OFF_LATTICE = 0.15  # of a step: how far a value may lie off
+ON_LATTICE = 0.99  # of the values
+
+
+class NoiseLevel(NamedTuple):
+    """Standard deviation of white noise, and the step between readings; 0 where none is seen."""
+
+    noise: float
+    quantisation: float
+
+
+def noise_level(values: Floats) -> NoiseLevel:
+    """Estimate noise and quantisation of equally spaced samples.
+
+    See `white_noise`. A quantisation of step q adds q^2/12 to the
+    variance (B. Widrow & I. Kollar, Quantization Noise, Cambridge 2008, chapter 4). Noise below a
+    third of a step is not resolved and comes out as 0. Noise that a filter has taken away
+    near half the sample rate is not seen either.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> random = np.random.default_rng(1)
+    >>> smooth = np.sin(np.linspace(0.0, 20.0, 20000))
+    >>> round(noise_level(smooth + 0.01 * random.standard_normal(20000)).noise, 3)
+    0.01
+    """
+    if len(values) < FEWEST:
+        return NoiseLevel(0.0, 0.0)
+    step = lattice(values)
+    total = white_noise(values, step)
+    left = total**2 - step**2 / 12.0
+    resolved = left > (step / 3.0) ** 2
+    return NoiseLevel(left**0.5 if resolved else 0.0, step)
+
+
+def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> float:
+    """Return the standard deviation of white noise on something smooth, in multiples of a `step`.
+
+    It follows from differences, which cancel what is smooth over `order` + 1 samples (T. Gasser,
+    L. Sroka & C. Jennen-Steinmetz, Biometrika 73, 625 (1986)), by the median of their size, which a
+    few slips do not move.
+    """
+    weights = sqrt(comb(2 * order, order))  # root of the sum of their squares
+    return _median(np.abs(np.diff(values, order)), step) / (NORMAL * weights)
+
+
+def _median(values: Floats, step: float) -> float:
+    """Return the median of sizes; of multiples of a step, spread evenly over half a step around."""
+    if step == 0.0:
+        return float(np.median(values))
+    number = np.rint(values / step).astype(np.int64)
+    counts = np.bincount(np.minimum(number, LARGEST))
+    below = np.cumsum(counts) - counts
+    at = int(np.searchsorted(np.cumsum(counts), 0.5 * len(values)))
+    low, wide = max(at - 0.5, 0.0), 1.0 if at else 0.5
+    return step * (low + wide * (0.5 * len(values) - float(below[at])) / float(counts[at]))
+
+
+def lattice(values: Floats) -> float:
+    """Return the step of which all values are multiples, up to a constant; 0 if there is none.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> smooth = np.sin(np.arange(2000.0))
+    >>> round(lattice(0.25 * np.rint(40.0 * smooth)), 9), lattice(smooth)
+    (0.25, 0.0)
+    """
+    codes = np.unique(values)
+    if len(codes) < CODES or REPEATED * len(codes) > len(values):
+        return 0.0
+    codes = _merge(codes)
+    gaps = np.diff(codes)
+    step = float(np.median(gaps[gaps < 1.5 * gaps.min()]))
+    # the number of steps is known near the first code, and is followed outwards
+    number = np.concatenate([[0.0], np.cumsum(np.rint(gaps / step))])
+    slope, at = np.polyfit(number, codes, 1)
+    off = np.abs(codes - (at + slope * number))
+    return float(slope) if np.mean(off < OFF_LATTICE * slope) >= ON_LATTICE else 0.0
+
+
+def _merge(codes: Floats) -> Floats:
+    """Return sorted values without those that differ from the one before by rounding alone."""
+    apart = np.diff(codes, prepend=-np.inf) > 1e-9 * float(np.ptp(codes))
+    return codes[apart]
