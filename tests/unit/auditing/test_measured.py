@@ -76,7 +76,8 @@ def test_a_record_with_static_friction_and_no_rotation_is_not_explained_by_the_r
     record = record_of(slider, 8, 12.0, channels=("force",))
     seen = compare(record, rig, simulations=SIMULATIONS, library=tmp_path)
     assert not seen.like
-    assert seen.odds.decision == STATIC
+    assert seen.odds.decision == STATIC, seen.odds
+    assert not seen.odds.straight_excluded
     assert verdict(seen).startswith("Friction, not misalignment: this record is like simulations")
     undecided = replace(seen.odds, probabilities=np.full(len(seen.odds.names), 0.25))
     said = verdict(replace(seen, odds=undecided))

@@ -60,13 +60,6 @@ def test_a_record_of_a_rotating_friction_vector_is_called_so(odds):
     assert "in all directions" not in said  # the force across is measured
 
 
-def test_a_record_of_static_friction_is_called_so(rig, folder):
-    slider = rig.slider.replace(phi="0 deg", friction=Coulomb(mu_0=0.42, mu_static=0.6))
-    found = st.mechanism(record_of(slider, 8), rig, simulations=SIMULATIONS, library=folder)
-    assert found.decision == STATIC, found
-    assert not found.straight_excluded
-
-
 def test_drifting_friction_has_a_trend(rig, rotating):
     drifting = record_of(rig.slider.replace(phi="2.5 deg"), 9, drift=-0.02)
     found = [observe(each, rig.slider) for each in (rotating, drifting)]
