@@ -439,10 +439,19 @@ def words(capsys):
     return " ".join(capsys.readouterr().err.split())
 
 
-def test_a_percentage_as_coefficient_is_named():
-    slider = st.presets.nakano_popov_2020()
-    friction = st.Coulomb(mu_0=40.0)
-    run = st.simulate(slider.replace(friction=friction), "1 ms", sample_rate="1 kHz")
-    assert "if a percentage is meant, write 0.4" in report_lines(run, Path("run.nc"))[-1]
+def test_a_percentage_as_coefficient_is_named(tmp_path, capsys):
+    """After a run, and before the runs of a study, whose axis may hold it."""
+    slider, said = st.presets.nakano_popov_2020(), "if a percentage is meant, write 0.4."
+    meant = slider.replace(friction=st.Coulomb(mu_0=40.0))
+    run = st.simulate(meant, "1 ms", sample_rate="1 kHz")
+    assert said in report_lines(run, Path("run.nc"))[-1]
     run = st.simulate(slider, "1 ms", sample_rate="1 kHz")
     assert "percentage" not in " ".join(report_lines(run, Path("run.nc")))
+    study = tmp_path / "study.toml"
+    axis = '[run]\nduration = 1e-3\n\n[axes."friction.mu_0"]\nvalues = [40.0, 30.0]\n'
+    for text, named in ((axis, True), (axis.replace("40.0", "0.4"), False)):
+        study.write_text(slider.to_toml() + text)
+        arguments = ["sweep", str(study), "-o", str(tmp_path / f"{named}.zarr"), "--threads", "1"]
+        with pytest.raises(SystemExit):
+            main(arguments)
+        assert (said in words(capsys)) == named

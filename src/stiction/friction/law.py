@@ -19,6 +19,8 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError
 
+PLAUSIBLE = 5.0  # friction coefficient of solids: that of rubber reaches about 4
+
 Vector = tuple[float, float]
 
 
@@ -114,6 +116,17 @@ def states(law: Any) -> tuple[Internal, ...]:
 def static_coefficient(law: Any) -> float:
     """Return the largest friction coefficient at zero slip."""
     return max(float(getattr(law, "mu_static", 0.0)), float(law.coefficient(0.0)))
+
+
+def implausible(law: Any) -> list[str]:
+    """Return what is implausible about a law, in sentences."""
+    mu = static_coefficient(law)
+    if mu <= PLAUSIBLE:
+        return []
+    return [
+        f"The friction coefficient at rest is {mu:g}, where few are above {PLAUSIBLE:g}; if a "
+        f"percentage is meant, write {mu / 100.0:g}."
+    ]
 
 
 def limit_coefficient(law: Any, friction: Floats, normal_load: Floats) -> float:

@@ -236,6 +236,7 @@ def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
     """Return the message for a name that is not `known`, with the nearest known one."""
     known = sorted(known)
     longer = [each for each in known if len(name) >= LEAST and each.startswith(name)]
+    longer += [each for each in known if each.endswith(f".{name}")]  # its path is lacking
     near = longer if 0 < len(longer) <= MOST else get_close_matches(name, known, 1)
     meant = " or ".join(filter(None, (", ".join(map(repr, near[:-1])), *map(repr, near[-1:]))))
     remedy = f"did you mean {meant}?" if near else f"known: {', '.join(known)}"

@@ -34,7 +34,7 @@ from stiction.auditing.words.changes import _change
 from stiction.auditing.words.numbers import apparent_stiffness, numbers
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
-from stiction.auditing.words.verdict import margin, motions, stability
+from stiction.auditing.words.verdict import margin, motions, stability, verdict
 from stiction.cli import main
 from stiction.linear_stability import Critical, critical, steady_sliding
 
@@ -330,6 +330,12 @@ def test_what_cannot_be_audited_or_written_says_why(tmp_path, capsys):
         main(["audit", str(config)])
     assert ended.value.code == 2
     assert "drive.velocity: is zero" in capsys.readouterr().err
+
+
+def test_a_percentage_as_coefficient_comes_first(found):
+    first, *others = verdict(found._replace(slider=PAPER.replace(friction=st.Coulomb(40.0))))
+    assert "if a percentage is meant, write 0.4" in first
+    assert others == verdict(found)
 
 
 def audit_text(slider: st.Slider) -> str:

@@ -69,6 +69,8 @@ def test_an_unknown_parameter_is_answered_with_the_nearest():
         read(PAPER, "drive.velocty")
     with pytest.raises(st.DescriptionError, match=r"did you mean 'friction\.v_f'"):
         change_parameter(PAPER, "friction.vf", 1.0)
+    with pytest.raises(st.DescriptionError, match=r"did you mean 'friction\.mu_0'"):
+        read(PAPER, "mu_0")
 
 
 def test_several_parameters_with_one_value():

@@ -21,6 +21,7 @@ from stiction.auditing.simulated_test import (
     UNSETTLED,
     SimulatedTest,
 )
+from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.units import in_words, with_error
@@ -42,9 +43,11 @@ SEEN = {  # kinds of motion, in a sentence
 def verdict(found: Audit) -> list[str]:
     """Return the motion of the apparatus, and its margin to another one."""
     early = [each for each in (found.observation, found.sliding_on) if not each.run.status.ok]
+    doubts = implausible(found.slider.law)
     if early:
-        return [f"The simulated test ended early: {early[0].run.status.value}.", stability(found)]
-    return [*motions(found), stability(found), margin(found)]
+        ended = f"The simulated test ended early: {early[0].run.status.value}."
+        return [*doubts, ended, stability(found)]
+    return [*doubts, *motions(found), stability(found), margin(found)]
 
 
 def motions(found: Audit) -> list[str]:

@@ -12,7 +12,6 @@ from stiction.cli.terminal import say
 from stiction.errors import argument
 from stiction.text.quantity_text import percent
 
-LARGEST = 5.0  # friction coefficient of solids: that of rubber reaches about 4
 REST = 1e-9  # of the drive velocity: slower slip counts as rest
 
 if TYPE_CHECKING:
@@ -83,7 +82,7 @@ def compare_with_published(preset: str, result: Trajectory) -> None:
 
 def report_lines(result: Trajectory, output: Path) -> list[str]:
     """Return the lines of text about a written run."""
-    from stiction.friction.law import static_coefficient
+    from stiction.friction.law import implausible
     from stiction.text.units import in_words
 
     statistics = result.statistics
@@ -111,12 +110,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
         still = not any(result.samples[name].any() for name in ("drive_X", "drive_Y"))
         remedy = "the drive is at rest; give it a velocity" if still else longer(result)
         lines.append(f"it never slipped: friction held all the time; {remedy}")
-    if (mu := static_coefficient(result.slider.law)) > LARGEST:
-        lines.append(
-            f"the friction coefficient at rest is {mu:g}, where few are above {LARGEST:g}; "
-            f"if a percentage is meant, write {mu / 100.0:g}"
-        )
-    return lines
+    return lines + implausible(result.slider.law)
 
 
 def share(result: Trajectory) -> str:

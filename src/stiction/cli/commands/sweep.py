@@ -96,6 +96,7 @@ def sweep(
         Write progress and outcome to standard output as lines of JSON, at most one a second.
     """
     from stiction.cli.tally import show_tally
+    from stiction.friction.law import implausible
     from stiction.study.execution.refine import refine as halve
     from stiction.study.execution.refine import request
     from stiction.study.execution.sweep import sweep as do
@@ -108,6 +109,10 @@ def sweep(
         request(study, along, to, apart)
     elif apart is not None:
         raise StictionError("--apart needs --refine; give both")
+    if not (quiet or json_lines):  # before the first of many runs, too
+        first = study.description((0,) * len(study.layout.shape))
+        for doubt in implausible(first.slider.law):
+            say(doubt, error=True)
     try:
         with show_tally(quiet, json_lines) as (report, conclude):
             result = do(study, output, engine=means, progress=report)
