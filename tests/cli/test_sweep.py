@@ -108,6 +108,14 @@ def test_a_bad_study_leaves_nothing_behind(config, tmp_path, capsys, change, say
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
 
 
+def test_a_folder_is_not_named_as_a_file(config, tmp_path, capsys):
+    assert inside("sweep", config, "-o", tmp_path / "a.nc") == 2
+    assert "a study is kept in a folder, not in a NetCDF file; name it a.zarr" in " ".join(
+        capsys.readouterr().err.split()
+    )
+    assert not (tmp_path / "a.nc").exists()
+
+
 def test_engines_exclude_each_other(config, tmp_path, capsys):
     assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 0) == 2
     assert "must be at least 1" in capsys.readouterr().err

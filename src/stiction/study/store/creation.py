@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.storage.files import place, usable_folder, workshop
+from stiction.errors import ResultError
+from stiction.storage.files import NETCDF, place, usable_folder, workshop
 from stiction.storage.version import own_version
 from stiction.study.plan.study import Study
 from stiction.study.store.kept import TIME, flag_attributes, stored_variables, trace_times
@@ -29,6 +30,11 @@ if TYPE_CHECKING:
 def create(study: Study, path: str | Path) -> Store:
     """Create the store of a new study, or open it if another sweep was faster."""
     target = Path(path)
+    if target.suffix.lower() in NETCDF:
+        raise ResultError(
+            f"{target}: a study is kept in a folder, not in a NetCDF file; name it "
+            f"{target.stem}.zarr"
+        )
     usable_folder(target)
     with errors_as_message(target), workshop(target.parent) as room:
         part = lay_out(study, room / "store")
