@@ -40,6 +40,8 @@ def table(found: Table, room: int = 80) -> Grid:
     shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1, 0, 0), pad_edge=False)
     columns = list(zip(found.headings, *found.rows, strict=True))
     inside = room - 1 - 2 * len(columns)  # rules and padding take the rest
+    if len(columns) > 2 and sum(map(narrowest, columns)) > inside:
+        return cells_in_lines(found)
     for cells, width in zip(columns, widths(columns, inside), strict=True):
         numbers = all(number(cell) for cell in cells[1:])
         shown.add_column(
@@ -50,6 +52,18 @@ def table(found: Table, room: int = 80) -> Grid:
         )
     for row in found.rows:
         shown.add_row(*(plain(cell) for cell in row))
+    return shown
+
+
+def cells_in_lines(found: Table) -> Grid:
+    """Return a table too wide for the terminal with one cell a line, a rule after each row."""
+    shown = Grid(box=SIMPLE_HEAD, show_header=False, padding=(0, 1, 0, 0), pad_edge=False)
+    shown.add_column(style="bold")
+    shown.add_column(overflow="fold")
+    for row in found.rows:
+        for heading, cell in zip(found.headings, row, strict=True):
+            shown.add_row(plain(heading), plain(cell))
+        shown.add_section()
     return shown
 
 

@@ -1,0 +1,45 @@
+"""Tables in terminals of any width."""
+
+import io
+
+import numpy as np
+import pytest
+from rich.console import Console
+
+from stiction.cli.tables import table
+from stiction.text.sections import Table
+
+HEADINGS = (
+    "law",
+    "sticks",
+    "largest k_x u_x/W",
+    "fastest slip (m/s)",
+    "slowest slip while loading",
+)
+
+
+def text_of(found, width):
+    """Return what a terminal of this width shows of a table."""
+    console = Console(file=io.StringIO(), width=width, highlight=False)
+    console.print(table(found, width))
+    return console.file.getvalue()
+
+
+@pytest.mark.parametrize("width", [30, 40, 50, 60, 80, 120])
+def test_no_number_is_broken_and_no_line_longer_than_the_terminal(width):
+    random = np.random.default_rng(width)
+    for columns in range(2, len(HEADINGS) + 1):
+        sizes = 10.0 ** random.uniform(-9.0, 3.0, (6, columns - 1))
+        rows = [("coulomb", *(f"{each:.3g}" for each in row)) for row in sizes]
+        said = text_of(Table(HEADINGS[:columns], rows), width)
+        assert max(map(len, said.splitlines())) <= width
+        for row in rows:
+            assert all(cell in said.split() for cell in row)
+
+
+def test_a_table_is_turned_only_where_words_would_be_broken():
+    wide = Table(HEADINGS, [("coulomb", "152", "0.0993", "0.000392", "2.11e-05")] * 2)
+    upright, turned = text_of(wide, 80), text_of(wide, 30)
+    assert upright.count("sticks") == 1
+    assert turned.count("sticks") == 2  # with each row
+    assert "0.000392" in turned.split("fastest slip")[1].split("slowest")[0]
