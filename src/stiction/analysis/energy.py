@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stiction.analysis.quadrature import integrals, states_at
+from stiction.analysis.quadrature import integrals, states_at, steps_of
 from stiction.arrays import Floats, xr
 from stiction.drive import drive_stretches, jump
 from stiction.drive.program import pick
@@ -18,6 +18,8 @@ from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mass_tensor
 from stiction.trajectory import Trajectory
 
+POWERS = ("work", "friction_x", "friction_y", "damper_x", "damper_y")
+ROUNDING = 4e-16  # of a stored energy, in each step: its displacement by half as much
 # name: long name; all in J
 ENERGIES = {
     "work": "work of the drive",
@@ -30,7 +32,7 @@ ENERGIES = {
     "kinetic": "change of the kinetic energy",
     "residual": "work less what became of it",
     "quadrature": "bound of the error of the quadrature in the residual",
-    "bound": "bound of the residual: of the quadrature, and of what the tolerance allows",
+    "bound": "bound of the residual: quadrature, rounding, and what the tolerance allows",
 }
 
 
@@ -50,7 +52,7 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
 
     Each term is integrated independently from the run's states, and nothing is adjusted: the
     residual is the error of the solver. The local tolerance limits the energy error of each step,
-    relative to the energy that it exchanges.
+    relative to the energy that it exchanges: also what springs and mass exchange in each swing.
 
     Neither friction during stick nor the normal load does work. The friction of a law with internal
     state can return work: it includes the energy stored in bristles.
@@ -88,14 +90,18 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     """
     borders = _edges(run, edges)
     rtol = run.description.run.rtol
-    powers, off, sizes, rows = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol)
-    stored = np.diff(_stored_energies(run, borders, rows), axis=1)
+    integrated = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol, len(POWERS))
+    sizes, rows = integrated.size, integrated.states
+    powers, off = integrated.value[: len(POWERS)], integrated.error[: len(POWERS)]
+    energies = _stored_energies(run, borders, rows)
+    stored = np.diff(energies, axis=1)
     if run.slider.driven == "plate":
         powers[0] += _momentum_gain(run, borders, rows)
     spent = np.concatenate([powers[1:], stored])
     residual = powers[0] - spent.sum(axis=0)
     quadrature, exchanged = off.sum(axis=0), sizes.sum(axis=0) + np.abs(stored).sum(axis=0)
-    bound = quadrature + tolerance(rtol) * exchanged
+    rounding = ROUNDING * steps_of(run) * np.abs(energies).sum(axis=0).max()
+    bound = quadrature + tolerance(rtol) * exchanged + rounding
     values = [powers[0], *spent, residual, quadrature, bound]
     variables = {
         name: ("interval", value, {"units": "J", "long_name": ENERGIES[name]})
@@ -131,7 +137,7 @@ def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
 
 
 def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
-    """Return the power of the drive, of friction and of the dampers (W), each along x and y."""
+    """Return the powers `POWERS` (W), and those that the springs along x and y take up."""
     s = run.slider
     u_x, u_y, s_x, s_y, f_x, f_y = rows[:, :6].T
     d_x, d_y = _on_axes(s, s.motion.rate(t))
@@ -147,7 +153,8 @@ def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     angle = s.damping_angle - s.turn
     cos_d, sin_d = cos(angle), sin(angle)
     along, across = cos_d * v_x + sin_d * v_y, cos_d * v_y - sin_d * v_x
-    return np.stack([work, f_x * s_x, f_y * s_y, s.c_x * along**2, s.c_y * across**2])
+    spent = [f_x * s_x, f_y * s_y, s.c_x * along**2, s.c_y * across**2]
+    return np.stack([work, *spent, s.k_x * u_x * v_x, s.k_y * u_y * v_y])
 
 
 def _momentum_gain(run: Trajectory, borders: Floats, rows: Floats) -> Floats:

@@ -8,6 +8,7 @@ points, and the seven Gauss points among them give the error.
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from math import pi
 from typing import NamedTuple
 
@@ -16,9 +17,9 @@ import numpy as np
 from stiction.arrays import Floats, Indices
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
+from stiction.friction import has_state
 from stiction.solver.integrate import integrate
 from stiction.solver.segments import fastest_swing, stretches
-from stiction.system.description import Description
 from stiction.trajectory import Trajectory
 
 Integrand = Callable[[Floats, Floats], Floats]
@@ -26,6 +27,7 @@ Integrand = Callable[[Floats, Floats], Floats]
 PASSES = 6  # of splitting panels in four: down to a thousandth of the first
 MOST = 200_000  # panels that are split further at once
 AGAIN = 100  # times the steps of a run it may take to make it once more, sampled
+MOST_ENDS = 100_000  # steps of smooth friction to each of which a panel belongs
 PER_STEP = 4  # panels to each of the solver's steps at first
 STEPS_OF_A_CYCLE = 20  # that a return map has found
 ROUNDING = 1e-13  # of an integral; sums of so many numbers are not closer
@@ -56,6 +58,10 @@ GAUSS = np.zeros(15)
 GAUSS[1::2] = 0.5 * np.polynomial.legendre.leggauss(7)[1]
 
 
+class _AllTaken(Exception):
+    """Raised where a repeated run has given its last row."""
+
+
 class Integral(NamedTuple):
     """Integrals (quantity, interval), bounds of their error, and integrals of the magnitudes.
 
@@ -68,11 +74,14 @@ class Integral(NamedTuple):
     states: Floats
 
 
-def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: float) -> Integral:
+def integrals(
+    run: Trajectory, edges: Floats, integrand: Integrand, accuracy: float, wanted: int
+) -> Integral:
     """Integrate functions of a run's state over time, between each edge and the next.
 
     Panels are split until the sum of their errors meets `accuracy`, or they can hardly be split
-    further; the returned bound holds in both cases.
+    further; the returned bound holds in both cases. It includes the rounding of times, which is
+    much of a rapid slip after years.
 
     Parameters
     ----------
@@ -86,6 +95,9 @@ def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: fl
     accuracy : float
         Wanted bound of the quadrature's error, as a share of the integral of the magnitude of
         the largest quantity.
+    wanted : int
+        The number of quantities, the first ones, whose integrals are to have it; of the others
+        the magnitudes matter alone.
 
     Returns
     -------
@@ -102,13 +114,14 @@ def integrals(run: Trajectory, edges: Floats, integrand: Integrand, accuracy: fl
         if turn == 0:
             states = rows
             value, error, sizes = np.zeros((3, len(part), len(edges) - 1))
-            left = max(accuracy, ROUNDING) * size.sum(axis=1).max()
-        worst = off.max(axis=0)
+            left = max(accuracy, ROUNDING) * size[:wanted].sum(axis=1).max()
+        worst = off[:wanted].max(axis=0)
         poor = worst > _threshold(worst, left if turn == 0 else 0.5 * left)
         if turn == PASSES - 1 or poor.sum() > MOST:
             poor[:] = False
         which = np.searchsorted(edges, starts[~poor], side="right") - 1
-        for into, values in ((value, part), (error, off), (sizes, size)):
+        late = np.spacing(np.abs(starts) + lengths) / lengths  # times are rounded
+        for into, values in ((value, part), (error, off + late * size), (sizes, size)):
             for row, one in zip(into, values[:, ~poor], strict=True):
                 row += np.bincount(which, one, len(row))
         if not poor.any():
@@ -126,7 +139,8 @@ def _rules(
     The rules: integrals, bounds of their error, and integrals of the magnitudes. The nodes are gone
     through block by block: all states of a long run together take gigabytes.
     """
-    inside = (starts[:, None] + lengths[:, None] * NODES).ravel()
+    ends = np.append(starts[1:], starts[-1] + lengths[-1])  # times are rounded: no node lies beyond
+    inside = np.minimum(starts[:, None] + lengths[:, None] * NODES, ends[:, None]).ravel()
     at = np.searchsorted(inside, edges)
     is_node = np.ones(len(inside) + len(edges), dtype=bool)
     is_node[at + np.arange(len(edges))] = False
@@ -161,29 +175,51 @@ def _threshold(errors: Floats, left: float) -> float:
 def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     """Return starts and lengths (s) of panels within which no stick begins or ends.
 
-    No panel contains an edge, or a jump or bend of the drive or load. None is longer than the
-    shortest period: that of springs and programs during slip, of programs alone during stick. Where
-    that is far shorter than the solver's steps, the springs' swing is damped away: then there are
-    some panels to a step, and more where the first ones do not suffice (see `integrals`).
+    No panel contains an edge, or a jump or bend of the drive or load. Under set-valued friction
+    none is longer than the shortest period: that of springs and programs during slip, of programs
+    alone during stick. Smooth friction is stiff: its slips may be a millionth of the run, between
+    all nodes of equal panels, and swings are damped away. There each step of the solver is a panel.
+    Where the solver's steps are far longer than periods, there are some panels to a step, and more
+    where the first ones do not suffice (see `integrals`).
     """
     slider, first, last = run.slider, edges[0], edges[-1]
+    smooth = is_smooth(run)
+    own = step_ends(run) if smooth else run.stick_intervals.ravel()
     programs = [end for end, _ in drive_stretches(slider.motion)]
     programs += [end for end, _ in load_stretches(slider.normal_load, slider.load)]
-    breaks = np.unique(np.concatenate([edges, run.stick_intervals.ravel(), programs]))
+    breaks = np.unique(np.concatenate([edges, own, programs]))
     breaks = breaks[(breaks >= first) & (breaks <= last)]
     starts, lengths = breaks[:-1], np.diff(breaks)
     imposed = max((fastest_swing(s.problem) for s in stretches(slider, first, last)), default=0.0)
-    natural = 2.0 * pi * slider.natural_frequencies[1]
+    natural = 0.0 if smooth else 2.0 * pi * slider.natural_frequencies[1]
     held = np.searchsorted(run.stick_intervals[:, 0], starts, side="right")
     stuck = starts < np.append(run.stick_intervals[:, 1], -np.inf)[held - 1]
     omega = np.where(stuck, imposed, max(imposed, natural))
     counts = np.ceil(np.maximum(1.0, omega * lengths / (2.0 * pi))).astype(np.intp)
-    took = run.statistics
-    steps = max(took.steps, 0) + STEPS_OF_A_CYCLE * max(took.mapped, 0) + 100
-    share = PER_STEP * steps / counts.sum()
+    share = PER_STEP * (steps_of(run) + 100) / counts.sum()
     if share < 1.0:
         counts = np.ceil(share * counts).astype(np.intp)
     return split(starts, lengths, counts)
+
+
+def is_smooth(run: Trajectory) -> bool:
+    """Return whether a run's friction is smooth: its law has states, or is regularised."""
+    return run.description.run.regularisation is not None or has_state(run.slider.law)
+
+
+def steps_of(run: Trajectory) -> int:
+    """Return how many steps a run took, or would have without a map of its cycles."""
+    took = run.statistics
+    return max(took.steps, 0) + STEPS_OF_A_CYCLE * max(took.mapped, 0)
+
+
+def step_ends(run: Trajectory) -> Floats:
+    """Return when the solver's steps end (s); of very many, of every some."""
+    _, initial, settings = run.description
+    shares: list[float] = []
+    every = 1 + steps_of(run) // MOST_ENDS
+    integrate(run.description, np.empty(0), _budget(run), shares.append, pause=every)
+    return initial.time + settings.duration * np.array(shares)
 
 
 def split(starts: Floats, lengths: Floats, counts: Indices) -> tuple[Floats, Floats]:
@@ -192,6 +228,12 @@ def split(starts: Floats, lengths: Floats, counts: Indices) -> tuple[Floats, Flo
     part = np.arange(len(which)) - np.repeat(np.cumsum(counts) - counts, counts)
     length = (lengths / counts)[which]
     return starts[which] + part * length, length
+
+
+def _budget(run: Trajectory) -> int:
+    """Return the most steps that a run may take once more."""
+    took = run.statistics
+    return AGAIN * (max(took.steps, 0) + max(took.mapped, 0) + 1000)
 
 
 def states_at(run: Trajectory, times: Floats) -> Floats:
@@ -208,19 +250,20 @@ def states_at(run: Trajectory, times: Floats) -> Floats:
 
 
 def go_through(run: Trajectory, times: Floats, take: Callable[[Floats], None]) -> None:
-    """Repeat a run, and call `take` with the rows of `states_at`, block by block."""
-    slider, initial, settings = run.description
-    span = {"duration": max(float(times[-1]) - initial.time, 1e-300)}
-    until = settings.model_copy(update=span)
-    took = run.statistics
-    budget = AGAIN * (max(took.steps, 0) + max(took.mapped, 0) + 1000)
+    """Repeat a run, and call `take` with the rows of `states_at`, block by block.
+
+    It is the whole run until the last row is there: steps know of its end.
+    """
     count = 0
 
     def count_and_take(rows: Floats) -> None:
         nonlocal count
         count += len(rows)
         take(rows)
+        if count == len(times):
+            raise _AllTaken
 
-    integrate(Description(slider, initial, until), times, budget, None, count_and_take)
+    with suppress(_AllTaken):
+        integrate(run.description, times, _budget(run), None, count_and_take)
     if count < len(times):
         raise ResultError(f"the repeated run ends before {times[-1]:g} s; simulate it again")

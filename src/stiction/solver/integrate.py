@@ -101,6 +101,7 @@ def integrate(
     progress: Report | None,
     take: Callable[[np.ndarray], None] | None = None,
     inside: float = 0.0,
+    pause: int = BUDGET,
 ) -> Solution:
     """Integrate a description, filling in the samples at `times` (ascending, s).
 
@@ -108,7 +109,8 @@ def integrate(
     not kept, and the memory that they take does not grow with their number in steps. All cycles
     that a return map finds at once are in one block. `inside` is the relative error of the slip
     that samples inside steps may have; if that is no less than the steps' `tolerance`, they take a
-    sixth of the time.
+    sixth of the time. `progress` is told the share of the time that is done, after at most `pause`
+    turns of the loop.
     """
     slider, initial, settings = description
     t, end = initial.time, initial.time + settings.duration
@@ -128,7 +130,7 @@ def integrate(
         held = accuracy(slider, scales, stretch, t, settings.rtol, inside)
         code = RUNNING
         while code == RUNNING:
-            budget = min(BUDGET if take is None else BLOCK, max_steps - out.used)
+            budget = min(pause if take is None else BLOCK, max_steps - out.used)
             if budget <= 0:
                 code = TOO_MANY_STEPS
                 break

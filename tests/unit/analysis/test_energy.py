@@ -6,6 +6,8 @@ from math import pi
 import numpy as np
 import pytest
 from benchmarks.accuracy.energy import balance
+from benchmarks.explore.systems.seismic import seismic_system
+from benchmarks.explore.systems.set_valued import system
 
 import stiction as st
 from stiction.analysis.quadrature import GAUSS, KRONROD, NODES, integrals, panels
@@ -60,7 +62,7 @@ def test_panels_break_where_sticks_and_programs_do(slider):
 def test_poor_panels_are_split_until_the_bound_is_met(slider):
     run = st.simulate(slider.replace(drive=st.ConstantVelocity(0.0)), 1.0)
     edges = np.array([0.0, 0.3, 1.0])
-    found = integrals(run, edges, lambda t, rows: np.stack([np.abs(t - 0.41) ** 0.5, t]), 1e-6)
+    found = integrals(run, edges, lambda t, rows: np.stack([np.abs(t - 0.41) ** 0.5, t]), 1e-6, 2)
     root = (0.41**1.5 - 0.11**1.5, 0.11**1.5 + 0.59**1.5)
     assert found.value[0] == pytest.approx(np.array(root) * 2 / 3, abs=found.error[0].max())
     assert found.error.sum() < 1e-6
@@ -76,7 +78,8 @@ def test_the_budget_closes_to_the_tolerance(slider, driven, changes):
         budget = st.analysis.energy_budget(run)
         residual, quadrature = closure(budget)
         assert (np.abs(budget["residual"]) <= budget["bound"]).all()
-        assert float(budget["bound"].sum()) < 3 * tolerance(rtol) * float(budget["work"].sum())
+        # the work comes, goes into friction and springs, and some of the springs' goes on
+        assert float(budget["bound"].sum()) < 4 * tolerance(rtol) * float(budget["work"].sum())
         assert quadrature < 2 * rtol  # bounds of several quantities add up
         off.append(residual)
     assert off[1] < 0.1 * off[0]
@@ -132,6 +135,56 @@ def test_bristles_close_as_well(slider, driven):
     ]
     assert off[1] < tolerance(1e-8)
     assert off[1] < 0.1 * off[0]
+
+
+RARE = st.Slider(
+    mass=1.13e-5, k_x=440.0, k_y=660.0, phi="0 deg", normal_load=1.787,
+    friction=st.laws.RateStateSlip(mu_star=0.79, a=0.004, b=0.0068, D_c=8.4e-6, V_star=1.5e-6),
+    drive=st.ConstantVelocity(1e-9), driven="spring",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("duration", [3.25e6, 4e6, 6e6])
+def test_a_slip_of_a_millionth_of_the_run_is_not_missed(duration):
+    """It lay between all nodes of equal panels: 99 % of the work was in the residual."""
+    start = st.Initial(v_x=1e-9, v_y=0.0)
+    run = st.simulate(RARE, duration, rtol=1e-7, sample_rate=0, initial=start)
+    budget = st.analysis.energy_budget(run, duration * np.array([0.0, 0.3, 0.77, 1.0]))
+    assert (np.abs(budget["residual"]) <= budget["bound"]).all()
+    assert float(budget["bound"].sum()) < 1e-4 * float(budget["work"].sum())
+
+
+def test_a_layer_after_a_jump_of_the_load_is_not_missed():
+    """Slip relaxes in a millionth of the time in which the contacts do."""
+    law = st.laws.RateStateAgeing(mu_star=0.486, a=0.0103, b=0.0073, D_c=2e-5, V_star=6.6e-7)
+    levels = [st.protocols.Constant(4.2e5, 97234.0), st.protocols.Constant(2.17e5, 28700.0)]
+    slider = st.Slider(
+        mass=2.7, k_x=1e9, k_y=1e10, phi="0 deg", normal_load=4.2e5, c_x=7e3, c_y=7e3,
+        friction=law, drive=st.ConstantVelocity(6.5e-9), driven="spring",
+        load=st.protocols.LoadProgram(program=levels),
+    )  # fmt: skip
+    start = st.Initial(v_x=6.5e-9, v_y=0.0)
+    run = st.simulate(slider, 125934.0, sample_rate=0, initial=start)
+    (budget,) = np.abs(st.analysis.energy_budget(run)[["residual", "bound"]].to_array()).T.values
+    assert budget[0] <= budget[1] < 1e-2
+
+
+@pytest.mark.parametrize(
+    ("draw", "number", "delta"),
+    [(seismic_system, 22, None), (seismic_system, 42, None), (seismic_system, 47, None),
+     (system, 23, 1e-3)],
+)  # fmt: skip
+def test_slips_close_in_any_interval(draw, number, delta):
+    """After 1e5 years a step is some roundings of the time; or springs swing on after a slip."""
+    drawn = draw(92 if delta is None else 94, number)
+    smoothed = None if delta is None else delta * drawn.slider.drive.velocity
+    run = st.simulate(
+        drawn.slider, drawn.duration, rtol=drawn.rtol, sample_rate=0, regularisation=smoothed
+    )
+    inside = drawn.duration * np.random.default_rng(number).random(4)
+    edges = np.sort([0.0, *inside, drawn.duration])
+    budget = st.analysis.energy_budget(run, edges)
+    assert (np.abs(budget["residual"]) <= budget["bound"]).all()
 
 
 def test_intervals_add_up_to_the_whole(paper_run):
