@@ -10,6 +10,7 @@ from stiction.analysis.signals.turning_points import TurningPoints
 from stiction.arrays import Floats, Indices
 
 ROUNDING = 1e-9  # a slope less than this part of the bend is none
+LEVEL = 1e-12  # of the largest value: less is no slope and no bend, as of a force that is clipped
 
 
 class Fits(NamedTuple):
@@ -65,9 +66,9 @@ def vertices(time: Floats, points: TurningPoints) -> Vertices:
     """Refine turning points by a parabola through all samples that may be the top under noise.
 
     These reach from the first sample, on the way up, that is within the noise of the top to the
-    last one on the way down; where there is no noise they are the top and its two neighbours.
-    The parabola's vertex is kept among them: at a corner, where a slow rise ends in a fall, it
-    lies where the fall begins.
+    last one on the way down; where they are less than three, they are the top and its two
+    neighbours. The parabola's vertex is kept among them: at a corner, where a slow rise ends in a
+    fall, it lies where the fall begins.
 
     Parameters
     ----------
@@ -81,7 +82,9 @@ def vertices(time: Floats, points: TurningPoints) -> Vertices:
     upward = np.where(points.trough, -1.0, 1.0)  # each point is a top of `upward * values`
     first, last = _within_noise(points, upward)
     fit = fit_pieces(time, values, first, last, 2)
-    x = _top(upward * fit.coefficients[:, 1], upward * fit.coefficients[:, 2])
+    slope, bend = upward * fit.coefficients[:, 1], upward * fit.coefficients[:, 2]
+    level = np.abs(slope) + np.abs(bend) < LEVEL * np.abs(values).max()
+    x = np.where(level, 0.0, _top(slope, bend))
     found = Vertices(fit.middle + fit.half * x, fit.at(x))
     return _corners_as_sampled(time, values, upward, first, last, found)
 
@@ -95,7 +98,7 @@ def _top(slope: Floats, bend: Floats) -> Floats:
 
 
 def _within_noise(points: TurningPoints, upward: Floats) -> tuple[Indices, Indices]:
-    """Return first and last sample of each top; at least its sample and both neighbours."""
+    """Return first and last sample of each top; of less than three, also both neighbours."""
     index, values, n = points.index, points.values, len(points.values)
     enough = values[index] - upward * points.noise
     # the legs before the first point and after the last are looked at as far as the next ones
@@ -112,10 +115,11 @@ def _within_noise(points: TurningPoints, upward: Floats) -> tuple[Indices, Indic
         )
     ]
     starts = ends[:-1] - before
-    first = np.minimum.reduceat(np.where(on_top[0], at, n), starts)[:-1]
+    first = np.minimum(np.minimum.reduceat(np.where(on_top[0], at, n), starts)[:-1], index)
     last = np.maximum.reduceat(np.where(on_top[1], at, -1), starts)[1:]
-    first = np.minimum(first, np.clip(index - 1, 0, n - 3))
-    return first, np.maximum(last, np.clip(index + 1, 2, n - 1))
+    few = last - first < 2  # else the neighbour beyond a sudden fall is no part of the top
+    first = np.where(few, np.minimum(first, np.clip(index - 1, 0, n - 3)), first)
+    return first, np.where(few, np.maximum(last, np.clip(index + 1, 2, n - 1)), last)
 
 
 def _corners_as_sampled(
