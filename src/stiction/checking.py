@@ -8,7 +8,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stiction.errors import ResultError, argument
-from stiction.result.file import DamageError, intact_description, is_netcdf, read_tables
+from stiction.recording.stored import read_stored, root_attributes
+from stiction.result.file import (
+    RECORD_KIND,
+    TEXTS,
+    DamageError,
+    intact_description,
+    is_netcdf,
+    read_tables,
+)
 from stiction.simulation import run
 from stiction.storage.isolation import apart
 from stiction.storage.kinds import RESULT, use_of
@@ -73,14 +81,14 @@ class Check(NamedTuple):
 
 
 def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Check:
-    """Check a result, or the store of a study, for damage.
+    """Check a result, a stored record or the store of a study for damage.
 
     Versions before 0.5 wrote no checksums: in their files, only missing and truncated parts show.
 
     Parameters
     ----------
     path : str or Path
-        A result of `stiction.run` or a store of `stiction.sweep`.
+        A result of `stiction.run`, a record of `stiction import` or a store of `stiction.sweep`.
     repair : bool, optional
         Whether to compute damaged parts again: a result from the description in it, a study
         block by block.
@@ -96,8 +104,8 @@ def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Che
     Raises
     ------
     ResultError
-        If `path` is neither a result nor a store, or a repair needs a description that is
-        damaged too.
+        If `path` is none of these, a repair needs a description that is damaged too, or a record
+        is damaged, which must be imported again.
 
     Examples
     --------
@@ -116,6 +124,10 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     if path.suffix.lower() in (".toml", ".csv", ".parquet", ".mat") and os.path.isfile(path):
         use = use_of(path, RESULT) or "check reads what stiction run or stiction sweep wrote"
         raise ResultError(f"{path}: a {path.suffix} file is not a result; {use}")
+    attributes = root_attributes(path) if os.path.isfile(path) else None
+    if attributes is not None and RECORD_KIND in attributes:
+        read_stored(path)  # or it says what is damaged
+        return Check(path, [])
     try:
         read_tables(path)
         return Check(path, [])
@@ -123,6 +135,8 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
         told = damage.lost
     except ResultError as error:
         if not (os.path.isfile(path) and is_netcdf(path)):
+            raise
+        if attributes is not None and not {*TEXTS} & {*attributes}:  # somebody else's
             raise
         told = str(error).removeprefix(f"{path}: ")
     description = apart(intact_description, path)

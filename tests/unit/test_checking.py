@@ -6,6 +6,7 @@ import shutil
 from pathlib import Path
 
 import h5py
+import numpy as np
 import pytest
 import xarray as xr
 from benchmarks.explore.draw import Draw
@@ -328,3 +329,29 @@ def test_a_changed_result_is_said_once_to_be_damaged(tmp_path):
         file["u_x"][0] = 1.0
     lines = str(st.check(path)).splitlines()
     assert lines[1].strip() == "Damaged: samples.u_x."
+
+
+def test_a_stored_record_is_no_damaged_run(tmp_path, capsys):
+    """A load cell's record is whole, whatever asks for a run; a changed one is told."""
+    time = np.arange(0.0, 2.0, 0.01)
+    path = st.Record(time=time, force=1.0 + time % 0.3).save(tmp_path / "record.nc")
+    assert st.check(path).ok
+    for command in (["plot", path, "-o", tmp_path / "a.png"], ["export", path, "-o", "a.csv"]):
+        with pytest.raises(SystemExit) as ended:
+            cli.main([str(each) for each in command])
+        assert ended.value.code == 2
+        said = " ".join(capsys.readouterr().err.split())
+        assert "is a record, not the result of a run; stiction analyse" in said
+        assert "damage" not in said
+    data = bytearray(path.read_bytes())
+    data[data.find(time[17:19].tobytes()) + 9] ^= 4
+    path.write_bytes(data)
+    with pytest.raises(st.ResultError, match=r"is damaged.*import the record again"):
+        st.check(path)
+
+
+def test_somebody_else_s_netcdf_is_no_damaged_run(tmp_path):
+    path = tmp_path / "weather.nc"
+    xr.Dataset({"t2m": ("time", np.zeros(4))}).to_netcdf(path, engine="h5netcdf")
+    with pytest.raises(st.ResultError, match="not a result of 'stiction run'"):
+        st.check(path)

@@ -18,6 +18,7 @@ from stiction.recording.measurement import Measurement
 from stiction.recording.origin import Origin, Use
 from stiction.recording.sensor import Sensor
 from stiction.result.file import (
+    RECORD_KIND,
     SEAL,
     as_written,
     damaged_parts,
@@ -34,7 +35,6 @@ from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_o
 from stiction.storage.isolation import apart
 from stiction.storage.version import own_version
 
-KIND = "stiction_record"  # attribute by which a stored record is recognised; its value: the layout
 KNOWN = {  # of the apparatus, stored as attributes with their units
     "normal_load": "N",
     "stiffness": "N/m",
@@ -64,7 +64,7 @@ def write_stored(
         name: Column(("time",), values, cf_attributes(CHANNELS[name].unit, CHANNELS[name].meaning))
         for name, values in channels.items()
     }
-    attributes: dict[str, Any] = {KIND: 1, "stiction_version": own_version()}
+    attributes: dict[str, Any] = {RECORD_KIND: 1, "stiction_version": own_version()}
     attributes |= {name: float(value) for name, value in known.items()}
     attributes["units_of_attributes"] = ", ".join(f"{name}: {KNOWN[name]}" for name in known)
     attributes["sensors"] = json.dumps({name: _fields(each) for name, each in sensors.items()})
@@ -80,7 +80,7 @@ def write_stored(
 
 def is_stored(path: Path) -> bool:
     """Return whether a file is a record that `write_stored` wrote."""
-    return KIND in (root_attributes(path) or ())
+    return RECORD_KIND in (root_attributes(path) or ())
 
 
 def root_attributes(path: Path) -> list[str] | None:

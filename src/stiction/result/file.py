@@ -37,6 +37,7 @@ TEXTS = ("description", "status", "stiction_version")
 SHORTEST = 1e-100  # s, between two samples
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
 SEAL, DESCRIPTION = "checksums", "description"  # attributes of the file
+RECORD_KIND = "stiction_record"  # attribute of a stored record; its value: the layout
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 
@@ -123,6 +124,9 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
     with opening(path, UNREADABLE):
         refuse_other_files(path)
         data, sticks, checked = open_tables(path)
+        if RECORD_KIND in data.attributes:
+            use = f"stiction analyse {argument(path)} and st.read_record read it"
+            raise ResultError(f"{path}: is a record, not the result of a run; {use}")
         sealed = data.attributes.get(SEAL)
         lost = damaged_parts(sealed, {"samples": data, "sticks": sticks}) if checked else []
     if lost:
@@ -234,6 +238,8 @@ def intact_description(path: str | Path) -> str:
     h5py: Any = import_module("h5py")  # slow to import
     lost = "too damaged to be repaired: its description cannot be read; run it again"
     with opening(path, lost), h5py.File(path) as file:
+        if not {SEAL, DESCRIPTION} <= set(file.attrs):
+            raise ResultError(f"{path}: {lost}")
         known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
         whole = DESCRIPTION not in broken_parts(known, {DESCRIPTION: text.encode()})
     if not whole:
