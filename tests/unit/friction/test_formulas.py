@@ -212,7 +212,8 @@ def test_laws_of_given_traits():
     wanted = [0.2 + 0.1 * exp(-v / 0.02) for v in np.linspace(0.0, 0.2, 50)]
     assert dense == pytest.approx(wanted, abs=1e-3)
     hyperbolic = like(st.laws.HyperbolicWeakening, shared)
-    assert hyperbolic.slope(0.0) == pytest.approx(-0.1 / 0.02)
+    assert hyperbolic.coefficient(0.02) == pytest.approx(0.2 + 0.1 * exp(-1.0))
+    assert hyperbolic.coefficient(1e9) == pytest.approx(0.2)
     assert hyperbolic.coefficient(0.0) == 0.3
     assert like(st.Coulomb, shared) == st.Coulomb(0.2, 0.3)
     assert like(st.Coulomb, Traits(0.2, 0.3, 0.02)) == st.Coulomb(0.2, 0.2)

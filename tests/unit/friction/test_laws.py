@@ -1,14 +1,16 @@
 """The contract of friction laws: registered laws keep it, and broken laws are found."""
 
 import re
-from math import exp, hypot
+from math import e, exp, hypot
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from tests.drawn import inside
 
 import stiction as st
-from stiction.friction import LAWS, Internal, laws
+from stiction.friction import LAWS, Internal, has_state, laws
+from stiction.friction.law import static_coefficient
 from stiction.testing import LawContract, check_law, checks_of
 
 MEASURED = {"v": ["0 m/s", "5 mm/s", "20 mm/s", "0.1 m/s"], "mu": [0.2, 0.17, 0.16, 0.18]}
@@ -38,6 +40,22 @@ def test_a_law_is_registered_by_the_line_that_imports_it():
         for name in re.findall(r'^@register\("([^"]+)"\)', path.read_text(), re.MULTILINE)
     }
     assert named == set(LAWS)
+
+
+@pytest.mark.parametrize("name", sorted(LAWS.keys() - {"power-law-weakening"}))
+def test_a_comparable_law_has_the_friction_at_rest_and_in_fast_slip(name):
+    """But for laws without a plateau, and those with state, whose friction is another matter."""
+    if has_state(LAWS[name].like(0.2, 0.15, 0.01)):
+        pytest.skip("has internal state")
+    for static, kinetic, speed in inside(20, (0.3, 0.9), (0.05, 0.25), (1e-4, 1.0)):
+        law = LAWS[name].like(static, kinetic, speed)
+        assert static_coefficient(law) == pytest.approx(static, rel=1e-12)
+        assert law.coefficient(1e9 * speed) == pytest.approx(kinetic, rel=1e-8)
+
+
+def test_hyperbolic_weakening_has_changed_at_the_speed_in_between():
+    law = st.laws.HyperbolicWeakening.like(0.4, 0.3, 0.01)
+    assert law.coefficient(0.01) == pytest.approx(0.3 + 0.1 / e, rel=1e-14)
 
 
 # --- what each law says --------------------------------------------------------------------------

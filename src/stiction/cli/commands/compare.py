@@ -38,7 +38,8 @@ def compare(
         stiction compare my.toml --law coulomb --law '{law = "coulomb", mu_0 = 0.15}' -o laws.png
 
     A law given by name alone gets parameters comparable with the law in CONFIG: the same
-    friction coefficients at rest and in fast slip, and the same slip speed in between.
+    friction coefficients at rest and in fast slip, and the same slip speed in between. Laws that
+    have no plateau to fall to, such as power-law-weakening, have the same slope at rest.
 
     Exit status: 0 if every run reached its duration, 1 if one ended earlier (it is still drawn),
     2 if a law or the description cannot be simulated.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import e
 from typing import NamedTuple
 
 from stiction.friction.law import refuse_strengthening, static_fault
@@ -46,12 +47,9 @@ class HyperbolicWeakening(NamedTuple):
 
     @classmethod
     def like(kind, static: float, kinetic: float, speed: float) -> HyperbolicWeakening:
-        """Return the law with the coefficient `static` and a comparable slope at rest.
-
-        The slope is -(static - kinetic)/speed, because this law has no plateau to fall to.
-        """
+        """Return the law that falls from `static` to `kinetic`, by 1 - 1/e of that at `speed`."""
         refuse_strengthening("HyperbolicWeakening", static, kinetic)
-        return kind(static, speed * static / (static - kinetic))
+        return kind(static, speed / (e - 1.0), mu_inf=kinetic)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""
