@@ -1,72 +1,148 @@
-"""A friction test: friction over time, and stretches of constant velocity."""
+"""A friction test: the force over time, and stretches of constant velocity and load."""
 
 from __future__ import annotations
 
-from math import nan
+from collections.abc import Iterable, Sequence
+from math import inf, isclose, isnan, nan
 from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.protocols.settling import RESTS, SETTLED, has_settled, line
 from stiction.analysis.record import Record, as_record
 from stiction.arrays import Floats, Indices
-from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
+from stiction.drive import (
+    ConstantLoad,
+    ConstantVelocity,
+    DriveProgram,
+    Stretches,
+    ahead,
+    drive_stretches,
+    load_stretches,
+)
 from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 
-SETTLED = 0.2  # of a stretch: its end, in which friction counts as steady
+ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
+FEWEST = 3  # samples that show a change, and scatter
+LISTED = 3  # times that a sentence lists
 
 
 class ConstantStretch(NamedTuple):
-    """An interval of constant drive velocity.
+    """An interval of constant drive velocity and constant load.
 
     Attributes
     ----------
     start, end : float
         s.
     velocity : float
-        Of the drive along X, m/s.
+        Of the drive along X, m/s; across it there is none.
+    load : float
+        N.
     """
 
     start: float
     end: float
     velocity: float
+    load: float
+
+    @property
+    def way(self) -> float:
+        """Direction of the drive: 1 along X, -1 against it, 0 at rest."""
+        return float(np.sign(self.velocity))
+
+    def like(self, other: ConstantStretch) -> bool:
+        """Return whether velocity and load are those of another stretch, but for rounding."""
+        return alike(self.velocity, other.velocity) and alike(self.load, other.load)
+
+
+def alike(one: float, two: float) -> bool:
+    """Return whether two velocities or loads are equal, but for rounding."""
+    return isclose(one, two, rel_tol=ALIKE)
 
 
 class FrictionTest(NamedTuple):
-    """Friction over time, and what the drive does meanwhile.
+    """The force over time, and what drive and load do meanwhile.
 
     Attributes
     ----------
     time : ndarray
         (n,), s.
-    mu : ndarray
-        (n,), force along the drive over normal load.
+    force, load : ndarray
+        (n,), force along the drive, and normal load at the same time, N.
     lag : ndarray
         (n,), elongation of the spring along the drive, m; zero where the stiffness is unknown.
-    load : float
-        Mean normal load, N.
     stiffness : float
         Of the soft spring, N/m; NaN if unknown.
+    drive : ConstantVelocity or DriveProgram
+        Motion of the drive.
     stretches : list of ConstantStretch
-        In order of time.
+        In order of time. Between them velocity or load vary, as in ramps and under harmonics.
     """
 
     time: Floats
-    mu: Floats
+    force: Floats
+    load: Floats
     lag: Floats
-    load: float
     stiffness: float
+    drive: ConstantVelocity | DriveProgram
     stretches: list[ConstantStretch]
+
+    @property
+    def mu(self) -> Floats:
+        """Force along the drive over normal load, (n,)."""
+        return self.force / self.load
 
     def within(self, start: float, end: float) -> Indices:
         """Return the indices of the samples from `start` to `end` (s)."""
         first, after = np.searchsorted(self.time, [start - 1e-9, end + 1e-9])
         return np.arange(first, after)
 
+    def late(self, stretch: ConstantStretch) -> Indices:
+        """Return the indices of the samples in the end of a stretch."""
+        return self.within(stretch.end - SETTLED * (stretch.end - stretch.start), stretch.end)
+
     def steady(self, stretch: ConstantStretch) -> float:
         """Return the mean friction in the end of a stretch, NaN without samples."""
-        near = self.within(stretch.end - SETTLED * (stretch.end - stretch.start), stretch.end)
+        near = self.late(stretch)
         return float(self.mu[near].mean()) if len(near) else nan
+
+    def is_sampled(self, stretch: ConstantStretch) -> bool:
+        """Return whether a stretch, and its end, have enough samples to see a change there."""
+        return len(self.within(*stretch[:2])) >= FEWEST and len(self.late(stretch)) > 0
+
+    def slides(self, stretch: ConstantStretch) -> bool:
+        """Return whether the mass slides in the end of a stretch: the spring is loaded no more.
+
+        Where the stiffness is unknown it is taken to slide.
+        """
+        if not stretch.velocity:
+            return False
+        late = self._latest(stretch)
+        loading = stretch.way * line(self.time[late], self.lag[late])[0]
+        return loading < RESTS * abs(stretch.velocity)
+
+    def has_settled(self, stretch: ConstantStretch) -> bool:
+        """Return whether friction has settled in the end of a stretch."""
+        at, late = self.within(*stretch[:2]), self._latest(stretch)
+        return has_settled(self.time[at], self.mu[at], len(late))
+
+    def _latest(self, stretch: ConstantStretch) -> Indices:
+        """Return the samples in the end of a stretch, but at least as many as show a change."""
+        count = max(len(self.late(stretch)), FEWEST)
+        return self.within(*stretch[:2])[-count:]
+
+    def successions(self) -> list[tuple[ConstantStretch, ConstantStretch]]:
+        """Return the pairs of stretches of which one follows the other at once."""
+        pairs = zip(self.stretches, self.stretches[1:], strict=False)
+        return [(one, two) for one, two in pairs if two.start == one.end]
+
+    def gaps(self) -> list[tuple[float, float]]:
+        """Return the intervals in which velocity or load vary, s."""
+        ends = [float(self.time[0]), *(t for each in self.stretches for t in each[:2])]
+        ends.append(float(self.time[-1]))
+        borders = zip(ends[::2], ends[1::2], strict=True)
+        return [(start, end) for start, end in borders if end > max(start, 0.0)]
 
 
 def friction_test(source: Trajectory | Record, program: DriveProgram | None = None) -> FrictionTest:
@@ -86,13 +162,7 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
         If the program or the load is unknown.
     """
     if isinstance(source, Trajectory):
-        d, slider = source.samples, source.slider
-        load = np.asarray(d["normal_load"], dtype=np.float64)
-        force = slider.along_drive(d["spring_x"], d["spring_y"])
-        lag = slider.along_drive(d["u_x"], d["u_y"])
-        time, drive = d["time"], slider.motion
-        mean, k_x = float(load.mean()), slider.k_x
-        return FrictionTest(time, force / load, lag, mean, k_x, stretches(drive, time))
+        return of_run(source, source.slider.motion)
     source = as_record(source)
     if source.normal_load is None:
         raise ResultError("friction needs the normal load; give the record its normal_load")
@@ -101,26 +171,90 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
             "the drive of a record is unknown; give its program, such as "
             "st.protocols.velocity_steps(...)"
         )
-    lag = source.force / source.stiffness if source.stiffness else np.zeros(len(source.time))
-    mu = source.force / source.normal_load / source.relative_load()
-    k = source.stiffness or nan
+    return of_record(source, program, load_stretches(source.normal_load, None))
+
+
+def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionTest:
+    """Return a run as a friction test whose stretches are those of `drive`.
+
+    The empty end of a run that failed is left out.
+    """
+    slider, samples = run.slider, run.samples
+    there = np.isfinite(samples["spring_x"])
+    d = {name: samples[name][there] for name in COLUMNS}
     return FrictionTest(
-        source.time, mu, lag, source.normal_load, k, stretches(program, source.time)
+        d["time"],
+        slider.along_drive(d["spring_x"], d["spring_y"]),
+        np.asarray(d["normal_load"], dtype=np.float64),
+        slider.along_drive(d["u_x"], d["u_y"]),
+        slider.k_x,
+        drive,
+        stretches(drive, load_stretches(slider.normal_load, slider.load), d["time"]),
     )
 
 
-def stretches(drive: ConstantVelocity | DriveProgram, time: Floats) -> list[ConstantStretch]:
-    """Return the stretches of a drive's velocity while it is recorded; harmonics are left out."""
-    first, last = float(time[0]), float(time[-1])
+COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
+
+
+def of_record(
+    record: Record, drive: ConstantVelocity | DriveProgram, loads: Stretches
+) -> FrictionTest:
+    """Return a record with a normal load as a friction test."""
+    load = (record.normal_load or nan) * record.relative_load()
+    lag = record.force / record.stiffness if record.stiffness else np.zeros(len(record.time))
+    found = stretches(drive, loads, record.time)
+    return FrictionTest(record.time, record.force, load, lag, record.stiffness or nan, drive, found)
+
+
+def stretches(
+    drive: ConstantVelocity | DriveProgram, loads: Stretches, time: Floats
+) -> list[ConstantStretch]:
+    """Return the stretches of constant velocity and load while they are recorded.
+
+    Ramps, harmonics and recorded pieces are left out, and so is all that a harmonic lies on. A
+    border between equal pieces is none.
+    """
+    first, last = (float(time[0]), float(time[-1])) if len(time) else (inf, -inf)
+    drives = drive_stretches(drive)
     found: list[ConstantStretch] = []
     start = 0.0
-    for end, _ in drive_stretches(drive):
+    for end in sorted({end for end, _ in (*drives, *loads)}):
         begin, until = max(start, first), min(end, last)
-        if until > begin:
-            velocity = float(drive.rate(0.5 * (begin + until))[0])
-            if found and found[-1].velocity == velocity:
-                found[-1] = found[-1]._replace(end=until)
-            else:
-                found.append(ConstantStretch(begin, until, velocity))
+        course, load = ahead(drives, start)[1], ahead(loads, start)[1]
         start = end
+        if until <= begin or not isinstance(course, ConstantVelocity):
+            continue
+        if not isinstance(load, ConstantLoad):
+            continue
+        now = ConstantStretch(begin, until, course.velocity, load.force)
+        if found and found[-1].end == begin and found[-1].like(now):
+            found[-1] = found[-1]._replace(end=until)
+        else:
+            found.append(now)
     return found
+
+
+def without_harmonics(drive: ConstantVelocity | DriveProgram) -> ConstantVelocity | DriveProgram:
+    """Return the program of a drive without the harmonics on top."""
+    if isinstance(drive, ConstantVelocity):
+        return drive
+    return DriveProgram(velocity=drive.velocity, program=drive.program, repeat=drive.repeat)
+
+
+def in_list(texts: Sequence[str]) -> str:
+    """Return the first few of some texts in a row, and the number of the others."""
+    more = len(texts) - LISTED
+    return ", ".join(texts[:LISTED]) + (f" and {more} more" if more > 0 else "")
+
+
+def number_text(value: float, spec: str) -> str:
+    """Return a number as text, formatted so; "none" if it is NaN."""
+    return "none" if isnan(value) else format(value, spec)
+
+
+def say_left_out(faults: Iterable[tuple[str, str]]) -> tuple[str, ...]:
+    """Return a sentence for each reason why something is left out: of all (where, why)."""
+    places: dict[str, list[str]] = {}
+    for where, why in faults:
+        places.setdefault(why, []).append(where)
+    return tuple(f"{why}: left out at {in_list(where)}." for why, where in places.items())

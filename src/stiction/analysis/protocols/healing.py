@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan, sqrt
+from math import isnan
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import friction_test
+from stiction.analysis.protocols.friction_test import (
+    ConstantStretch,
+    FrictionTest,
+    alike,
+    friction_test,
+    say_left_out,
+)
+from stiction.analysis.protocols.settling import line
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -32,6 +39,8 @@ class Healing:
         error; NaN with fewer than two, or three, holds.
     at_one_second : float
         The line at a hold of 1 s.
+    left_out : tuple of str
+        Which holds are left out, and why, in sentences.
     """
 
     hold: Floats
@@ -41,6 +50,7 @@ class Healing:
     per_decade: float
     per_decade_error: float
     at_one_second: float
+    left_out: tuple[str, ...] = ()
 
     @property
     def gain(self) -> Floats:
@@ -50,8 +60,10 @@ class Healing:
     @property
     def section(self) -> Section:
         """The healing in words and as a table."""
-        line = f"Friction heals by {self.per_decade:.3g} per decade of hold time"
         error = f", +- {self.per_decade_error:.1g}" if self.per_decade_error > 0.0 else ""
+        said = f"Friction heals by {self.per_decade:.3g} per decade of hold time{error}."
+        if isnan(self.per_decade):
+            said = "How friction heals per decade is not known: all holds are equally long."
         rows = [
             (in_words(t, "s"), f"{before:.4f}", f"{low:.4f}", f"{peak:.4f}", f"{peak - before:.4f}")
             for t, before, low, peak in zip(
@@ -59,7 +71,7 @@ class Healing:
             )
         ]
         headings = ("hold", "steady before", "at its end", "peak after", "gain")
-        return Section("Healing", [f"{line}{error}."], Table(headings, rows))
+        return Section("Healing", [said, *self.left_out], Table(headings, rows))
 
     def __str__(self) -> str:
         """Return the section as text."""
@@ -72,6 +84,9 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
     On a stiff rig friction of the ageing law heals by b per e-fold of the hold, b ln 10 per decade,
     once the hold is far longer than D_c/V (Dieterich 1979, doi:10.1029/JB084iB05p02161). A soft rig
     shows less: the mass slides before the peak.
+
+    Only holds at rest between two slides at the same velocity, in the same direction and under the
+    same load count. The others are left out.
 
     Parameters
     ----------
@@ -93,36 +108,57 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
     '0.0415'
     """
     test = friction_test(source, program)
-    parts = test.stretches
-    holds = [
-        i
-        for i in range(1, len(parts) - 1)
-        if parts[i].velocity == 0.0 and parts[i - 1].velocity and parts[i + 1].velocity
-    ]
-    rows = []
-    for i in holds:
-        before, hold, after = parts[i - 1 : i + 2]
-        again, held = test.within(after.start, after.end), test.within(hold.start, hold.end)
-        if len(again) and len(held):
-            way = np.sign(before.velocity)
-            peak = float((way * test.mu[again]).max())
-            low = float(way * test.mu[held[-1]])
-            rows.append((hold.end - hold.start, float(way * test.steady(before)), peak, low))
+    ending = {each.end: each for each in test.stretches}
+    starting = {each.start: each for each in test.stretches}
+    rows, faults = [], []
+    for hold in test.stretches:
+        if hold.velocity or hold.start <= test.time[0] or hold.end >= test.time[-1]:
+            continue
+        before, after = ending.get(hold.start), starting.get(hold.end)
+        if before is None or after is None:
+            why = "Velocity or load vary just before or after the hold"
+        else:
+            why = _fault(test, before, hold, after)
+            if not why:
+                rows.append(_row(test, before, hold, after))
+        faults.append((in_words(hold.start, "s"), why))
+    said = say_left_out(each for each in faults if each[1])
     if not rows:
-        raise ResultError("there is no hold between two slides; see st.protocols.slide_hold_slide")
+        missing = "there is no hold between two slides at the same velocity and load"
+        raise ResultError(" ".join([f"{missing}; see st.protocols.slide_hold_slide.", *said]))
     hold_times, steady, peak_values, relaxed = np.array(rows).T
     slope, error, offset = line(np.log10(hold_times), peak_values - steady)
-    return Healing(hold_times, steady, peak_values, relaxed, slope, error, offset)
+    return Healing(hold_times, steady, peak_values, relaxed, slope, error, offset, said)
 
 
-def line(x: Floats, y: Floats) -> tuple[float, float, float]:
-    """Return slope, its standard error, and offset of the least-squares line; NaN where unknown."""
-    spread = float(((x - x.mean()) ** 2).sum())
-    if len(x) < 2 or spread == 0.0:
-        return nan, nan, nan
-    slope = float(((x - x.mean()) * (y - y.mean())).sum()) / spread
-    offset = float(y.mean() - slope * x.mean())
-    if len(x) < 3:
-        return slope, nan, offset
-    left = y - offset - slope * x
-    return slope, sqrt(float((left**2).sum()) / (len(x) - 2) / spread), offset
+def _fault(
+    test: FrictionTest, before: ConstantStretch, hold: ConstantStretch, after: ConstantStretch
+) -> str:
+    """Return why the peak after a hold shows no healing; empty if it does."""
+    if not alike(before.load, hold.load) or not alike(hold.load, after.load):
+        return "The load changes at an end of the hold"
+    if before.way != after.way:
+        return "The drive turns round in the hold"
+    if not alike(before.velocity, after.velocity):
+        return "The drive has another speed after the hold"
+    again = test.within(after.start, after.end)
+    if not all(test.is_sampled(each) for each in (before, hold, after)):
+        return "The hold, or a slide beside it, has too few samples"
+    if not test.slides(before):
+        return "The mass does not slide before the hold"
+    if not test.has_settled(before):
+        return "Friction has not settled before the hold"
+    highest = again[int((after.way * test.force[again]).argmax())]
+    if highest in test.late(after) and not test.slides(after):
+        return "The mass does not slide after the hold, or not yet"
+    return ""
+
+
+def _row(
+    test: FrictionTest, before: ConstantStretch, hold: ConstantStretch, after: ConstantStretch
+) -> tuple[float, float, float, float]:
+    """Return the duration of a hold, steady friction before it, the peak after it, its end."""
+    again, held = test.within(after.start, after.end), test.within(hold.start, hold.end)
+    peak = float((after.way * test.mu[again]).max())
+    low = float(before.way * test.mu[held[-1]])
+    return hold.end - hold.start, float(before.way * test.steady(before)), peak, low

@@ -3,38 +3,50 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan
+from math import nan, pi
+from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.protocols.friction_test import (
-    ConstantStretch,
     FrictionTest,
     friction_test,
+    in_list,
+    number_text,
+    without_harmonics,
 )
 from stiction.analysis.record import Record
+from stiction.analysis.signals.reversals import taken_out
 from stiction.arrays import Floats
-from stiction.drive import DriveProgram
+from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
+ROUNDED = 1e-9  # of a drive's travel: no way there and back
+FEWEST = 20  # samples of a loop: an ellipse through them has 1.6 % less area
+A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
+MOST = 1e6  # such times between two jumps
+VARIES = 0.01  # of the load: where it varies by more, a force over it is no coefficient
+
 
 @dataclass(frozen=True)
 class Loop:
-    """One loop, from a turn of the drive to the second turn after it.
+    """One loop, from a turn of the drive to the second turn after it, or to the record's end.
 
     Attributes
     ----------
     travel, force : ndarray
-        (n,), of the drive, m, and along it, N.
+        (n,), displacement of the drive since the turn, m, harmonics included; force along it, N.
     area : float
-        Work per loop, J.
+        Work of the drive per loop, the integral of the force over its travel, J.
     width : float
         Distance between both branches at the middle force, m.
     friction : float
-        Half of the span of the force over the normal load.
+        Half of the span of the force over the normal load; NaN where the load varies.
+    closed : bool
+        Whether the drive ends where it began.
     """
 
     travel: Floats
@@ -42,6 +54,7 @@ class Loop:
     area: float
     width: float
     friction: float
+    closed: bool = True
 
 
 @dataclass(frozen=True)
@@ -52,21 +65,38 @@ class Hysteresis:
     ----------
     loops : tuple of Loop
         In order of time.
+    left_out : tuple of str
+        How many loops are left out, and why, in a sentence.
     """
 
     loops: tuple[Loop, ...]
+    left_out: tuple[str, ...] = ()
 
     @property
     def section(self) -> Section:
         """The loops in words and as a table."""
         last = self.loops[-1]
         said = f"The last of {len(self.loops)} loops takes {in_words(last.area, 'J')}."
+        if len(self.loops) == 1:
+            said = f"The loop takes {in_words(last.area, 'J')}."
         rows = [
-            (str(n), in_words(each.area, "J"), in_words(each.width, "m"), f"{each.friction:.4f}")
+            (
+                str(n),
+                in_words(each.area, "J"),
+                in_words(each.width, "m"),
+                number_text(each.friction, ".4f"),
+            )
             for n, each in enumerate(self.loops, 1)
         ]
         headings = ("loop", "area", "width", "half span over load")
-        return Section("Hysteresis", [said], Table(headings, rows))
+        open_ones = [f"loop {n}" for n, each in enumerate(self.loops, 1) if not each.closed]
+        sentences = [said, *self.left_out]
+        if open_ones:
+            sentences.append(
+                f"Not closed, since the drive ends elsewhere than it began: {in_list(open_ones)}. "
+                "Such an area is the work on all of the way."
+            )
+        return Section("Hysteresis", sentences, Table(headings, rows))
 
     def __str__(self) -> str:
         """Return the section as text."""
@@ -78,6 +108,10 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
 
     With constant friction mu W on a spring of stiffness k, a loop between turns L apart has the
     area 2 mu W (L - 2 mu W/k), and the width L - 2 mu W/k.
+
+    The drive may turn by jumps, ramps, harmonics or as it was recorded, and rest between. Turns of
+    a harmonic that lies on a program are none of the test, unless the program does not move by
+    itself.
 
     Parameters
     ----------
@@ -101,29 +135,83 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     24.4
     """
     test = friction_test(source, program)
-    legs = test.stretches
-    turns = [i for i in range(1, len(legs)) if legs[i].velocity * legs[i - 1].velocity < 0.0]
-    found = [
-        _loop(test, legs[i], legs[i + 1])
-        for i in turns[::2]
-        if i + 1 in turns and len(test.within(legs[i].start, legs[i + 1].end)) > 2
-    ]
+    turns = _turns(test)
+    starts = range(0, len(turns) - 2, 2)
+    loops = [_loop(test, turns[i], turns[i + 1], turns[i + 2]) for i in starts]
+    found = [each for each in loops if each is not None]
+    few = len(loops) - len(found)
+    said = (f"Of fewer than {FEWEST} samples, and left out: {few} of {len(loops)} loops.",)
+    if loops and not found:
+        raise ResultError(f"no loop has {FEWEST} samples; raise the sample rate")
     if not found:
         raise ResultError("the drive does not turn twice; see st.protocols.reversal_loops")
-    return Hysteresis(tuple(found))
+    return Hysteresis(tuple(found), said if few else ())
 
 
-def _loop(test: FrictionTest, back: ConstantStretch, forth: ConstantStretch) -> Loop:
-    at = test.within(back.start, forth.end)
-    time, force = test.time[at], test.load * test.mu[at]
-    turned = time > back.end
-    travel = back.velocity * (np.minimum(time, back.end) - back.start)
-    travel = travel + forth.velocity * np.maximum(time - forth.start, 0.0)
-    middle = 0.5 * (force.max() + force.min())
-    sides = [_crossing(travel[part], force[part], middle) for part in (~turned, turned)]
+class _Turn(NamedTuple):
+    """A turn of the drive: when it comes there and leaves (s), and where that is (m)."""
+
+    comes: float
+    leaves: float
+    X: float
+
+
+def _turns(test: FrictionTest) -> list[_Turn]:
+    """Return the turns of the drive while it is recorded, and the end of its last way."""
+    time = _times(test)
+    if not len(time):  # the record ends before the drive begins
+        return []
+    X = np.broadcast_to(test.drive.travel(0.0, time)[0], time.shape)
+    least = max(_stirs(test.drive, time), ROUNDED * float(np.ptp(X)))
+    points, _ = taken_out(X, least)
+    ways = np.flatnonzero(np.abs(np.diff(X[points])) > least)
+    if not len(ways):
+        return []
+    begins = np.flatnonzero(np.diff(X, prepend=np.nan) != 0.0)  # of rests and of single samples
+    ends = np.append(begins[1:] - 1, len(X) - 1)
+    at = np.searchsorted(begins, points[ways[0] + 1 : ways[-1] + 2], side="right") - 1
+    rows = zip(time[begins[at]], time[ends[at]], X[begins[at]], strict=True)
+    return [_Turn(float(comes), float(leaves), float(where)) for comes, leaves, where in rows]
+
+
+def _times(test: FrictionTest) -> Floats:
+    """Return the times of the samples and of jumps, and enough more that no turn is missed (s)."""
+    first, last = max(0.0, float(test.time[0])), float(test.time[-1])
+    times, start = [test.time[test.time >= first]], 0.0
+    for end, course in drive_stretches(test.drive):
+        begin, until = max(start, first), min(end, last)
+        start = end
+        if until > begin:
+            turns = 0.0 if course.steady() else course.along.fastest() * (until - begin) / (2 * pi)
+            times.append(np.linspace(begin, until, int(min(A_TURN * turns, MOST)) + 2))
+    return np.unique(np.concatenate(times))
+
+
+def _stirs(drive: ConstantVelocity | DriveProgram, time: Floats) -> float:
+    """Return how far a harmonic on top of a program goes back and forth by itself, m."""
+    if isinstance(drive, ConstantVelocity) or drive.along is None:
+        return 0.0
+    if not np.ptp(without_harmonics(drive).travel(0.0, time)[0]) > 0.0:
+        return 0.0  # the harmonic is the test
+    return abs(float(drive.along.amplitude)) / (pi * float(drive.along.frequency)) * (1.0 + ROUNDED)
+
+
+def _loop(test: FrictionTest, first: _Turn, middle: _Turn, second: _Turn) -> Loop | None:
+    """Return the loop between two turns; None if it has too few samples."""
+    at = test.within(first.leaves, second.comes)
+    if len(at) < FEWEST:
+        return None
+    time, force, load = test.time[at], test.force[at], test.load[at]
+    travel = test.drive.travel(0.0, time)[0] - first.X
+    step = float(np.abs(np.diff(travel)).max())  # by which the last sample may come too early
+    closed = abs(second.X - first.X) <= _stirs(test.drive, time) + step
+    turned = time > middle.comes
+    level = 0.5 * (force.max() + force.min())
+    sides = [_crossing(travel[part], force[part], level) for part in (~turned, turned)]
     area = abs(float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(travel))))
-    span = float(force.max() - force.min())
-    return Loop(travel, force, area, abs(sides[1] - sides[0]), 0.5 * span / test.load)
+    mean = float(load.mean())
+    friction = 0.5 * float(np.ptp(force)) / mean if np.ptp(load) <= VARIES * mean else nan
+    return Loop(travel, force, area, abs(sides[1] - sides[0]), friction, closed)
 
 
 def _crossing(travel: Floats, force: Floats, level: float) -> float:

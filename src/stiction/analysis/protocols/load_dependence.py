@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import SETTLED
-from stiction.analysis.protocols.healing import line
+from stiction.analysis.protocols.friction_test import (
+    ConstantStretch,
+    FrictionTest,
+    alike,
+    of_record,
+    of_run,
+    say_left_out,
+    without_harmonics,
+)
+from stiction.analysis.protocols.settling import line
 from stiction.analysis.record import Record, as_record
 from stiction.arrays import Floats
-from stiction.drive import ConstantLoad, LoadProgram, load_stretches
+from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
 from stiction.errors import ResultError
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
@@ -29,6 +38,8 @@ class LoadDependence:
         Slope of the line, and its standard error; NaN where it is unknown.
     adhesion : float
         Force at zero load, N: of Amontons' law it is zero.
+    left_out : tuple of str
+        Which levels are left out, and why, in sentences.
     """
 
     load: Floats
@@ -36,6 +47,7 @@ class LoadDependence:
     coefficient: float
     error: float
     adhesion: float
+    left_out: tuple[str, ...] = ()
 
     @property
     def section(self) -> Section:
@@ -49,7 +61,9 @@ class LoadDependence:
             (in_words(W, "N"), in_words(F, "N"), f"{F / W:.4f}")
             for W, F in zip(self.load, self.force, strict=True)
         ]
-        return Section("Load dependence", [said], Table(("load", "friction", "ratio"), rows))
+        return Section(
+            "Load dependence", [said, *self.left_out], Table(("load", "friction", "ratio"), rows)
+        )
 
     def __str__(self) -> str:
         """Return the section as text."""
@@ -64,6 +78,9 @@ def load_dependence(
     Under Amontons' law, F = mu W, the line has the slope mu and passes through zero; adhesion
     raises it.
 
+    Only levels in whose last fifth the mass slides, and the force has settled, count: a spring that
+    is still loaded shows less than friction. All are of one speed of the drive.
+
     Parameters
     ----------
     source : Trajectory or Record
@@ -74,7 +91,7 @@ def load_dependence(
     Raises
     ------
     ResultError
-        If fewer than two levels are held.
+        If fewer than two levels are held while the mass slides.
 
     Examples
     --------
@@ -85,26 +102,43 @@ def load_dependence(
     >>> round(found.coefficient, 4)
     0.2
     """
-    if isinstance(source, Trajectory):
-        d, slider = source.samples, source.slider
-        time, force = d["time"], slider.along_drive(d["spring_x"], d["spring_y"])
-        base, program = slider.normal_load, slider.load
-    elif as_record(source).normal_load is None:
-        raise ResultError("the load is unknown; give the record its normal_load")
-    else:
-        time, force, base = source.time, source.force, source.normal_load
-    rows, start = [], 0.0
-    for end, load in load_stretches(base, program):
-        until = min(end, float(time[-1]))
-        if isinstance(load, ConstantLoad) and until > start:
-            near = (time >= until - SETTLED * (until - start) - 1e-9) & (time <= until + 1e-9)
-            if near.any():
-                rows.append((load.force, float(np.abs(force[near].mean()))))
-        start = end
-    levels = {level for level, _ in rows}
-    if len(levels) < 2:
-        raise ResultError(
-            "fewer than two levels of the load are held; see st.protocols.load_ramp, with hold"
+    test = _test(source, program)
+    held = [each for each in test.stretches if test.is_sampled(each)]
+    faults = [(each, _fault(test, each)) for each in held]
+    good = [each for each, why in faults if not why]
+    left_out = say_left_out((in_words(each.load, "N"), why) for each, why in faults if why)
+    other = [each for each in good if not alike(abs(each.velocity), abs(good[0].velocity))]
+    if other:
+        left_out += say_left_out(
+            (in_words(each.load, "N"), "The drive has another speed") for each in other
         )
+        good = [each for each in good if each not in other]
+    rows = [(each.load, abs(float(test.force[test.late(each)].mean()))) for each in good]
+    if all(alike(each.load, good[0].load) for each in good):
+        few = "fewer than two levels of the load are held while the mass slides"
+        raise ResultError(" ".join([f"{few}; see st.protocols.load_ramp, with hold.", *left_out]))
     loads, forces = np.array(rows).T
-    return LoadDependence(loads, forces, *line(loads, forces))
+    return LoadDependence(loads, forces, *line(loads, forces), left_out)
+
+
+def _test(source: Trajectory | Record, program: LoadProgram | None) -> FrictionTest:
+    """Return the test with all stretches in which the load is held."""
+    if isinstance(source, Trajectory):
+        return of_run(source, without_harmonics(source.slider.motion))
+    source = as_record(source)
+    if source.normal_load is None:
+        raise ResultError("the load is unknown; give the record its normal_load")
+    # a drive whose speed is unknown is quicker than any loading that is seen
+    drive = ConstantVelocity._make((source.drive_velocity or inf,))
+    return of_record(source, drive, load_stretches(source.normal_load, program))
+
+
+def _fault(test: FrictionTest, level: ConstantStretch) -> str:
+    """Return why the force at a level is no friction; empty if it is."""
+    if not level.velocity:
+        return "The drive rests"
+    if not test.slides(level):
+        return "The mass does not slide, or not yet"
+    if not test.has_settled(level):
+        return "The force has not settled"
+    return ""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, nan
+from math import inf, isnan, nan
 from typing import Literal
 
 import numpy as np
@@ -11,7 +11,11 @@ import numpy as np
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
     FrictionTest,
+    alike,
     friction_test,
+    in_list,
+    number_text,
+    say_left_out,
 )
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
@@ -38,7 +42,8 @@ class VelocityStep:
     before, after : float
         Velocities, m/s.
     steady_before, steady_after, peak : float
-        Steady friction on both sides, and its extremum just after the jump.
+        Steady friction on both sides, and its extremum just after the jump. Friction that has not
+        settled after it is NaN, and so is a - b.
     a, b : float
         Direct effect, from the extremum: a lower bound on a rig that is not stiff; evolution
         effect, from the fit.
@@ -76,10 +81,13 @@ class VelocitySteps:
         In order of time.
     stiffness : float
         k D_c/(b W), the least of all steps: how stiff the rig is; NaN if unknown.
+    left_out : tuple of str
+        Which changes of the velocity are left out, and why, in sentences.
     """
 
     steps: tuple[VelocityStep, ...]
     stiffness: float
+    left_out: tuple[str, ...] = ()
 
     @property
     def section(self) -> Section:
@@ -88,25 +96,34 @@ class VelocitySteps:
             (
                 in_words(each.before, "m/s"),
                 in_words(each.after, "m/s"),
-                f"{each.a_minus_b:+.4f}",
-                f"{each.a:.4f}",
-                f"{each.b:.4f}",
+                number_text(each.a_minus_b, "+.4f"),
+                number_text(each.a, ".4f"),
+                number_text(each.b, ".4f"),
                 in_words(each.D_c, "m"),
                 in_words(each.D_c_error, "m", 1),
             )
             for each in self.steps
         ]
-        mean = float(np.mean([each.a_minus_b for each in self.steps]))
-        way = "weakens" if mean < 0.0 else "strengthens"
-        said = f"Steady friction {way} with speed: a - b = {mean:+.4f} on average."
-        sentences = [said]
+        sentences = [self._a_minus_b()]
         if self.stiffness < STIFF:
             sentences.append(
                 f"The rig is not stiff, k D_c/(b W) = {self.stiffness:.3g}: a is a lower bound, "
                 "and b and D_c are those of rig and friction together."
             )
+        sentences += self.left_out
         headings = ("from", "to", "a - b", "a", "b", "D_c", "+-")
         return Section("Velocity steps", sentences, Table(headings, rows))
+
+    def _a_minus_b(self) -> str:
+        """Return how steady friction depends on speed, in a sentence."""
+        known = [each.a_minus_b for each in self.steps if not isnan(each.a_minus_b)]
+        if not known:
+            return "Friction has not settled after any step: a - b is not known."
+        mean = float(np.mean(known))
+        way = "weakens" if mean < 0.0 else "strengthens"
+        few = f" of {len(known)} steps: after the others it has not settled"
+        where = few if len(known) < len(self.steps) else ""
+        return f"Steady friction {way} with speed: a - b = {mean:+.4f} on average{where}."
 
     def __str__(self) -> str:
         """Return the section as text."""
@@ -123,6 +140,9 @@ def velocity_steps(
     law, as b ln(V_2/V_1) exp(-x/D_c) by the slip law (Ruina 1983, doi:10.1029/JB088iB12p10359),
     which is fitted. The rig is stiff where k D_c/W is far larger than a and b.
 
+    Only jumps from one constant speed to another under a constant load count. Ramps, harmonics and
+    recorded pieces, and jumps next to them, are left out.
+
     Parameters
     ----------
     source : Trajectory or Record
@@ -135,7 +155,7 @@ def velocity_steps(
     Raises
     ------
     ResultError
-        If the drive's velocity does not jump from one speed to another.
+        If the drive's velocity does not jump from one constant speed to another.
 
     Examples
     --------
@@ -150,19 +170,57 @@ def velocity_steps(
     (0.01, 0.015)
     """
     test = friction_test(source, program)
-    pairs = zip(test.stretches, test.stretches[1:], strict=False)
-    jumps = [(one, two) for one, two in pairs if one.velocity * two.velocity > 0.0]
+    jumps, faults = [], []
+    for one, two in test.successions():
+        if one.velocity * two.velocity > 0.0 and not alike(one.velocity, two.velocity):
+            why = _fault(test, one, two)
+            if not why:
+                jumps.append((one, two))
+            faults.append((in_words(two.start, "s"), why))
+    left_out = [*_varying(test), *say_left_out(each for each in faults if each[1])]
     if not jumps:
-        raise ResultError("the speed of the drive does not step; see st.protocols.velocity_steps")
+        missing = "the speed of the drive does not step from one constant value to another"
+        raise ResultError(" ".join([f"{missing}; see st.protocols.velocity_steps.", *left_out]))
     steps = tuple(_step(test, one, two, law) for one, two in jumps)
-    known = [test.stiffness * each.D_c / (test.load * abs(each.b)) for each in steps if each.b]
-    return VelocitySteps(steps, float(np.nanmin(known)) if np.isfinite(known).any() else nan)
+    known = [
+        test.stiffness * each.D_c / (two.load * abs(each.b))
+        for each, (_, two) in zip(steps, jumps, strict=True)
+        if each.b
+    ]
+    stiffness = float(np.nanmin(known)) if np.isfinite(known).any() else nan
+    return VelocitySteps(steps, stiffness, tuple(left_out))
+
+
+def _varying(test: FrictionTest) -> list[str]:
+    """Return a sentence about the times in which velocity or load vary, if there are any."""
+    gaps = test.gaps()
+    if not gaps:
+        return []
+    times = in_list([f"from {in_words(a, 's')} to {in_words(b, 's')}" for a, b in gaps])
+    return [f"Velocity or load vary {times}: such changes, and jumps beside them, are left out."]
+
+
+def _fault(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> str:
+    """Return why a jump of the velocity shows no friction law; empty if it does."""
+    if not alike(one.load, two.load):
+        return "The load jumps with the velocity"
+    if not test.is_sampled(one) or not test.is_sampled(two):
+        return "There are too few samples before or after the step"
+    if not test.slides(one):
+        return "The mass does not slide before the step"
+    if not test.slides(two):
+        return "The mass does not slide after the step"
+    if not test.has_settled(one):
+        return "Friction has not settled before the step"
+    return ""
 
 
 def _step(test: FrictionTest, one: ConstantStretch, two: ConstantStretch, law: Law) -> VelocityStep:
     way = float(np.sign(one.velocity))
     after = test.within(two.start, two.end)
-    mu, before, steady = way * test.mu[after], way * test.steady(one), way * test.steady(two)
+    mu, before, steady = way * test.mu[after], way * test.steady(one), nan
+    if test.has_settled(two):
+        steady = way * test.steady(two)
     ratio = two.velocity / one.velocity
     up = 1.0 if ratio > 1.0 else -1.0
     first = int((up * mu).argmax())

@@ -6,7 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from stiction.analysis.protocols.friction_test import stretches
 from stiction.arrays import Floats, xr
+from stiction.drive import load_stretches
 from stiction.errors import ResultError
 from stiction.system.slider import Slider
 from stiction.text.sections import Section, Table
@@ -65,6 +67,18 @@ def _degrees(phi: float) -> str:
     return f"{np.degrees(phi):.3g} deg"
 
 
+def _load_and_speed(slider: Slider) -> tuple[float, float]:
+    """Return normal load (N) and speed (m/s) of a test in which both are constant."""
+    loads = load_stretches(slider.normal_load, slider.load)
+    found = stretches(slider.motion, loads, np.array([0.0, np.inf]))
+    if [each[:2] for each in found] != [(0.0, np.inf)]:
+        raise ResultError(
+            "the velocity of the drive, or the load, varies, and one force over one load is no "
+            "friction then; give a constant velocity, and no load program"
+        )
+    return found[0].load, abs(found[0].velocity)
+
+
 def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
     """Return the friction that a load cell on the soft spring reads, over the misalignment.
 
@@ -81,7 +95,7 @@ def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
     Raises
     ------
     ResultError
-        If the study is not one over phi alone, or lacks a measure.
+        If the study is not one over phi alone, or lacks a measure; if velocity or load vary.
 
     Examples
     --------
@@ -98,7 +112,7 @@ def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
         raise ResultError(
             "the data are not a study over phi alone with its forces; see st.protocols.yaw_sweep"
         )
-    W, V = slider.normal_load, abs(slider.motion.rate(0.0)[0])
+    W, V = _load_and_speed(slider)
     phi = study["phi"].values * (np.pi / 180.0 if study["phi"].attrs["units"] == "deg" else 1.0)
     mean, peak, amplitude = (study[name].values.astype(np.float64) / W for name in wanted)
     steady = float(slider.law.coefficient(V)) * np.cos(phi)
