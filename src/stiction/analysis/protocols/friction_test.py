@@ -25,6 +25,7 @@ from stiction.trajectory import Trajectory
 
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 FEWEST = 3  # samples that show a change, and scatter
+COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 LISTED = 3  # times that a sentence lists
 
 
@@ -191,9 +192,6 @@ def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionT
         drive,
         stretches(drive, load_stretches(slider.normal_load, slider.load), d["time"]),
     )
-
-
-COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 
 
 def of_record(
