@@ -20,7 +20,12 @@ from stiction.linear_stability.derivatives import (
     set_valued,
     with_state,
 )
-from stiction.linear_stability.eigenvalues import Eigenvalues, eigenvalues, largest_growth
+from stiction.linear_stability.eigenvalues import (
+    Eigenvalues,
+    eigenvalues,
+    largest_growth,
+    leading_eigenvalue,
+)
 from stiction.names import warn_renamed
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -219,7 +224,7 @@ def growth_rate(slider: Slider) -> float:
     >>> [st.linear_stability.growth_rate(each) > 0 for each in (slider, turned)]
     [True, False]
     """
-    return float(np.linalg.eigvals(disturbance(slider)[0]).real.max())
+    return leading_eigenvalue(disturbance(slider)[0]).real
 
 
 def disturbance(slider: Slider) -> tuple[Floats, Floats]:

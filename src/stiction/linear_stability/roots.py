@@ -11,13 +11,17 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.linear_stability.axis import axis
-from stiction.linear_stability.eigenvalues import leading_growth
+from stiction.linear_stability.eigenvalues import (
+    CLEAR,
+    leading_eigenvalue,
+    leading_growth,
+    refined_growth,
+)
 from stiction.linear_stability.linear import BOUNDARY, disturbance, steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
 
 POINTS = 65  # in the first scan of a range
-CLEAR = 1e-6  # of the largest eigenvalue: a larger growth rate has a certain sign
 
 
 class Critical(NamedTuple):
@@ -121,22 +125,21 @@ def signed_growth(slider: Slider) -> float:
     matrix, error = disturbance(slider)
     values = np.linalg.eigvals(matrix)
     growth = float(values.real.max())
-    if abs(growth) > CLEAR * float(np.abs(values).max()):
+    # the error of the trace is that of all growth rates together; NaN if not known
+    if abs(growth) > CLEAR * float(np.abs(values).max()) and not abs(growth) < error.trace():
         return growth
-    growth, uncertainty = leading_growth(matrix, error)
-    if abs(growth) > uncertainty:
-        return growth
+    if np.isfinite(error).all():
+        for find in (leading_growth, refined_growth):
+            growth, uncertainty = find(matrix, error)
+            if abs(growth) > uncertainty:
+                return growth
     linear = steady_sliding(slider)
     return 0.0 if linear.verdict == BOUNDARY else linear.growth_rate
 
 
 def leading_frequency(slider: Slider) -> float:
     """Return the frequency (Hz) of the mode that grows fastest."""
-    values = np.linalg.eigvals(disturbance(slider)[0])
-    leading = values[np.argmax(values.real)]
-    if abs(leading) > CLEAR * float(np.abs(values).max()):
-        return float(abs(leading.imag)) / (2.0 * pi)
-    return float(steady_sliding(slider).frequencies[0])
+    return abs(leading_eigenvalue(disturbance(slider)[0]).imag) / (2.0 * pi)
 
 
 def sign_changes(
