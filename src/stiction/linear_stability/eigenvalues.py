@@ -15,6 +15,7 @@ EXTENDED = float(np.finfo(np.longdouble).eps)
 REFINEMENTS = 3  # Newton steps; each gains about ten digits of a simple eigenvalue
 REFINED = 4.0  # roundings of a residual, which end the steps
 CLEAR = 1e-6  # of the largest eigenvalue: what is larger has its digits
+WIDE = 1e-10  # of the largest eigenvalue: down to that, graded, each has six digits or more
 ROUNDED = 1e-10  # of the largest eigenvalue: growth rates that are nearer may change places
 CONVERGED = 1e-12  # relative error of the matrix; Newton's method leaves far less, or far more
 
@@ -187,8 +188,11 @@ def leading_eigenvalue(matrix: Floats) -> complex:
     leading, largest = complex(values[np.argmax(values.real)]), float(np.abs(values).max())
     if abs(leading) > CLEAR * largest and abs(leading.real) > ROUNDED * largest:
         return leading
-    refined = modes_of(grade(matrix)[0]).values
-    return complex(refined[np.argmax(refined.real)])
+    graded = grade(matrix)[0]
+    values = np.linalg.eigvals(graded)
+    if np.abs(values).min() < WIDE * largest:
+        values = modes_of(graded).values
+    return complex(values[np.argmax(values.real)])
 
 
 def leading_growth(matrix: Floats, error: Floats) -> tuple[float, float]:
