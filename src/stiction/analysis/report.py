@@ -259,8 +259,6 @@ def _friction(
         first = clean.before(levels(clean)[0].end)
         several = "the force stays at several levels, each with its own: see the parts"
         return find_friction(first, regime, usual).without_kinetic(several)
-    if "unloaded" in regime.evidence:
-        clean = clean.before(regime.evidence["unloaded"])
     friction = find_friction(clean, regime, usual)
     if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)

@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.changes.sliding import Sliding, sliding
 from stiction.analysis.motion.course import UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable, table_of
 from stiction.analysis.motion.regime.evidence import Regime
@@ -62,7 +63,8 @@ class Friction(NamedTuple):
     static : Measured or None
         Mean of the peaks before each slip, of stick-slip.
     kinetic : Measured or None
-        Mean force while sliding after the break-away; for stick-slip and vibration the mean of
+        Mean force while sliding, in its last half after a loading, until the drive turns or stops,
+        or the spring is unloaded; for stick-slip and vibration the mean of
         peak and trough, about which a mass swings that slips against constant friction.
     missing : dict
         Reason why each of them is unknown.
@@ -108,14 +110,17 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     if len(record) < FEWEST:
         few = f"of the {FEWEST} samples that are needed the record has {len(record)}"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
-    forces, times, noise = _means(record.force, record.time)
-    at, _ = _first_peak(forces, noise)
-    break_away, reason = _find_break_away(record, cycles, relative)
+    count, peak, trough = len(cycles), cycles["peak"], cycles["trough"]
+    slides = sliding(record)
+    end = len(record) if count else slides.last  # the fall after it follows no break-away
+    break_away, reason = _find_break_away(
+        record.time[:end], record.force[:end], cycles, load * relative[:end]
+    )
+    slid = break_away is not None and not count
     if kind == STUCK and not regime.runner_up:
         break_away, reason = None, "the mass does not slip"
     if break_away is None:
         missing["break_away"] = reason
-    count, peak, trough = len(cycles), cycles["peak"], cycles["trough"]
     load_at_peak, load_at_trough = (
         np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
     )
@@ -135,8 +140,8 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         missing["kinetic"] = "the mass comes to rest"
     elif "turns" in regime.evidence:
         missing["kinetic"] = "it is not determined whether the mass slides"
-    elif kind in (STEADY, SETTLING) or (kind == UNDETERMINED and at is not None and not count):
-        kinetic = _sliding(record, times, at, kind, relative)
+    elif kind in (STEADY, SETTLING) or (kind == UNDETERMINED and slid):
+        kinetic = _sliding(record, slides, kind, relative)
     else:
         unknown = kind == UNDETERMINED
         missing["kinetic"] = f"the mass {'may' if unknown else 'does'} not slide"
@@ -151,27 +156,27 @@ def without_loading(regime: Regime) -> str:
 
 
 def _find_break_away(
-    record: Record, cycles: CycleTable, relative: Floats
+    time: Floats, force: Floats, cycles: CycleTable, load: Floats
 ) -> tuple[Measured | None, str]:
-    """Find the break-away, in so much of a record as resolves its first loading; or the reason."""
-    end = len(record)
+    """Find the break-away, in so much of a force as resolves its first loading; or the reason."""
+    end = len(force)
     if len(cycles):
-        before, first = np.searchsorted(record.time, [cycles["start"][0], cycles["trough_time"][0]])
+        before, first = np.searchsorted(time, [cycles["start"][0], cycles["trough_time"][0]])
         end = min(end, max(FEWEST, int(first) + 1, PARTS // LOADING * int(before)))
-    force, load = record.force[:end], record.normal_load or np.nan
-    forces, _, noise = _means(force, record.time[:end])
+    force = force[:end]
+    forces, noise = _means(force)
     at, reason = _first_peak(forces, noise)
     if at is None:
         return None, reason
-    return _break_away(force, forces, at, noise, load * relative), ""
+    return _break_away(force, forces, at, noise, load), ""
 
 
-def _means(force: Floats, time: Floats) -> tuple[Floats, Floats, float]:
-    """Return means over equal parts of a force, their times, and the noise of each (N)."""
-    forces, times = (part_means(x, PARTS) for x in (without_spikes(force), time))
+def _means(force: Floats) -> tuple[Floats, float]:
+    """Return means over equal parts of a force, and the noise of each (N)."""
+    forces = part_means(without_spikes(force), PARTS)
     size = float(np.median(np.diff(part_starts(len(force), PARTS), append=len(force))))
     noise = white_noise(force, order=2) / size**0.5
-    return forces, times, noise
+    return forces, noise
 
 
 def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
@@ -265,15 +270,13 @@ def _mean_and_spread(values: Floats) -> tuple[float, float]:
     return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
 
 
-def _sliding(
-    record: Record, times: Floats, at: int | None, kind: str, relative: Floats
-) -> Measured:
-    """Return the mean force in the last half of the sliding after the break-away."""
-    begin = record.time[0] if at is None else float(times[at])
-    share = 0.5 if kind != STEADY or at is not None else 0.0
-    begin += share * (float(record.time[-1]) - begin)
-    slides, load = record.time >= begin, record.normal_load or np.nan
-    force, reduced = record.force[slides], record.force[slides] / relative[slides]
+def _sliding(record: Record, slides: Sliding, kind: str, relative: Floats) -> Measured:
+    """Return the mean force while a mass slides: in the last half, if it may settle first."""
+    time, load = record.time, record.normal_load or np.nan
+    first, last = slides.first, slides.last
+    if first or kind != STEADY:
+        first = int(np.searchsorted(time, 0.5 * (time[first] + time[last - 1])))
+    force, reduced = record.force[first:last], record.force[first:last] / relative[first:last]
     blocks = _over(part_means(force, BLOCKS), part_means(reduced, BLOCKS), load)
     mean, spread = _mean_and_spread(force)
     mu, mu_spread = (each / load for each in _mean_and_spread(reduced))

@@ -65,13 +65,6 @@ def levels(record: Record) -> list[Level]:
     return [each for each in found if abs(each.force) > least]
 
 
-def is_last(record: Record, level: Level) -> bool:
-    """Return whether the spring is unloaded after a level, for a good part of the record."""
-    later = record.force[np.searchsorted(record.time, level.end) :]
-    long = len(later) * PARTS > LONG * len(record) // 2
-    return long and abs(float(np.median(later))) < UNLOADED * abs(level.force)
-
-
 def _runs(means: Floats, noise: float) -> list[slice]:
     """Return the long runs of means that stay about their median, as independent ones do."""
     windows = np.lib.stride_tricks.sliding_window_view(means, LONG)

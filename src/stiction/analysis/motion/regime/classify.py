@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.analysis.motion.changes.levels import is_last, levels
+from stiction.analysis.motion.changes.levels import levels
+from stiction.analysis.motion.changes.sliding import UNLOADED, sliding
 from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
@@ -80,14 +81,25 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if len(found.table):
         period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))
-    seen = by_course(record, found)
+    seen = _while_it_slides(record, found)
     stays = levels(record) if record.slip_speed is None else []
     if len(stays) > 1:
         return seen._replace(evidence=seen.evidence | {"levels": len(stays)})
-    if stays and is_last(record, stays[0]):
-        return seen._replace(evidence=seen.evidence | {"unloaded": stays[0].end})
     frequency = seen.evidence.get("hump")
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
+
+
+def _while_it_slides(record: Record, found: Swings) -> Regime:
+    """Return the kind of motion without cycles until the drive turns, or the spring is unloaded."""
+    _, last, falls = sliding(record)
+    if last == len(record) or last < PARTS or record.slip_speed is not None:
+        return by_course(record, found)
+    until = record.before(float(record.time[last]))
+    seen = by_course(until, found._replace(force=found.force[:last]))
+    end = min(falls, len(record) - 1)
+    before, later = (abs(float(np.median(part))) for part in np.split(record.force, [end]))
+    name = "unloaded" if later < UNLOADED * before else "turned"
+    return seen._replace(evidence=seen.evidence | {name: float(record.time[end])})
 
 
 def _is_over(record: Record, found: Swings) -> bool:

@@ -78,7 +78,11 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "last_over_first": ("the last force drop is {} times the first", _three_digits),
     "turns": ("{} peaks and troughs make no complete cycle", _whole),
     "levels": ("it stays at {} levels, one after the other", _whole),
-    "unloaded": ("it stays at one level until {}, and is next to zero later", _seconds),
+    "unloaded": ("that is until {}, and it is next to zero later", _seconds),
+    "turned": (
+        "that is until {}, where the drive turns or stops, or the spring begins to be unloaded",
+        _seconds,
+    ),
     "change": ("the force changes by {} from beginning to end", _force),
     "span": ("it spans {}, averaged over a 32nd of the time", _force),
     "scatter": ("it scatters by {} about that", _force),
