@@ -19,9 +19,9 @@ from stiction.recording.noise import ORDER, white_noise
 PARTS = 400  # means of a record: a longer one is not resolved by its samples but by these
 UNLOADED = 0.05  # of the largest mean: a force that stays below is that of no load
 # The level is that of the shortest interval with so many of the loaded means; with all of them at
-# one level, in normal noise, it is as wide as 0.86 standard deviations, with fewer wider
-SHARE, WIDTH = 1 / 3, 0.86
-WITHIN = 5.0  # standard deviations below the level: no mean of some hundred is so low by chance
+# one level, in normal noise, it is as wide as 0.51 standard deviations, with fewer wider
+SHARE, WIDTH = 1 / 5, 0.51
+WITHIN = 6.0  # standard deviations below the level: no mean of some hundred is so low by chance
 PASSED = 0.5  # of the level: a force that stays below does not slide, however it scatters
 GUARD = 0.5  # of the sliding, at most, is left out before a fall
 # Of the reach of the drive: so near its end it turns, or dwells. Of a sine it is 2 % of the stroke
