@@ -23,6 +23,7 @@ UNLOADED = 0.05  # of the largest mean: a force that stays below is that of no l
 SHARE, WIDTH = 1 / 5, 0.51
 WITHIN = 6.0  # standard deviations below the level: no mean of some hundred is so low by chance
 PASSED = 0.5  # of the level: a force that stays below does not slide, however it scatters
+BRIEF = 2  # means: in so few a record may end while the drive turns
 GUARD = 0.5  # of the sliding, at most, is left out before a fall
 # Of the reach of the drive: so near its end it turns, or dwells. Of a sine it is 2 % of the stroke
 TURNS = 1e-3
@@ -51,10 +52,13 @@ def sliding(record: Record) -> Sliding:
     The force under one load counts, and the displacement of the drive where it was measured.
     """
     begin, end = _moving(record)
-    force = without_spikes(record.force[begin:end]) / record.relative_load()[begin:end]
+    force = without_spikes(record.force) / record.relative_load()
     means = part_means(np.where(np.isfinite(force), force, 0.0), PARTS)
     starts = np.append(part_starts(len(force), PARTS), len(force))
-    return Sliding(*(begin + int(starts[at]) for at in _about_level(means)))
+    first, last, falls = (int(starts[at]) for at in _about_level(means))
+    if max(first, begin) >= min(last, end):
+        return Sliding(begin, end, end)
+    return Sliding(max(first, begin), min(last, end), min(falls, end))
 
 
 def _moving(record: Record) -> tuple[int, int]:
@@ -80,10 +84,21 @@ def _about_level(means: Floats) -> tuple[int, int, int]:
     if not level > 0.0 or not len(at):
         return 0, len(means), len(means)
     first, falls = int(at[0]), int(at[-1]) + 1
-    if falls == len(means):
+    if not _is_passage(means[:first], half):
+        first = 0
+    if falls == len(means) or not _is_passage(means[falls:], half):
+        falls = len(means)
         return first, falls, falls
     guard = int(np.flatnonzero(means > half)[-1]) + 2 - falls
     return first, falls - min(guard, int(GUARD * (falls - first))), falls
+
+
+def _is_passage(means: Floats, half: float) -> bool:
+    """Return whether means below a level pass half of it, or end with the record before.
+
+    Others are those of friction that wanders.
+    """
+    return len(means) <= BRIEF or bool(means.min() < half)
 
 
 def _level(means: Floats) -> tuple[float, float]:
