@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 from tests.waiting import INTERRUPTIBLE, PATIENCE
 
+import stiction as st
 from stiction.cli import main, tally
 
 STUDY = """
@@ -106,6 +107,18 @@ def test_a_bad_study_leaves_nothing_behind(config, tmp_path, capsys, change, say
     assert inside("sweep", config, "-o", tmp_path / "a.zarr") == 2
     assert says in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["study.toml"]
+
+
+def test_a_first_run_that_is_refused_does_not_refuse_the_study(tmp_path, capsys):
+    """Static friction below the kinetic one, in one of four runs."""
+    config, output = tmp_path / "study.toml", tmp_path / "a.zarr"
+    text = st.presets.nakano_popov_2020().to_toml() + "\n[run]\nduration = 1e-3\n"
+    text += '[axes."friction.mu_0"]\nvalues = [30.0, 10.0]\n'
+    config.write_text(text + '[axes."friction.mu_static"]\nvalues = [20.0, 40.0]\n')
+    assert inside("sweep", config, "-o", output, "--threads", 1) == 1
+    said = " ".join(capsys.readouterr().err.split())
+    assert "at rest is 40, where few are above 5" in said
+    assert xr.open_zarr(output)["status"].values.ravel().tolist().count(0) == 3
 
 
 def test_a_folder_is_not_named_as_a_file(config, tmp_path, capsys):

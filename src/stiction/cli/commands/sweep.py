@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,7 +12,7 @@ from cyclopts import Parameter
 
 from stiction.cli.options import Changes, Output, Trust, changes, parse_assignment
 from stiction.cli.terminal import say
-from stiction.errors import StictionError
+from stiction.errors import DescriptionError, StictionError
 
 if TYPE_CHECKING:
     from stiction.study.execution.engines import Engine
@@ -96,7 +98,6 @@ def sweep(
         Write progress and outcome to standard output as lines of JSON, at most one a second.
     """
     from stiction.cli.tally import show_tally
-    from stiction.friction.law import implausible
     from stiction.study.execution.refine import refine as halve
     from stiction.study.execution.refine import request
     from stiction.study.execution.sweep import sweep as do
@@ -110,8 +111,7 @@ def sweep(
     elif apart is not None:
         raise StictionError("--apart needs --refine; give both")
     if not (quiet or json_lines):  # before the first of many runs, too
-        first = study.description((0,) * len(study.layout.shape))
-        for doubt in implausible(first.slider.law):
+        for doubt in doubts(study):
             say(doubt, error=True)
     try:
         with show_tally(quiet, json_lines) as (report, conclude):
@@ -125,6 +125,16 @@ def sweep(
     if found is not None and not (quiet or json_lines):
         say(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
     return 1 if result.failed else 0
+
+
+def doubts(study: Study) -> list[str]:
+    """Return what is implausible about the law of a run at a corner of the axes that can be one."""
+    from stiction.friction.law import implausible
+
+    for corner in product(*((0, size - 1) for size in study.layout.shape)):
+        with suppress(DescriptionError):  # such a run is refused by itself
+            return implausible(study.description(corner).slider.law)
+    return []
 
 
 def read_study(
