@@ -40,9 +40,10 @@ def table(found: Table, room: int = 80) -> Grid:
     shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1, 0, 0), pad_edge=False)
     columns = list(zip(found.headings, *found.rows, strict=True))
     inside = room - 1 - 2 * len(columns)  # rules and padding take the rest
-    if len(columns) > 2 and sum(map(narrowest, columns)) > inside:
+    wide = widths(columns, inside)
+    if None in wide and len(columns) > 2:
         return cells_in_lines(found)
-    for cells, width in zip(columns, widths(columns, inside), strict=True):
+    for cells, width in zip(columns, wide, strict=True):
         numbers = all(number(cell) for cell in cells[1:])
         shown.add_column(
             plain(cells[0]),
