@@ -20,6 +20,7 @@ from stiction.analysis.signals.reversals import taken_out
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
+from stiction.recording.noise import ORDER, white_noise
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -28,6 +29,7 @@ ROUNDED = 1e-9  # of a drive's travel: no way there and back
 FEWEST = 20  # samples of a loop: an ellipse through them has 1.6 % less area
 A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
 MOST = 1e6  # such times between two jumps
+NOISE = 20.0  # standard deviations: a smaller way of a measured drive is none
 VARIES = 0.01  # of the load: where it varies by more, a force over it is no coefficient
 
 
@@ -118,7 +120,8 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     source : Trajectory or Record
         A run, or a record with its normal load.
     program : DriveProgram, optional
-        The program of a record, see `st.protocols.reversal_loops`; that of a run is known.
+        The program of a record, see `st.protocols.reversal_loops`; that of a run is known. Without
+        it the record's `drive_position` counts.
 
     Raises
     ------
@@ -134,10 +137,10 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     >>> round(1e3 * found.loops[-1].area, 1)
     24.4
     """
-    test = friction_test(source, program)
-    turns = _turns(test)
+    test, way = _test(source, program)
+    turns = _turns(way)
     starts = range(0, len(turns) - 2, 2)
-    loops = [_loop(test, turns[i], turns[i + 1], turns[i + 2]) for i in starts]
+    loops = [_loop(test, way, turns[i], turns[i + 1], turns[i + 2]) for i in starts]
     found = [each for each in loops if each is not None]
     few = len(loops) - len(found)
     said = (f"Of fewer than {FEWEST} samples, and left out: {few} of {len(loops)} loops.",)
@@ -148,6 +151,28 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     return Hysteresis(tuple(found), said if few else ())
 
 
+class _Way(NamedTuple):
+    """The way of the drive along X, by its program or as it was measured.
+
+    Attributes
+    ----------
+    time, X : ndarray
+        s and m, so densely that no turn is missed.
+    sampled : ndarray
+        X at the samples of the force, m.
+    stirs : float
+        How far the drive goes back and forth beside the test, m.
+    noise : float
+        How far a measured drive may seem to move at rest, m.
+    """
+
+    time: Floats
+    X: Floats
+    sampled: Floats
+    stirs: float = 0.0
+    noise: float = 0.0
+
+
 class _Turn(NamedTuple):
     """A turn of the drive: when it comes there and leaves (s), and where that is (m)."""
 
@@ -156,22 +181,45 @@ class _Turn(NamedTuple):
     X: float
 
 
-def _turns(test: FrictionTest) -> list[_Turn]:
-    """Return the turns of the drive while it is recorded, and the end of its last way."""
+def _test(source: Trajectory | Record, program: DriveProgram | None) -> tuple[FrictionTest, _Way]:
+    """Return the test, and the way of its drive: by the program before the measured one."""
+    if program is None and isinstance(source, Record) and source.drive_position is not None:
+        X = source.drive_position
+        noise = NOISE * white_noise(X) if len(X) > ORDER else 0.0
+        test = friction_test(source, DriveProgram())  # whose stretches a loop does not ask for
+        return test, _Way(test.time, X, X, noise=noise)
+    test = friction_test(source, program)
     time = _times(test)
     if not len(time):  # the record ends before the drive begins
-        return []
+        return test, _Way(time, time, test.time)
     X = np.broadcast_to(test.drive.travel(0.0, time)[0], time.shape)
-    least = max(_stirs(test.drive, time), ROUNDED * float(np.ptp(X)))
+    sampled = np.broadcast_to(test.drive.travel(0.0, test.time)[0], test.time.shape)
+    return test, _Way(time, X, sampled, _stirs(test.drive, time))
+
+
+def _turns(way: _Way) -> list[_Turn]:
+    """Return the turns of the drive while it is recorded, and the end of its last way."""
+    time, X = way.time, way.X
+    if not len(time):
+        return []
+    least = max(way.stirs, way.noise, ROUNDED * float(np.ptp(X)))
     points, _ = taken_out(X, least)
     ways = np.flatnonzero(np.abs(np.diff(X[points])) > least)
     if not len(ways):
         return []
-    begins = np.flatnonzero(np.diff(X, prepend=np.nan) != 0.0)  # of rests and of single samples
-    ends = np.append(begins[1:] - 1, len(X) - 1)
-    at = np.searchsorted(begins, points[ways[0] + 1 : ways[-1] + 2], side="right") - 1
-    rows = zip(time[begins[at]], time[ends[at]], X[begins[at]], strict=True)
-    return [_Turn(float(comes), float(leaves), float(where)) for comes, leaves, where in rows]
+    at = [_stay(X, int(p), way.noise) for p in points[ways[0] + 1 : ways[-1] + 2]]
+    if way.noise:  # it turns in the middle of what the noise hides, or the record ends meanwhile
+        middles = [j if j == len(X) - 1 else (i + j) // 2 for i, j in at]
+        at = list(zip(middles, middles, strict=True))
+    return [_Turn(float(time[i]), float(time[j]), float(X[i])) for i, j in at]
+
+
+def _stay(X: Floats, at: int, near: float) -> tuple[int, int]:
+    """Return the first and the last sample of a stay at X[at], at most `near` from it."""
+    away = np.flatnonzero(np.abs(X - X[at]) > near)
+    i = int(np.searchsorted(away, at))
+    first = int(away[i - 1]) + 1 if i else 0
+    return first, int(away[i]) - 1 if i < len(away) else len(X) - 1
 
 
 def _times(test: FrictionTest) -> Floats:
@@ -196,29 +244,35 @@ def _stirs(drive: ConstantVelocity | DriveProgram, time: Floats) -> float:
     return abs(float(drive.along.amplitude)) / (pi * float(drive.along.frequency)) * (1.0 + ROUNDED)
 
 
-def _loop(test: FrictionTest, first: _Turn, middle: _Turn, second: _Turn) -> Loop | None:
+def _loop(test: FrictionTest, way: _Way, first: _Turn, middle: _Turn, second: _Turn) -> Loop | None:
     """Return the loop between two turns; None if it has too few samples."""
     at = test.within(first.leaves, second.comes)
     if len(at) < FEWEST:
         return None
     time, force, load = test.time[at], test.force[at], test.load[at]
-    travel = test.drive.travel(0.0, time)[0] - first.X
+    travel = way.sampled[at] - first.X
     step = float(np.abs(np.diff(travel)).max())  # by which the last sample may come too early
-    closed = abs(second.X - first.X) <= _stirs(test.drive, time) + step
+    closed = abs(second.X - first.X) <= way.stirs + way.noise + step
     turned = time > middle.comes
     level = 0.5 * (force.max() + force.min())
-    sides = [_crossing(travel[part], force[part], level) for part in (~turned, turned)]
+    ahead = np.sign(force[~turned].mean() - force[turned].mean())
+    sides = [
+        _crossing(travel[part], sign * (force[part] - level))
+        for part, sign in ((~turned, ahead), (turned, -ahead))
+    ]
     area = abs(float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(travel))))
     mean = float(load.mean())
     friction = 0.5 * float(np.ptp(force)) / mean if np.ptp(load) <= VARIES * mean else nan
     return Loop(travel, force, area, abs(sides[1] - sides[0]), friction, closed)
 
 
-def _crossing(travel: Floats, force: Floats, level: float) -> float:
-    """Return where a branch first crosses a level, between samples by a straight line."""
-    passed = np.flatnonzero((force[:-1] - level) * (force[1:] - level) <= 0.0)
+def _crossing(travel: Floats, above: Floats) -> float:
+    """Return where a branch first gets above a level, between samples by a straight line."""
+    passed = np.flatnonzero(above >= 0.0)
     if not len(passed):
         return nan
     i = int(passed[0])
-    share = (level - force[i]) / (force[i + 1] - force[i]) if force[i + 1] != force[i] else 0.0
-    return float(travel[i] + share * (travel[i + 1] - travel[i]))
+    if i == 0:  # the drive turns and passes the level within a sample
+        return float(travel[0])
+    share = above[i] / (above[i] - above[i - 1])
+    return float(travel[i] - share * (travel[i] - travel[i - 1]))

@@ -13,11 +13,12 @@ Edelsbrunner, Letscher & Zomorodian, Discrete Comput. Geom. 28, 511 (2002); ASTM
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.arrays import Indices
+from stiction.arrays import Floats, Indices
 
 Counts = NDArray[np.int64]
 
@@ -26,7 +27,7 @@ Counts = NDArray[np.int64]
 FEW = 32
 
 
-def extrema(values: Counts) -> Indices:
+def extrema(values: Counts | Floats) -> Indices:
     """Return the indices of extrema and both ends; of equal neighbours, the first."""
     if len(values) < 2:
         return np.arange(len(values))
@@ -38,7 +39,7 @@ def extrema(values: Counts) -> Indices:
     return np.concatenate([[0], inner, [last]])
 
 
-def taken_out(values: Counts, below: float = np.inf) -> tuple[Indices, Counts]:
+def taken_out(values: Counts | Floats, below: float = np.inf) -> tuple[Indices, NDArray[Any]]:
     """Take out reversals, the smallest of each neighbourhood first.
 
     All local minima of height are removed at once. Where they get few, as in a vibration whose
