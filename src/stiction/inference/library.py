@@ -276,7 +276,8 @@ def refuse_too_few(what: str, usable: int, simulated: int, fewest: int) -> None:
     if usable >= fewest:
         return
     enough = SAFE * fewest * simulated / max(usable, 1)
-    more = f", or take simulations = {ceil(enough / 100.0) * 100}" if usable else ""
+    number = ceil(enough / 100.0) * 100
+    more = f", or simulate {number} (-n {number}, in Python simulations={number})" if usable else ""
     raise ResultError(
         f"only {usable} of {simulated} {what} have cycles of stick and slip, {fewest} are needed: "
         f"check the priors{more}"

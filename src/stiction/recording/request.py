@@ -58,13 +58,24 @@ class KnownApparatus(Described):
 KNOWN = tuple(KnownApparatus.model_fields)
 
 
+def _column(value: object) -> str:
+    """Return what is said of a column as text: its number may be an integer."""
+    if isinstance(value, bool) or not isinstance(value, int | str):
+        raise fault(f"{echo(value)} is no column; write its name, its number, or its unit: 'mN'")
+    return str(value)
+
+
+Column = Annotated[Read[str], BeforeValidator(_column)]
+
+
 class ReadingOptions(Described):
     """How to read a file, as far as the user says so.
 
     Parameters
     ----------
-    time, force, force_across, load, position, drive_position, slip_speed : str, optional
-        The column of a channel, its unit, or both: ``"Fx"``, ``"mN"``, ``"Fx=mN"``, ``"3=mN"``.
+    time, force, force_across, load, position, drive_position, slip_speed : str or int, optional
+        The column of a channel by name or number, its unit, or both: ``"Fx"``, 3, ``"mN"``,
+        ``"Fx=mN"``, ``"3=mN"``.
         A number multiplies the unit: ``"-1 N"`` turns the sign, ``"CH1=2.5 N/V"`` scales volts.
     interval : float or str, optional
         Between two samples, s, for a file without times.
@@ -82,13 +93,13 @@ class ReadingOptions(Described):
         Which stroke of a drive that goes to and fro, counted from 1.
     """
 
-    time: str | None = None
-    force: str | None = None
-    force_across: str | None = None
-    load: str | None = None
-    position: str | None = None
-    drive_position: str | None = None
-    slip_speed: str | None = None
+    time: Column | None = None
+    force: Column | None = None
+    force_across: Column | None = None
+    load: Column | None = None
+    position: Column | None = None
+    drive_position: Column | None = None
+    slip_speed: Column | None = None
     interval: Duration | None = None
     times: Literal["clock", "intervals"] | None = None
     decimal: Literal["point", "comma"] | None = None

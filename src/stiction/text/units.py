@@ -76,6 +76,7 @@ else:
 # the annotations of a class by field, with their quantities
 hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, include_extras=True))
 LARGE = 1e6  # a number below it is written without a power of ten
+FACTOR = 12  # digits of a factor that is exact, such as 0.45359237 of a pound
 LONGEST = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
@@ -214,16 +215,22 @@ def _parse(text: str, kind: Kind) -> float:
 
 
 def _times(text: str, size: float) -> float:
-    """Return a number times a factor; exactly rounded where that is a decimal prefix."""
+    """Return a number times a factor; exactly rounded where this, or its inverse, is a decimal."""
     number = float(text)
-    up, down = round(size), round(1.0 / size)
-    if number == 0.0 or not isfinite(number):
-        return number
-    if up and abs(size - up) < 1e-14 * size:
-        return float(Fraction(text) * up)
-    if down and abs(1.0 - down * size) < 1e-14:
-        return float(Fraction(text) / down)
+    if number == 0.0 or not isfinite(number * size):
+        return number * size
+    if (exact := _decimal(size)) is not None:
+        return float(Fraction(text) * exact)
+    if (inverse := _decimal(1.0 / size)) is not None:
+        return float(Fraction(text) / inverse)
     return number * size
+
+
+@cache
+def _decimal(size: float) -> Fraction | None:
+    """Return a factor as a decimal of a few digits, which it is but for rounding; else None."""
+    digits = Fraction(f"{size:.{FACTOR}g}")
+    return digits if abs(digits - Fraction(size)) < 1e-14 * digits else None
 
 
 def fault(message: str) -> PydanticCustomError:

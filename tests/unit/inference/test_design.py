@@ -164,7 +164,7 @@ def test_a_test_that_may_be_no_better_than_the_same_again_is_not_recommended_and
 
 
 def test_too_few_cycles_say_how_many_simulations_would_do():
-    with pytest.raises(st.ResultError, match=r"check the priors, or take simulations = 200$"):
+    with pytest.raises(st.ResultError, match=r"check the priors, or simulate 200 "):
         refuse_too_few("rigs", 65, 100, 100)
     with pytest.raises(st.ResultError, match=r"check the priors$"):
         refuse_too_few("rigs", 0, 100, 100)

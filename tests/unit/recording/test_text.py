@@ -48,6 +48,14 @@ def test_any_separator(write, separator):
     assert np.allclose(record.force, 1e-3 * FORCE, rtol=1e-15)
 
 
+def test_a_column_by_its_number(write):
+    path = write(f"t [ms],a [mN],b [N]\n{lines(columns=(TIME, FORCE, 2.0 * FORCE))}")
+    assert np.allclose(st.read_record(path, force=3, load="2").force, 2.0 * FORCE, rtol=1e-15)
+    with pytest.raises(st.DescriptionError, match=r"load: 2\.5 is no column") as error:
+        st.read_record(path, force=True, load=2.5)
+    assert "force: True is no column" in str(error.value)
+
+
 @pytest.mark.parametrize("separator", ["\t", ";", " "])
 def test_a_decimal_comma(write, separator):
     path = write(f"Zeit{separator}Kraft\nms{separator}mN\n{lines(separator, ',')}")

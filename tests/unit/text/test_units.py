@@ -216,3 +216,23 @@ def test_a_power_of_ten_has_no_zeros_and_tonnes_no_megagrams():
     assert in_words(2e-8, "1") == "2e-8"
     assert in_words(1.5575e7, "1/s") == "1.558e7 1/s"
     assert in_words(8e3, "kg") == "8 t"
+
+
+@pytest.mark.parametrize(
+    ("text", "kind", "value"),
+    [
+        ("3.3 in", LENGTH, 0.08382),
+        ("7.1 ft", LENGTH, 2.16408),
+        ("3.3 gf", FORCE, 0.032361945),
+        ("0.3 mm", LENGTH, 0.0003),
+    ],
+)
+def test_exact_factors_leave_no_digits_of_rounding(text, kind, value):
+    """A pound is 0.45359237 kg: 3.3 lb came back as 1.4968548210000001 kg."""
+    assert to_si(text, kind) == value
+
+
+@pytest.mark.parametrize("text", ["1e305 MN", "1e308 kN", "-1e307 GN"])
+def test_a_number_that_its_unit_makes_too_large_is_refused(text):
+    with pytest.raises(PydanticCustomError, match="is not finite"):
+        to_si(text, FORCE)

@@ -21,13 +21,13 @@ from stiction.trajectory import Trajectory, load
 class ReadArguments(TypedDict, total=False):
     """What the user says about a file; see `read_record`."""
 
-    time: str | None
-    force: str | None
-    force_across: str | None
-    load: str | None
-    position: str | None
-    drive_position: str | None
-    slip_speed: str | None
+    time: str | int | None
+    force: str | int | None
+    force_across: str | int | None
+    load: str | int | None
+    position: str | int | None
+    drive_position: str | int | None
+    slip_speed: str | int | None
     interval: Quantity | None
     times: str | None
     decimal: str | None
@@ -59,9 +59,9 @@ def read_record(
     sidecar : str or Path, optional
         A TOML file with tables [columns], [reading], [record] and [sensors.force], which hold the
         arguments below and sensors; by default ``data.toml`` beside ``data.csv``, if it is there.
-    time, force, force_across, load, position, drive_position, slip_speed : str, optional
-        The column of a channel, its unit, or both: ``"Fx"``, ``"mN"``, ``"Fx=mN"``, or with the
-        number of the column ``"3=mN"``. A number multiplies the unit: ``"-1 N"`` turns the sign,
+    time, force, force_across, load, position, drive_position, slip_speed : str or int, optional
+        The column of a channel by name or number, its unit, or both: ``"Fx"``, 3, ``"mN"``,
+        ``"Fx=mN"``, ``"3=mN"``. A number multiplies the unit: ``"-1 N"`` turns the sign,
         ``"CH1=2.5 N/V"`` scales volts.
     normal_load, stiffness, stiffness_across, drive_velocity, mass, zero : float or str, optional
         Of the apparatus; see `stiction.Record`.

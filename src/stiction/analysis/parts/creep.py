@@ -13,6 +13,7 @@ from stiction.analysis.parts.wording import SLIGHT, number
 from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import xr
 from stiction.friction import states
+from stiction.text.quantity_text import MEASURABLE
 from stiction.text.sections import Section
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
@@ -48,7 +49,8 @@ def section(found: Analysis) -> Section:
     far, near = (found.creep.isel(bin=at) for at in (usual, 0))
     long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
     V = drive_speed(found.source, found.record) or 0.0
-    first, last = _creeping(far, V), _creeping(near, V)
+    lasts = found.record.duration
+    first, last = _creeping(far, V, lasts), _creeping(near, V, lasts)
     number = counts[0] if found.curves is None else found.curves.sizes["phase"]
     several = f" {_phases(*map(int, (*counts[[usual, 0]], number)))}" if counts[0] > 1 else ""
     lines = [f"{long} before {_end(found)} {first}; in the last {short} {last}.{several}"]
@@ -108,13 +110,18 @@ def _phases(far: int, near: int, number: int) -> str:
     return f"These are means over the {far} stick phases that are so long, and over {every}."
 
 
-def _creeping(row: xr.Dataset, V: float) -> str:
-    """Return the creep velocity in a bin in words, with its error if not negligible."""
+def _creeping(row: xr.Dataset, V: float, lasts: float) -> str:
+    """Return the creep velocity in a bin in words, with its error if not negligible.
+
+    Creep over no measurable distance while the record lasts is none.
+    """
     value, error = float(row["velocity"]), float(row["velocity_error"])
     if abs(value) + SURE * np.nan_to_num(error) < RESTS * V:
         return RESTING
     if value <= SURE * error:
         most = max(value, 0.0) + SURE * error
+        if most * lasts < MEASURABLE:
+            return RESTING
         return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
     known = with_error(value, error if error > SLIGHT * abs(value) else 0.0, "m/s")
     return f"it creeps at {known}"
