@@ -22,9 +22,9 @@ from stiction.drive import (
 )
 from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.friction import Law, has_state, read_law
+from stiction.friction import Anisotropic, Law, has_state, read_law, registered_name
 from stiction.friction.user.loading import finder_for_descriptions, is_own
-from stiction.friction.user.validation import is_law
+from stiction.friction.user.validation import is_law, sound
 from stiction.names import picture, warn_renamed
 from stiction.system.springs import ROUND, Springs, read_springs, whole
 from stiction.system.tensors import solver_axes
@@ -49,8 +49,12 @@ def _is_law(value: Any) -> Any:
         raise ValueError(
             f"{echo(value)} is not a friction law; write for example st.Coulomb(mu_0=0.2)"
         )
+    law = value.law if isinstance(value, Anisotropic) else value
+    name = type(law).__name__
     try:
-        is_law(type(value), type(value).__name__)
+        is_law(type(law), name)
+        if registered_name(law) is None:
+            sound(law, name)
     except DescriptionError as error:
         raise ValueError(error.faults[0].message) from None
     return value

@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache, lru_cache, partial
 from math import floor, inf, isfinite, isinf, isnan, log10, radians
 from types import UnionType
 from typing import (
@@ -226,7 +226,7 @@ def _times(text: str, size: float) -> float:
     return number * size
 
 
-@cache
+@lru_cache(maxsize=1024)
 def _decimal(size: float) -> Fraction | None:
     """Return a factor as a decimal of a few digits, which it is but for rounding; else None."""
     digits = Fraction(f"{size:.{FACTOR}g}")

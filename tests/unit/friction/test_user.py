@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import math
 import os
 import pickle
 import subprocess
@@ -204,6 +205,9 @@ def test_faults_of_the_description(config, old, new, path, words):
         ("mu_0 / ratio", "nu / ratio", "raises AttributeError"),
         ("mu_0 / ratio", "mu_0 / v / ratio", "raises ZeroDivisionError"),
         ("mu_0 / ratio", "mu_0 * float('nan') / ratio", "is nan; it must be finite"),
+        ("return law.mu_0", "return -law.mu_0", "is -0.2; it must not be negative"),
+        ("return -law.mu_0", "return law.mu_0", "there its coefficient changes by -4 s/m"),
+        ("/ law.v_h / ratio", "/ ratio", "is -0.2 s/m, but there its coefficient changes by -4"),
         ("mu_0", "law", "has a parameter 'law'"),
         ("def slope(law, v)", "def states()", "it lacks settled, force, change; write"),
     ],
@@ -215,6 +219,32 @@ def test_faults_of_the_file(config, old, new, words):
     assert words in str(error.value)
     assert "friction" in str(error.value)
     assert "\n" not in words
+
+
+class Table(NamedTuple):
+    """Friction of a list, or of a tuple, or with the sign of its slope turned."""
+
+    values: list[float] | tuple[float, ...]
+    way: float = -1.0
+
+    def coefficient(law, v):
+        return law.values[0] + law.values[1] * math.exp(-v / 0.05)
+
+    def slope(law, v):
+        return law.way * law.values[1] * math.exp(-v / 0.05) / 0.05
+
+
+@pytest.mark.parametrize("of", [lambda law: law, lambda law: st.laws.Anisotropic(law, ratio=1.5)])
+def test_a_law_made_in_python_is_checked_as_one_from_a_file(slider, of):
+    """A list ended runs with "unhashable type"; with the slope's sign turned they were wrong."""
+    assert slider.replace(friction=of(Table((0.1, 0.1)))).law == of(Table((0.1, 0.1)))
+    for law, words in (
+        (Table([0.1, 0.1]), "values of 'Table' is a list"),
+        (Table((0.1, 0.1), way=1.0), r"slope\(law, 1.3e-06\) of 'Table' is 2 s/m.*by -2 s/m"),
+        (Table((-0.3, 0.2)), r"coefficient\(law, 0\) of 'Table' is -0.1; it must not"),
+    ):
+        with pytest.raises(st.DescriptionError, match=words):
+            slider.replace(friction=of(law))
 
 
 def test_the_example_describes_what_its_script_runs():
@@ -513,8 +543,8 @@ open("law.pickle", "wb").write(pickle.dumps(d.slider))
 @pytest.mark.parametrize("raised", ["ValueError('no')", "BaseException('no')", "SystemExit(0)"])
 def test_what_a_law_raises_later_is_told_in_a_line(config, raised, capsys):
     """Not in a traceback: it is the law that is to be corrected."""
-    body = f"if v > 2e-3: raise {raised}\n        return law.mu_0"
-    law = LAW.replace("return law.mu_0 / ratio(v, law.v_h)", body)
+    right = "return law.mu_0 / ratio(v, law.v_h)"
+    law = LAW.replace(right, f"if v > 2e-3: raise {raised}\n        {right}")
     (config.parent / "mylaw.py").write_text(law)
     with pytest.raises(SystemExit) as end:
         main(["stability", str(config), "--set", "V=3mm/s"])

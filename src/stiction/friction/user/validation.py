@@ -10,6 +10,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import lru_cache
 from inspect import isfunction
 from math import inf, isfinite, nan
 from types import FrameType, ModuleType
@@ -33,6 +34,10 @@ WRITE = (
 ENDING = "bound each loop: for _ in range(50)"
 RESERVED = {"law", "source"}  # keys of [friction] that are not parameters
 PROBED = (0.0, 1e-3)  # m/s
+SLOPES = (1.3e-6, 1.7e-4, 1.1e-2, 0.23)  # m/s: at such numbers no law has a kink
+NEAR = 0.01  # of a slip speed: the distance of a difference
+WRONG = 0.01  # of two slopes: by so much they may differ beside the difference's error
+ROUNDING = 1e-14  # of a coefficient, of which it may be the sum of some terms
 
 
 class NoEnd(BaseException):
@@ -156,7 +161,7 @@ def _is_free(method: Callable[..., object]) -> bool:
 
 
 def try_law(law: Any, name: str) -> Any:
-    """Return the law, if its methods return numbers at a few speeds."""
+    """Return the law, if its methods end, return numbers at a few speeds, and it is `sound`."""
     if said := endless(law):
         raise fault(f"{echo(name)}: {said}; {ENDING}")
     probes = [("coefficient", v) for v in PROBED] + [("slope", v) for v in PROBED]
@@ -172,7 +177,68 @@ def try_law(law: Any, name: str) -> Any:
             raise fault(what) from None
         if not isfinite(value):
             raise fault(f"{method}(law, {v:g}) of {echo(name)} is {echo(value)}; it must be finite")
+    return sound(law, name)
+
+
+def sound(law: Any, name: str) -> Any:
+    """Return the law, if it can be told from others, and friction and slope can be right."""
+    for key, value in law._asdict().items():
+        try:
+            hash(value)
+        except TypeError:
+            raise fault(
+                f"{key} of {echo(name)} is a {type(value).__name__}, which may change; let each "
+                "parameter be a number, or a tuple of numbers"
+            ) from None
+    if not has_state(law) and (said := _wrong(law)):
+        method, rest = said
+        raise fault(f"{method} of {echo(name)} {rest}")
     return law
+
+
+@lru_cache(maxsize=256, typed=True)  # laws of different classes may be equal as tuples
+def _wrong(law: Any) -> tuple[str, str] | None:
+    """Return what is wrong with a set-valued law at a few speeds: of which method, and what.
+
+    Where Python cannot tell a value, compiled code may: then nothing is known to be wrong.
+    """
+    for v in PROBED:
+        if (mu := _value(law.coefficient, v)) < 0.0:
+            what = f"is {mu:g}; it must not be negative: friction would push the mass on"
+            return f"coefficient(law, {v:g})", what
+    for v in SLOPES:
+        given = _value(law.slope, v)
+        wanted, error = _difference(law, v)
+        if abs(given - wanted) > error + WRONG * (abs(given) + abs(wanted)):
+            what = (
+                f"is {given:.4g} s/m, but there its coefficient changes by {wanted:.4g} s/m; let "
+                "it return d(coefficient)/dv"
+            )
+            return f"slope(law, {v:g})", what
+    return None
+
+
+def _difference(law: Any, v: float) -> tuple[float, float]:
+    """Return the slope of a law by differences, and their error, both in s/m.
+
+    Half the distance shows the error of a central difference; rounding adds to it.
+    """
+    reach = NEAR * v
+    coarse, fine = (
+        (_value(law.coefficient, v + h) - _value(law.coefficient, v - h)) / (2.0 * h)
+        for h in (reach, 0.5 * reach)
+    )
+    return fine, 4.0 * abs(coarse - fine) + ROUNDING * _value(law.coefficient, v) / reach
+
+
+def _value(method: Callable[[float], Any], v: float) -> float:
+    """Return what a method returns at a slip speed (m/s); NaN if it raises an error."""
+    try:
+        return float(method(v))
+    except KeyboardInterrupt:
+        raise
+    except BaseException:  # the run says what a law raises
+        return nan
 
 
 def _is_its_own(value: Any, module: ModuleType) -> bool:
