@@ -34,6 +34,7 @@ from stiction.auditing.words.verdict import verdict
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.priors import Rig, rig_of
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
+from stiction.linear_stability.axis import steadily_driven
 from stiction.names import old_attributes
 from stiction.system.description import Description
 from stiction.system.slider import Slider
@@ -204,7 +205,7 @@ def audit(
 
 def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) -> Audit:
     """Return the audit of a rig, whose record was compared with it before."""
-    system = rig.slider
+    system = steadily_driven(rig.slider)
     report = partial(part, progress, count=PARTS + (MORE if "phi" in rig.priors else 0))
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from math import inf, pi
 from operator import itemgetter
@@ -19,6 +19,7 @@ from stiction.drive.recorded.reading import checksum
 from stiction.drive.recorded.spline import Recording
 from stiction.drive.signal import Signal
 from stiction.drive.steady import ConstantLoad, ConstantVelocity, VaryingLoad, VaryingVelocity
+from stiction.errors import DescriptionError
 from stiction.machine import shortage
 from stiction.text.samples import FrozenColumn
 from stiction.text.units import FORCE, VELOCITY, Velocity
@@ -80,6 +81,12 @@ class DriveProgram(Described):
             (end, _velocity(modulate(signal, self.along), sideways))
             for end, signal in signals(self.program, self.repeat, self.velocity, still=0.0)
         )
+
+    def simplest(self) -> ConstantVelocity | DriveProgram:
+        """Return the constant velocity that this program keeps to, or itself if it varies."""
+        first = self.stretches[0][1]
+        constant = len(self.stretches) == 1 and isinstance(first, ConstantVelocity)
+        return first if constant else self
 
     def rate(self, t: Times) -> tuple[Any, Any]:
         """Return the velocity (X, Y) at `t`, in m/s; at a jump, the value before."""
@@ -165,29 +172,62 @@ class LoadProgram(Described):
 
 
 def nominal_velocity(drive: ConstantVelocity | DriveProgram) -> float:
-    """Return the base velocity of a drive; without one, that at which recorded pieces go, m/s.
+    """Return the one velocity of a drive that others vary from, m/s; zero if there is none.
 
-    That is their mean from the first motion to the last. It is zero where they go to and fro: if
-    they come less than half as far as they travel.
+    That is the base velocity of a program, if a stretch has it or recorded pieces come with it.
+    Without it, that of recorded pieces is their mean from the first motion to the last, if they
+    come at least half as far as they travel. Else, of stretches that all go one way, it is that of
+    the last; and the base velocity, if a harmonic varies it.
 
     Examples
     --------
     >>> import stiction as st
+    >>> p = st.protocols
     >>> time = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]
-    >>> stage = st.protocols.Recorded(time, position=[0.0, 0.0, 1e-3, 3e-3, 4e-3, 4e-3])
-    >>> round(nominal_velocity(st.protocols.DriveProgram(program=[stage])), 9)
+    >>> stage = p.Recorded(time, position=[0.0, 0.0, 1e-3, 3e-3, 4e-3, 4e-3])
+    >>> round(nominal_velocity(p.DriveProgram(program=[stage])), 9)
     0.001333333
+    >>> nominal_velocity(p.DriveProgram(program=[p.Ramp("2 mm/s", "1 s")]))
+    0.002
     """
-    if drive.velocity or isinstance(drive, ConstantVelocity):
+    if isinstance(drive, ConstantVelocity):
         return drive.velocity
-    moving = [
+    courses = [course for _, course in drive.stretches]
+    steady = [each.velocity for each in courses if isinstance(each, ConstantVelocity)]
+    recorded = [
         moving_rows(piece.recording(0.0)) for piece in drive.program if isinstance(piece, Recorded)
     ]
-    if not moving:
-        return 0.0
-    times, ways = (np.concatenate(each) for each in zip(*moving, strict=True))
-    come, travelled = float(np.sum(ways)), float(np.sum(np.abs(ways)))
-    return come / float(np.sum(times)) if abs(come) > TO_AND_FRO * travelled else 0.0
+    if drive.velocity and (recorded or drive.velocity in steady):
+        return drive.velocity
+    if recorded:
+        times, ways = (np.concatenate(each) for each in zip(*recorded, strict=True))
+        come, travelled = float(np.sum(ways)), float(np.sum(np.abs(ways)))
+        return come / float(np.sum(times)) if abs(come) > TO_AND_FRO * travelled else 0.0
+    moving = [each for each in steady if each]
+    if moving and isinstance(courses[-1], ConstantVelocity):
+        return moving[-1] if min(moving) * max(moving) > 0.0 else 0.0
+    return drive.velocity
+
+
+def refuse_idle_base(drive: ConstantVelocity | DriveProgram, changed: Iterable[str]) -> None:
+    """Refuse to change the base velocity of a program of which no piece takes it.
+
+    Raises
+    ------
+    DescriptionError
+        If ``drive.velocity`` is among the changed paths, and changes nothing.
+    """
+    if "drive.velocity" not in changed or isinstance(drive, ConstantVelocity):
+        return
+    if not drive.program or any(isinstance(piece, Recorded) for piece in drive.program):
+        return
+    other = drive.model_copy(update={"velocity": drive.velocity + 1.0})
+    if other.stretches == drive.stretches:
+        raise DescriptionError.of(
+            "drive.velocity",
+            "changes nothing, since each piece of the program states its velocity; change that of "
+            "a piece, such as drive.program.1.value",
+        )
 
 
 def moving_rows(recording: Recording) -> tuple[Any, Any]:

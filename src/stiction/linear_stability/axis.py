@@ -52,6 +52,16 @@ class Axis(NamedTuple):
         return change_unchecked(slider, self.path, self.value(fraction))
 
 
+def steadily_driven(slider: Slider, *paths: str) -> Slider:
+    """Return the slider with the one velocity that the program of its drive keeps to, if so.
+
+    Then ``drive.velocity`` is that velocity. A program of which a parameter is varied stays.
+    """
+    if any(isinstance(path, str) and path.startswith("drive.program") for path in paths):
+        return slider
+    return slider.replace(drive=slider.motion) if slider.motion is not slider.drive else slider
+
+
 def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -> Axis:
     """Return the axis of a parameter.
 

@@ -16,7 +16,7 @@ import numpy as np
 
 from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError
-from stiction.linear_stability.axis import Axis, axis, present_value
+from stiction.linear_stability.axis import Axis, axis, present_value, steadily_driven
 from stiction.linear_stability.linear import growth_rate
 from stiction.linear_stability.roots import leading_frequency, sign_changes, signed_growth
 from stiction.system.slider import Slider
@@ -86,6 +86,7 @@ def boundary(
     >>> sorted(st.linear_stability.boundary(slider, "phi", "drive.velocity").data_vars)
     ['branch', 'drive.velocity', 'frequency', 'phi']
     """
+    slider = steadily_driven(slider, x, y)
     across, up = axis(slider, x, x_between), axis(slider, y, y_between)
     if across.path == up.path:
         raise DescriptionError.of(x, "spans no plane with itself; name two parameters")

@@ -13,7 +13,7 @@ import numpy as np
 
 from stiction.arrays import Complex, xr
 from stiction.errors import StictionError, echo
-from stiction.linear_stability.axis import axis, present_value
+from stiction.linear_stability.axis import axis, present_value, steadily_driven
 from stiction.linear_stability.curve import boundary
 from stiction.linear_stability.linear import (
     BOUNDARY,
@@ -155,6 +155,7 @@ def stability(
         raise StictionError(
             f"give one or two parameters, and as many ranges or none; given: {counts}"
         )
+    system = steadily_driven(system, *paths)
     found = (critical(system, *each) for each in zip(paths, ranges, strict=True))
     return Stability(steady_sliding(system), tuple(found))
 
@@ -254,6 +255,7 @@ def modes_over(
     >>> dict(modes.sizes)
     {'value': 11, 'mode': 4}
     """
+    slider = steadily_driven(slider, path)
     along = axis(slider, path, between)
     fractions = np.linspace(0.0, 1.0, points)
     rows: list[Complex] = []

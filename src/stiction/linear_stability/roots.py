@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.linear_stability.axis import axis
+from stiction.linear_stability.axis import axis, steadily_driven
 from stiction.linear_stability.eigenvalues import (
     CLEAR,
     leading_eigenvalue,
@@ -105,6 +105,7 @@ def critical(
     >>> np.degrees(found.values).round(4), found.frequencies.round(1), found.stable
     (array([ 8.656 , 76.2634]), array([ 10.2, 988.6]), (False, True, False))
     """
+    slider = steadily_driven(slider, path)
     along = axis(slider, path, between)
 
     def growth(fraction: float) -> float:

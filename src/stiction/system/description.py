@@ -12,6 +12,7 @@ from pydantic import Field, StrictBool, model_validator
 
 from stiction.drive import read_drive, read_load
 from stiction.drive.procedures import end
+from stiction.drive.program import refuse_idle_base
 from stiction.drive.recorded.reading import Locate, locate_nothing, locator, with_rows
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import law_table, read_law
@@ -21,6 +22,7 @@ from stiction.names import picture
 from stiction.system.initial import Initial
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.system.writing import describe, parameter_table, slider_tables
+from stiction.text.paths import canonical
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_json, read_toml, toml_text
 from stiction.text.units import Duration, Number, SampleRate, Velocity
@@ -136,7 +138,9 @@ class Description(NamedTuple):
         """
         folder = folder_of(path)
         find, locate = finder_for_descriptions(folder, trust), locator(folder, trust)
-        return cls.from_dict(read_toml(path, changes), find=find, locate=locate)
+        read = cls.from_dict(read_toml(path, changes), find=find, locate=locate)
+        refuse_idle_base(read.slider.drive, map(canonical, changes or {}))
+        return read
 
     @classmethod
     def from_dict(
@@ -189,7 +193,7 @@ class Description(NamedTuple):
         return {
             "slider": mechanical_table(self.slider),
             "friction": law_table(self.slider.law),
-            "drive": table(self.slider.motion),
+            "drive": table(self.slider.drive),
             **({} if self.slider.load is None else {"load": table(self.slider.load)}),
             "initial": self.initial.model_dump(exclude_unset=True),
             "run": self.run.model_dump(exclude_none=True),

@@ -14,6 +14,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeVar, cast, get_args
 
 from stiction.drive.pieces import LEVELS
+from stiction.drive.program import refuse_idle_base
 from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.friction import Anisotropic
 from stiction.system.description import Description
@@ -122,6 +123,8 @@ def change_parameters(owner: Owner, changes: Mapping[str, Quantity]) -> Owner:
             for room in rooms:
                 branch = branch.setdefault(room, {})
             branch[field] = value
+    drive = (owner.slider if isinstance(owner, Description) else owner).drive
+    refuse_idle_base(drive, (name for path in changes for name in names(path)))
     if not isinstance(owner, Description):
         return cast(Owner, _remake_at("", owner, tree))
     faults, parts = Faults(), {}

@@ -257,9 +257,9 @@ class Slider(Apparatus):
 
     @property
     def motion(self) -> Drive:
-        """The drive, typed."""
+        """The drive, typed: a program that keeps to one velocity is that velocity."""
         drive: Drive = self.drive
-        return drive
+        return drive.simplest() if isinstance(drive, DriveProgram) else drive
 
     @cached_property
     def direction(self) -> tuple[float, float]:

@@ -29,7 +29,7 @@ def slider_tables(slider: Slider) -> dict[str, TomlTable]:
     return {
         "slider": describe(slider, mechanical) | (springs if slider.springs else {}),
         "friction": _law(slider.law),
-        "drive": _drive(slider.motion),
+        "drive": _drive(slider.drive),
         **({} if slider.load is None else {"load": _program(slider.load, LOAD_PIECES, FORCE)}),
     }
 

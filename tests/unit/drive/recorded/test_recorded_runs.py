@@ -322,7 +322,7 @@ def test_analyses_take_the_drive_velocity_from_the_table():
         ([harmonic(100, "velocity")], 2 * V, 2 * V),  # as it is given
         ([p.Recorded(T, velocity=np.sin(2 * np.pi * T / 0.3))], 0.0, 0.0),  # to and fro
         ([p.Recorded(T, velocity=0.0 * T)], 0.0, 0.0),
-        ([p.Constant(V, 1.0)], 0.0, 0.0),
+        ([p.Constant(V, 1.0)], 0.0, V),  # it goes on so
         (
             [p.Recorded(T, velocity=0.0 * T - V), p.Recorded(T, velocity=0.0 * T - 3 * V)],
             0.0,
