@@ -21,8 +21,8 @@ from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.doubts.warnings import (
     subtracted_lines,
     turns_round,
-    unsteady,
     warnings,
+    warnings_of_run,
     why_no_friction,
 )
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
@@ -195,7 +195,9 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     stated = compare_metadata(record, regime.kind, cycles) if run is None else ()
     alike = cycles.isel(cycle=slice(0)) if turns else cycles  # those of two strokes are none
     doubts = (
-        warnings(record, regime.kind, alike, friction, stated) if run is None else unsteady(run)
+        warnings(record, regime.kind, alike, friction, stated)
+        if run is None
+        else warnings_of_run(run, record, cycles)
     ) + subtracted_lines(found.lines, found.ringing)
     unreal = why_no_friction(friction, cycles) if run is None else ""
     if unreal:

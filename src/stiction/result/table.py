@@ -43,6 +43,7 @@ VARIABLES = {
     ),
     "sticking": ("1", "whether the slip is zero"),
 }
+SHOWN = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
 STICKS = {
     "stick_start": ("s", "start of a stick interval"),
     "stick_end": ("s", "end of a stick interval"),
@@ -161,6 +162,22 @@ def apparent_friction(slider: Slider, values: Mapping[Any, Any] | ColumnTable) -
     c, s = slider.cell
     with np.errstate(divide="ignore", invalid="ignore"):  # the load may vanish at the end of a run
         return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
+
+
+def fastest_slip(samples: Mapping[Any, Any] | ColumnTable) -> tuple[float, bool]:
+    """Return the largest slip speed that samples tell of, m/s, and whether they show the largest.
+
+    The mean velocity between two samples is no larger than the largest one there. Where it clearly
+    exceeds those of all samples, it is a lower bound: a slip lies between samples.
+    """
+    speed, time = np.asarray(samples["slip_speed"]), np.asarray(samples["time"])
+    shown = float(np.fmax.reduce(speed, initial=0.0))
+    if len(time) < 2:
+        return shown, True
+    way = np.hypot(np.diff(samples["X"]), np.diff(samples["Y"]))
+    passed = np.diff(time)
+    between = float(np.fmax.reduce(way[passed > 0.0] / passed[passed > 0.0], initial=0.0))
+    return max(shown, between), between <= SHOWN * shown
 
 
 def stick_table(intervals: np.ndarray) -> ColumnTable:

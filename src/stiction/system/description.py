@@ -81,7 +81,8 @@ class Settings(Described):
         if short := shortage(SAMPLE * samples):
             message = (
                 f"duration times sample_rate is {samples:.3g} samples, which {short}; lower the "
-                "rate, or restart from a sample of a coarse run and sample only a window finely"
+                "rate, or start again within a coarse run, initial=run.state(time), and sample "
+                "only a window finely"
             )
             raise faulty([Fault("sample_rate", message)])
         return self

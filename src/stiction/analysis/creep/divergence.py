@@ -12,6 +12,7 @@ from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.units import in_words
 
+EDGE = 0.01  # an exponent so near to the end of its range is none
 THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 
 
@@ -177,4 +178,6 @@ def fit_divergence(
         )
         found, errors = [*found, lag], [*errors, 0.0]
     (a, n, late), (a_error, n_error, late_error) = found, errors
+    if not low_n[1] + EDGE < n < high_n[1] - EDGE:
+        raise ResultError("the creep curve does not have the shape that is fitted")
     return Divergence(n, n_error, a, a_error, late, late_error, loading_time)

@@ -37,6 +37,7 @@ UNSEEN = 0.25  # of a period without a sample: the cycle is not known
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
+SHOWN = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
 _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
 TIMES = ("start", "peak_time", "trough_time")  # instants, whose mean is meaningless
 
@@ -207,7 +208,10 @@ def _distance_moved(record: Record, begin: Floats, end: Floats, gained: Floats) 
 
 
 def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floats) -> Floats:
-    """Return the largest slip speed of each fall."""
+    """Return the largest slip speed of each fall; of a run, NaN where it lies between samples.
+
+    There the mean velocity from one sample to the next is larger than that of each sample.
+    """
     begin = _from(record.time, peak_time)
     end = np.maximum(_from(record.time, trough_time), begin + 1)
     if record.slip_speed is not None:
@@ -218,7 +222,12 @@ def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floa
     else:
         return np.full(len(begin), np.nan)
     ends = np.stack([begin, end], axis=1).ravel()
-    return np.asarray(np.maximum.reduceat(speed, np.minimum(ends, len(speed) - 1))[::2])
+    found = np.maximum.reduceat(speed, np.minimum(ends, len(speed) - 1))[::2]
+    if record.sticks is None or record.position is None:
+        return np.asarray(found)
+    between = np.abs(np.diff(record.position)) / np.diff(record.time)
+    means = np.maximum.reduceat(between, np.minimum(ends, len(between) - 1))[::2]
+    return np.where(means <= SHOWN * found, found, np.nan)
 
 
 def _smooth_rate(time: Floats, force: Floats, fall: int) -> Floats:

@@ -24,6 +24,7 @@ from stiction.text.units import in_words
 FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
 LIGHTER, HEAVIER = 1.4, 0.7  # k/m by the swing over that stated; a slip is slower than a swing
 SLOW_SLIP = 0.1
+DRAWN_OUT = 0.4  # of a fall: two thirds of what half a cosine takes from 90 % to 10 %
 REACH = 3.0  # standard deviations of noise: a force that is nearer to a peak may be on it
 RESTED = 1.1  # times two falls: rest makes a period longer; less may be another asymmetry
 PARTS = 200  # of a record, for the speed of a drive that may turn
@@ -172,7 +173,9 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
 
     A mass on its spring swings with the period T = 2 pi (m/k)^1/2. One that rests in each cycle has
     a longer period, but its force falls for T/2 (`stiction.analysis.motion.rest.rest_share`). A
-    slip under constant friction takes T/2 too, and one under friction that weakens takes longer.
+    slip under constant friction takes T/2 too, and one under friction that weakens takes longer. A
+    slip whose fall begins or ends far more slowly, as under rate-and-state friction or in a
+    dashpot, does not last as mass and stiffness have it.
     """
     if not cycles.sizes["cycle"] or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
@@ -187,12 +190,33 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
     swing = float(np.median(swings))
     lowest, highest = HEAVIER, LIGHTER
     if kind != HARMONIC:
+        if _main_part(record, cycles) < DRAWN_OUT:
+            return None
         longer, shorter = _unseen_ends(record, cycles)
         lowest, highest = SLOW_SLIP * shorter**2, LIGHTER * longer**2
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
     error = 2.0 * found * _error(swings) / swing
     return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, highest, how)
+
+
+def _main_part(record: Record, cycles: xr.Dataset) -> float:
+    """Return for which share of its time a fall is from 90 % of its height to 10 %.
+
+    Half a cosine is so for 59 %.
+    """
+    shares = []
+    for begin, end in zip(cycles["peak_time"].values, cycles["trough_time"].values, strict=True):
+        first, last = np.searchsorted(record.time, [begin, end])
+        force = record.force[first : last + 1]
+        if len(force) < 2:
+            continue
+        top, bottom = (float(force.max()), float(force.min()))
+        edge = 0.1 * (top - bottom)
+        leaves = np.flatnonzero(force >= top - edge)[-1]
+        comes = np.flatnonzero(force <= bottom + edge)[0]
+        shares.append((comes - leaves) / (len(force) - 1))
+    return float(np.median(shares)) if shares else nan
 
 
 def _unseen_ends(record: Record, cycles: xr.Dataset) -> tuple[float, float]:

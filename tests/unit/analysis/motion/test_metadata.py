@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
-from tests.drawn import inside
+from benchmarks.explore.draw import Draw
+from tests.drawn import SEED, inside
 from tests.measured import read_measured
 
 import stiction as st
-from stiction.analysis.motion.metadata import compare_metadata
+from stiction.analysis.motion.metadata import SWING, compare_metadata
+from stiction.presets.preset import on_a_line
 
 RATE = 2000.0
 TIME = np.arange(0.0, 20.0, 1.0 / RATE)
@@ -220,3 +222,24 @@ def test_a_step_of_the_velocity_is_doubted_by_its_parts(decade, share, noise, st
     assert np.isfinite(slips[own]).all()
     assert np.isnan(slips[~own]).all()
     assert any("of the former only" in each for each in found.warnings)
+
+
+@pytest.mark.parametrize("number", range(6))
+def test_slips_of_rate_and_state_do_not_contradict_the_mass(number):
+    """They last as the state takes to change, some hundred times half a swing of the mass."""
+    draw = Draw(SEED, number)
+    a, D, W, V = draw.between(0.003, 0.012), draw.decades(1e-6, 1e-4), 1e3, draw.decades(1e-7, 1e-5)
+    b = a + draw.between(0.002, 0.01)
+    k = draw.between(0.1, 0.5) * (b - a) * W / D
+    mass = k * (D / V * draw.decades(1e-5, 1e-2) / (2.0 * np.pi)) ** 2
+    kind = draw.among([st.laws.RateStateAgeing, st.laws.RateStateSlip])
+    law = kind(mu_star=0.6, a=a, b=b, D_c=D, V_star=1e-6)
+    slider = on_a_line(mass=mass, k_x=k, friction=law, normal_load=W, drive=st.ConstantVelocity(V))
+    lasts = 0.7 * W / k / V + 100.0 * (b - a) * W / k / V
+    run = st.simulate(slider, lasts, sample_rate=1e4 / lasts)
+    record = st.measure(run, st.Sensor(noise=1e-3 * (b - a) * W), seed=number)
+    record = record.model_copy(update={"mass": mass, "stiffness": k})
+    found = st.analyse(record)
+    assert found.regime.kind == "stick-slip"
+    its = compare_metadata(found.record, found.regime.kind, found.cycles)
+    assert all(each.agrees is not False for each in its if each.quantity == SWING)

@@ -105,6 +105,19 @@ def doubt_few_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
     )
 
 
+def doubt_slips_between_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt the samples of a run if slips are faster between them than at them."""
+    unseen = int(np.count_nonzero(np.isnan(cycles["peak_slip_speed"].values)))
+    if record.position is None or not unseen:
+        return
+    least = np.abs(np.diff(record.position)) / np.diff(record.time)
+    yield (
+        f"In {unseen} of {cycles.sizes['cycle']} slips the largest slip speed lies between two "
+        f"samples, and is {in_words(float(least.max()), 'm/s')} at least: run a slip by itself, "
+        "from initial=run.state(time) at a time before it, with more samples a second."
+    )
+
+
 def _slow_slips(record: Record, cycles: xr.Dataset, samples: float) -> str:
     """Return by how much slip speeds are too low that come from so many samples a fall."""
     if record.slip_speed is not None or not np.isfinite(cycles["peak_slip_speed"].values).any():

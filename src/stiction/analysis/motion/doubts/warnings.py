@@ -20,6 +20,7 @@ from stiction.analysis.motion.doubts.sampling import (
     doubt_few_samples,
     doubt_filter,
     doubt_repeats,
+    doubt_slips_between_samples,
     doubt_times,
 )
 from stiction.analysis.motion.drift import Drift, find_drift
@@ -123,7 +124,16 @@ def _doubt_load(record: Record) -> Iterator[str]:
         )
 
 
-def unsteady(run: Trajectory) -> tuple[str, ...]:
+def warnings_of_run(run: Trajectory, record: Record, cycles: xr.Dataset) -> tuple[str, ...]:
+    """Return what is to be doubted of a run, which is what it states: its samples may be few."""
+    return (
+        *_unsteady(run),
+        *doubt_few_samples(record, cycles),
+        *doubt_slips_between_samples(record, cycles),
+    )
+
+
+def _unsteady(run: Trajectory) -> tuple[str, ...]:
     """Return a sentence if the drive or the load of a run varies, and which analysis suits it."""
     varies = [name for name, of in IMPOSED.items() if _varies(run, of)]
     if not varies:
