@@ -252,15 +252,19 @@ def read(description: Description, value: Any) -> Law:
 def comparable(kind: Any, description: Description) -> Law:
     """Return a law of `kind` that is comparable with the description's own.
 
-    The description's own law is returned if it is of that kind. Bristles are a hundred times as
-    stiff as the spring whose axis is nearest to the drive, and critically damped; the memory length
-    is a two-hundredth of the slip length on that spring, or that of the described law. For the
-    apparatus of Nakano & Popov these are the published values of both laws.
+    The description's own law is returned if it is of that kind. Of rate and state, only the law of
+    the state changes: a, b, D_c, mu_star and V_star are the described ones. Bristles are a hundred
+    times as stiff as the spring whose axis is nearest to the drive, and critically damped; the
+    memory length is a two-hundredth of the slip length on that spring, or that of the described
+    law. For the apparatus of Nakano & Popov these are the published values of both laws.
     """
     slider = description.slider
     if isinstance(slider.law, kind):
         described: Law = slider.law
         return described
+    if has_state(slider.law) and slider.law._fields == kind._fields:
+        twin: Law = kind(**slider.law._asdict())
+        return twin
     made: Any = like(kind, shared_traits(description))
     known = slider.law._asdict() if hasattr(slider.law, "_asdict") else {}  # a user's class
     across = abs(slider.misalignment) > 0.25 * pi

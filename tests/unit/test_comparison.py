@@ -17,7 +17,8 @@ from stiction import comparison
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.slip import averaged_slip, is_undersampled, outcome
 from stiction.cli import main
-from stiction.comparison import exchange_law, read_laws, shared_traits
+from stiction.comparison import comparable, exchange_law, read_laws, shared_traits
+from stiction.friction import LAWS
 from stiction.friction.equivalent import like, traits
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.words import wrap_words
@@ -88,6 +89,15 @@ def config(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 # --- what makes laws comparable ---
+
+
+@pytest.mark.parametrize("other", ["ageing", "slip", "perrin"])
+def test_laws_of_rate_and_state_differ_in_the_change_of_their_state_only(other):
+    """The critical stiffness (b - a) W/D_c was another one: a, b and V_star were made up."""
+    known = {"a": 0.008, "b": 0.012, "D_c": 5e-6, "mu_star": 0.6, "V_star": 1e-6}
+    slider = st.presets.nakano_popov_2020().replace(friction=st.laws.RateStateSlip(**known))
+    described = st.Description(slider, st.Initial(), st.Settings(duration=1.0))
+    assert comparable(LAWS[f"rate-and-state-{other}"], described)._asdict() == known
 
 
 @pytest.mark.parametrize(

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 RESTING = "it rests"
+BARELY = "it creeps at less than a millionth of the drive's velocity"  # RESTS: states never rest
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
 SURE = 2.0  # standard errors that a fit must be away from nothing
 
@@ -50,12 +51,15 @@ def section(found: Analysis) -> Section:
     long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
     V = drive_speed(found.source, found.record) or 0.0
     lasts = found.record.duration
-    first, last = _creeping(far, V, lasts), _creeping(near, V, lasts)
+    rests = RESTING
+    if isinstance(found.source, Trajectory) and states(found.source.slider.law):
+        rests = BARELY
+    first, last = _creeping(far, V, lasts, rests), _creeping(near, V, lasts, rests)
     number = counts[0] if found.curves is None else found.curves.sizes["phase"]
     several = f" {_phases(*map(int, (*counts[[usual, 0]], number)))}" if counts[0] > 1 else ""
     lines = [f"{long} before {_end(found)} {first}; in the last {short} {last}.{several}"]
-    if first == last == RESTING and found.regime.kind == STUCK:
-        return Section("Creep", ["None: it rests from beginning to end."])
+    if first == last == rests and found.regime.kind == STUCK:
+        return Section("Creep", [f"None: {rests} from beginning to end."])
     d, phi = found.divergence, found.misalignment
     if found.record.position is None and phi is None:
         lines.append("Creep is counted from the even loading in the first half of each rise.")
@@ -110,18 +114,18 @@ def _phases(far: int, near: int, number: int) -> str:
     return f"These are means over the {far} stick phases that are so long, and over {every}."
 
 
-def _creeping(row: xr.Dataset, V: float, lasts: float) -> str:
+def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
     """Return the creep velocity in a bin in words, with its error if not negligible.
 
-    Creep over no measurable distance while the record lasts is none.
+    Creep over no measurable distance while the record lasts is none: then it `rests`, in words.
     """
     value, error = float(row["velocity"]), float(row["velocity_error"])
     if abs(value) + SURE * np.nan_to_num(error) < RESTS * V:
-        return RESTING
+        return rests
     if value <= SURE * error:
         most = max(value, 0.0) + SURE * error
         if most * lasts < MEASURABLE:
-            return RESTING
+            return rests
         return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
     known = with_error(value, error if error > SLIGHT * abs(value) else 0.0, "m/s")
     return f"it creeps at {known}"

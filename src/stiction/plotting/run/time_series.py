@@ -375,8 +375,9 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
 
     The line is the mean over short times, a pale band reaches to the maximum: where it comes to
     rest in each of many oscillations, how far it falls is no speed of the system. Speeds below
-    1e-7 of the largest are left out, so that a landing does not stretch the axis. Where samples are
-    too few for that, the line is the speed of the mean motion (`averaged_slip`).
+    1e-7 of the largest are left out, so that a landing does not stretch the axis; of rate and
+    state, under which nothing lands, none are. Where samples are too few for that, the line is the
+    speed of the mean motion (`averaged_slip`).
     """
     speed = _after_start(run, "slip_speed")
     largest = np.fmax.reduce(speed, initial=0.0)
@@ -385,11 +386,12 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
         say_only(ax, "no slip")
         return draw_line(ax, run.samples["time"], np.zeros(len(speed)), GREEN)
     ax.set_yscale("log")
+    least = 0.0 if hasattr(run.slider.law, "grain") else 1e-7 * largest
     if len(speed) <= FEW:
-        shown = np.where(speed > 1e-7 * largest, speed, np.nan)
+        shown = np.where(speed > least, speed, np.nan)
         return draw_line(ax, run.samples["time"], shown, GREEN)
     slip = average_slip(run)
-    mean = np.where(slip.mean > 1e-7 * largest, slip.mean, np.nan)
+    mean = np.where(slip.mean > least, slip.mean, np.nan)
     band = ax.fill_between(slip.time, mean, slip.high, color=GREEN, linewidth=EDGE)
     band.set_facecolor((GREEN, BAND))  # the edge shows slips shorter than a dot
     line = draw_line(ax, slip.time, mean, GREEN)

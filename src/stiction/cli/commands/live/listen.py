@@ -21,11 +21,11 @@ def listen(
 ) -> None:
     """Write the transverse oscillation of a run as sound.
 
-    For example, after `stiction run my.toml -o my.nc`; then ten times slower and deeper:
+    For example, after `stiction run my.toml -o my.nc`; then a part of it, an octave lower:
 
         stiction listen my.nc -o oscillation.wav
 
-        stiction listen my.nc -o slow.wav --speed 0.1 --window 1.8s 2.1s
+        stiction listen my.nc -o slow.wav --speed 0.5 --window 1.2s 2.1s
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ def listen(
         The file to write: .wav, 48 kHz. Example: -o oscillation.wav.
     speed
         1 for the true pitch, 0.1 for a tenth; by default 1 where the natural frequency can be
-        heard, else the power of ten by which it can. Example: --speed 0.1.
+        heard, else the power of ten by which it can. Example: --speed 0.5.
     window
         Start and end in the run; all of it by default. Example: --window 1.8s 2.1s.
     axis
