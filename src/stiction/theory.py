@@ -472,7 +472,9 @@ def critical_stiffness(
         k_c = (b - a) W/D_c [1 + m V^2/(a W D_c)]
 
     for motion along the spring: Rice & Ruina, J. Appl. Mech. 50 (1983), 343. It holds for ageing
-    and slip law; per unit area W is the normal stress, m the mass per area, and k_c in Pa/m.
+    and slip law; per unit area W is the normal stress, m the mass per area, and k_c in Pa/m. It is
+    negative where friction strengthens, a > b: then steady sliding is stable on any spring. With a
+    misalignment, or a spring across, see `stiction.stability(slider, over="k_x")`.
 
     Parameters
     ----------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite
+from math import isfinite, log
 from pathlib import Path
 from typing import Any
 
@@ -182,8 +182,28 @@ def modes_section(linear: Linearisation) -> Section:
             "The static coefficient plays no part in that: a mass that is at rest, or is stopped, "
             "may go on to stick and slip. stiction audit tries both starts."
         )
+    sentences += beside_critical_stiffness(linear.slider)
     headings = ("growth rate (1/s)", "frequency (Hz)", "damping ratio")
     return Section("Steady sliding", sentences, Table(headings, rows))
+
+
+def beside_critical_stiffness(slider: Slider) -> list[str]:
+    """Return how stiff the spring along x is beside the critical stiffness of rate and state.
+
+    All else is as it is, the misalignment too: `stiction.theory.critical_stiffness` has none.
+    """
+    if slider.springs or not hasattr(slider.law, "grain"):
+        return []
+    found = critical(slider, "k_x")
+    if not len(found.values):
+        kind = BOUNDARY if found.neutral else STABLE if found.stable[0] else UNSTABLE
+        low, high = (in_words(end, "N/m") for end in found.between)
+        return [f"Steady sliding is {kind} on any spring k_x from {low} to {high}."]
+    k_c = min(map(float, found.values), key=lambda each: abs(log(each / slider.k_x)))
+    return [
+        f"The spring has k_x = {slider.k_x / k_c:.3g} k_c: with all else as it is, the critical "
+        f"stiffness k_c is {in_words(k_c, 'N/m')}."
+    ]
 
 
 def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:

@@ -20,6 +20,7 @@ from stiction.linear_stability.derivatives import (
 )
 from stiction.linear_stability.eigenvalues import leading_growth
 from stiction.linear_stability.linear import disturbance, drive_velocity
+from stiction.presets.preset import on_a_line
 from stiction.system.parameter import change_unchecked
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor, surface_tensor
 
@@ -544,3 +545,17 @@ def test_what_names_no_parameter_is_refused():
     for over in (5, 0.1):
         with pytest.raises(st.StictionError, match="is not a parameter; name one, such as 'c_x'"):
             st.stability(st.presets.nakano_popov_2020(), over=over)
+
+
+@pytest.mark.parametrize(("k", "said"), [(5e7, "k_x = 0.2 k_c"), (5e8, "k_x = 2 k_c")])
+def test_the_report_names_the_critical_stiffness_of_rate_and_state(k, said):
+    law = st.laws.RateStateAgeing(mu_star=0.6, a=0.01, b=0.015, D_c="1 mm", V_star="1 um/s")
+    slider = on_a_line(
+        mass=2e6, k_x=k, normal_load=5e7, friction=law, drive=st.ConstantVelocity("35 mm/yr")
+    )
+    report = str(st.stability(slider, over="phi"))
+    assert said in report
+    assert "k_c is 250 MN/m" in report
+    strengthens = slider.replace(friction=law._replace(b=0.005))
+    assert "stable on any spring k_x" in str(st.stability(strengthens, over="phi"))
+    assert "k_c" not in str(st.stability(st.presets.nakano_popov_2020(), over="phi"))
