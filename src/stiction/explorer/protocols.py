@@ -10,11 +10,18 @@ from typing import Any
 
 from stiction.drive import ConstantVelocity, Drive, DriveProgram, LoadProgram
 from stiction.drive.pieces import Harmonic, Modulation
-from stiction.drive.procedures import load_ramp, reversal_loops, slide_hold_slide, velocity_steps
+from stiction.drive.procedures import (
+    end,
+    load_ramp,
+    reversal_loops,
+    slide_hold_slide,
+    velocity_steps,
+)
 from stiction.errors import StictionError, echo
 from stiction.system.description import Description
 
 SPEED = 1e-3  # m/s, where the drive stands
+SLIDES = 1.5  # times the loading: by then the mass slides, after its creep too
 
 
 def protocol(description: Description, table: str, name: str) -> Description:
@@ -28,7 +35,10 @@ def protocol(description: Description, table: str, name: str) -> Description:
     if name not in TESTS.get(table, {}):
         raise StictionError(f"no protocol {echo(name)} of {echo(table)}; known: {names()}")
     slider = description.slider.replace(**{table: TESTS[table][name](description)})
-    return description._replace(slider=slider)
+    settings = description.run
+    if (lasts := end(slider.drive, slider.load)) is not None and lasts > settings.duration:
+        settings = settings.model_copy(update={"duration": lasts})
+    return description._replace(slider=slider, run=settings)
 
 
 def names() -> dict[str, list[str]]:
@@ -41,22 +51,35 @@ def speed(description: Description) -> float:
     return float(description.slider.motion.velocity) or SPEED
 
 
+def neat(value: float) -> float:
+    """Return a value with three digits, as one would write it."""
+    return float(f"{value:.3g}")
+
+
+def loading(description: Description) -> float:
+    """Return how long the drive loads the softer spring until the mass slides, s."""
+    slider = description.slider
+    return slider.F_0 / (min(slider.k_x, slider.k_y) * abs(speed(description)))
+
+
 def steps(description: Description) -> DriveProgram:
-    """Return a step to ten times the velocity, and back."""
+    """Return a step to ten times the velocity, and back, once the mass slides."""
     V, third = speed(description), description.run.duration / 3
-    return velocity_steps([V, 10 * V, V], duration=third)
+    return velocity_steps([V, 10 * V, V], duration=neat(max(third, SLIDES * loading(description))))
 
 
 def holds(description: Description) -> DriveProgram:
     """Return sliding, with two holds."""
     part = description.run.duration / 9
-    return slide_hold_slide(speed(description), [part, 2 * part], slide=2 * part)
+    slide = max(2 * part, SLIDES * loading(description))
+    return slide_hold_slide(speed(description), [neat(part), neat(2 * part)], slide=neat(slide))
 
 
 def loops(description: Description) -> DriveProgram:
-    """Return two loops to and fro."""
+    """Return two loops to and fro, in which the mass slides both ways."""
     V = abs(speed(description))
-    return reversal_loops(V, V * description.run.duration / 4.5, loops=2)
+    lasts = max(description.run.duration / 4.5, 2.0 * SLIDES * loading(description))
+    return reversal_loops(V, neat(V * lasts), loops=2)
 
 
 def swings(description: Description) -> DriveProgram:

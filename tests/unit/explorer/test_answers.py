@@ -173,6 +173,19 @@ def test_every_law_and_protocol_can_be_chosen(description):
         protocol(description, "drive", "nothing")
 
 
+@pytest.mark.parametrize("name", ["velocity steps", "slide-hold-slide", "reversal loops"])
+def test_the_mass_slides_before_a_test_begins(name):
+    """Of a soft spring the first hold, or turn, came before it slid: no test at all."""
+    slider = st.presets.nakano_popov_2020().replace(k_x="50 N/m", friction=st.Coulomb(mu_0=0.2))
+    slow = st.Description(slider, st.Initial(), st.Settings(duration="5 s"))
+    found = protocol(slow, "drive", name)
+    assert found.run.duration >= st.protocols.end(found.slider.drive)
+    first = found.slider.drive.program[0].duration
+    run = st.simulate(found.slider, first, sample_rate=100.0)
+    assert run.samples["X"][-1] > run.samples["X"][-2] > 0.0
+    assert run.samples["V_X"][-1] == pytest.approx(1e-3, rel=0.1)
+
+
 def test_every_preset_can_be_chosen():
     for name in PRESETS:
         ((head, _),) = answers({"do": "preset", "name": name})

@@ -4,7 +4,7 @@ import { Form, element } from "./form.js";
 import { Link } from "./link.js";
 import { Microscope, spanText } from "./microscope.js";
 import { Player, SPEEDS } from "./player.js";
-import { quantity } from "./quantity.js";
+import { clock, quantity } from "./quantity.js";
 import { Scene } from "./scene.js";
 import { Series } from "./series.js";
 import { Sound } from "./sound.js";
@@ -236,7 +236,7 @@ function frame(time) {
   for (const each of [scene, series, microscope, ...panels]) if (each.view !== null) each.layers.draw(now, key);
   if (document.activeElement !== $("macro") || player.playing) $("macro").value = Math.round((1e5 * (t - player.start)) / (player.end - player.start || 1));
   if (page.micro) $("micro").value = Math.round((4000 * (t - page.micro.start)) / (page.micro.end - page.micro.start || 1));
-  $("clock").textContent = `t = ${t.toFixed(player.slow >= 100 ? 6 : 4)} s`;
+  $("clock").textContent = clock(t, player.end, player.slow >= 100 ? 6 : 4);
   page.frames = player.frames.length;
   page.drawn = (page.drawn ?? 0) + 1;
   if (page.redraw) { // when the curves of a request have been drawn

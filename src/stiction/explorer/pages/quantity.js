@@ -65,6 +65,13 @@ export function tickText(value, among) {
   return (Number(text) === 0 ? (0).toFixed(places) : text).replace("-", "−");
 }
 
+// A time of a run, to the same place throughout: the longer the run, the fewer decimals.
+export function clock(t, end, decimals) {
+  if (!isFinite(t)) return "t = …";
+  const whole = Math.max(0, Math.floor(Math.log10(Math.max(Math.abs(end) || 1, 1))));
+  return `t = ${t.toFixed(Math.max(0, decimals - whole))} s`;
+}
+
 // The factor and the prefix that bring values of a size to 0.2 to 200.
 export function prefixed(size) {
   if (!(size > 0) || !isFinite(size)) return [1, ""];

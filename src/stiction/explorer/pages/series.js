@@ -138,7 +138,7 @@ export class Series {
       left += 23 + symbols(context, words, left + 23, 11, { color: INK }) + 16;
     };
     for (const [, color, label] of [...STRIPS[0].curves].reverse()) add(label, color);
-    add("at rest", "rgba(110,110,110,.3)", { band: true });
+    add("at rest (paler: for a part of the time)", "rgba(110,110,110,.3)", { band: true });
     if (this.a) add("A", "#444b53", { dash: [5, 3] });
     if (this.measured) add(this.measured.origin, SKY);
   }
