@@ -1,1 +1,1 @@
-"""Files of measured records: their columns, and what each column is."""
+"""Measured records: which column of a file is which channel, and what is known beside it."""

@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError, echo
-from stiction.recording.channels import CHANNELS, plain
-from stiction.recording.formats import TextLayout, read_tables
+from stiction.formats import TextLayout, read_tables
+from stiction.formats.channels import CHANNELS, plain
+from stiction.formats.table import FileTable, Remark, number_of
 from stiction.recording.guess.choice import (
     Choice,
     Chosen,
@@ -27,7 +28,6 @@ from stiction.recording.noise import noise_level
 from stiction.recording.origin import Origin, Use
 from stiction.recording.request import MARKS, SIGNS, ReadingOptions, Request, request
 from stiction.recording.sensor import Sensor
-from stiction.recording.table import FileTable, Remark, number_of
 from stiction.text.units import in_words
 
 T = TypeVar("T")

@@ -6,7 +6,7 @@ import json
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from stiction.recording.channels import CHANNELS
+from stiction.formats.channels import CHANNELS
 from stiction.text.sections import Section, Table, as_html, as_text
 from stiction.text.units import in_words
 

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 from pydantic import BeforeValidator, Field
 
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.recording.channels import CHANNELS
+from stiction.formats.channels import CHANNELS
 from stiction.recording.sensor import Sensor
 from stiction.text.toml import read_toml
 from stiction.text.units import (

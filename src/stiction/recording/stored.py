@@ -12,7 +12,7 @@ import numpy as np
 
 from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError, ResultError
-from stiction.recording.channels import CHANNELS
+from stiction.formats.channels import CHANNELS
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.origin import Origin, Use

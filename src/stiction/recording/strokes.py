@@ -10,9 +10,9 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
+from stiction.formats.table import number_of
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
-from stiction.recording.table import number_of
 from stiction.text.units import in_words
 
 ENDS = 0.25  # of the reach, about its middle: beyond it the drive is at one end or at the other

@@ -8,11 +8,11 @@ from typing import Any, TypedDict, Unpack
 
 from stiction.analysis.record import Record
 from stiction.errors import DescriptionError, Fault, Faults, ResultError
+from stiction.formats.table import natural_key
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.request import ReadingOptions
 from stiction.recording.stored import is_stored, read_stored, root_attributes
 from stiction.recording.strokes import stroke_of
-from stiction.recording.table import natural_key
 from stiction.storage.kinds import use_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load

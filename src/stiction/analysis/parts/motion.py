@@ -24,7 +24,7 @@ from stiction.analysis.oscillation import stands_out
 from stiction.analysis.parts.wording import number
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
-from stiction.recording.units import with_other_sign
+from stiction.formats.units import with_other_sign
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words

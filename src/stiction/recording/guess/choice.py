@@ -8,9 +8,9 @@ from typing import NamedTuple, NoReturn
 import numpy as np
 
 from stiction.errors import Faults, ResultError, echo
-from stiction.recording.channels import CHANNELS, LENGTH, OWN, RATIO, plain
-from stiction.recording.table import FileColumn, FileTable
-from stiction.recording.units import is_electric, is_ratio, size_of
+from stiction.formats.channels import CHANNELS, LENGTH, OWN, RATIO, plain
+from stiction.formats.table import FileColumn, FileTable
+from stiction.formats.units import is_electric, is_ratio, size_of
 
 
 class UnclearColumns(ResultError):

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.arrays import Floats, Indices
 from stiction.errors import Faults, ResultError
-from stiction.recording.table import FileTable, number_of
+from stiction.formats.table import FileTable, number_of
 from stiction.text.units import in_words
 
 ALIKE = 1e-3  # relative: intervals, of which the file rounds one

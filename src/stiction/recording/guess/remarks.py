@@ -6,8 +6,8 @@ import re
 from collections.abc import Iterable
 from typing import NamedTuple
 
-from stiction.recording.table import Remark
-from stiction.recording.units import size_of
+from stiction.formats.table import Remark
+from stiction.formats.units import size_of
 
 NUMBER = r"([+-]?(?:\d+[.,]?\d*|[.,]\d+)(?:[eE][+-]?\d+)?)"
 INTERVAL = re.compile(

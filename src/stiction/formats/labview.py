@@ -11,10 +11,10 @@ from pathlib import Path
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.recording.formats import TextLayout
-from stiction.recording.formats.dialect import Dialect
-from stiction.recording.formats.text import lines_of
-from stiction.recording.table import FileColumn, FileTable, Remark
+from stiction.formats import TextLayout
+from stiction.formats.table import FileColumn, FileTable, Remark
+from stiction.formats.text.dialect import Dialect
+from stiction.formats.text.lines import lines_of
 
 END = "***End_of_Header***"
 SEPARATORS = {"tab": "\t", "comma": ",", "semicolon": ";"}

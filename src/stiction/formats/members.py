@@ -7,8 +7,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.recording.table import FileColumn, FileTable, Remark, natural_key
-from stiction.recording.units import split_unit
+from stiction.formats.table import FileColumn, FileTable, Remark, natural_key
+from stiction.formats.units import split_unit
 
 LONGEST = 400  # characters of a text in a file
 WIDE = 64  # columns of an array

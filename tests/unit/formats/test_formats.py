@@ -10,7 +10,7 @@ import xarray as xr
 from scipy import io
 
 import stiction as st
-from stiction.recording.formats import tdms
+from stiction.formats import tdms
 
 TIME = 0.002 * np.arange(50)
 FORCE = 1.0 + 0.01 * np.arange(50)

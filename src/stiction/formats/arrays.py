@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.recording.formats import TextLayout
-from stiction.recording.formats.members import Member, tables_of
-from stiction.recording.table import FileTable
+from stiction.formats import TextLayout
+from stiction.formats.members import Member, tables_of
+from stiction.formats.table import FileTable
 from stiction.storage.foreign import refuse_size
 
 

@@ -6,9 +6,9 @@ import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from stiction.recording.channels import CHANNELS, LENGTH, RATIO, plain
-from stiction.recording.formats.dialect import Dialect
-from stiction.recording.units import is_ratio, is_unit, spell, split_unit
+from stiction.formats.channels import CHANNELS, LENGTH, RATIO, plain
+from stiction.formats.text.dialect import Dialect
+from stiction.formats.units import is_ratio, is_unit, spell, split_unit
 
 DEPTH = 12  # lines above the samples among which a header is sought
 COMMENT = re.compile(r"^\s*(#+|%+|//|\*+|!+|;+(?=\s*[A-Za-z]))\s*")

@@ -559,7 +559,7 @@ def test_a_file_too_large_for_memory_is_refused(write, monkeypatch):
 
 def test_a_gzip_that_unpacks_to_more_than_memory_is_refused(write, monkeypatch):
     path = write(gzip.compress(b"time [s],force [N]\n" + b"0,1\n" * 1_000_000), "a.csv.gz")
-    for place in ("stiction.machine", "stiction.recording.formats.text"):
+    for place in ("stiction.machine", "stiction.formats.text.lines"):
         monkeypatch.setattr(f"{place}.largest_object", lambda: 1e6)
     with pytest.raises(st.ResultError, match="of memory, and this machine lends"):
         st.read_record(path)

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from stiction.recording.formats import TextLayout
-from stiction.recording.formats.members import Member, plain_text, tables_of
-from stiction.recording.table import FileTable
+from stiction.formats import TextLayout
+from stiction.formats.members import Member, plain_text, tables_of
+from stiction.formats.table import FileTable
 from stiction.storage.foreign import refuse_size
 
 

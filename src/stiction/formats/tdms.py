@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from stiction.errors import ResultError
-from stiction.recording.formats import TextLayout
-from stiction.recording.table import FileColumn, FileTable, Remark
+from stiction.formats import TextLayout
+from stiction.formats.table import FileColumn, FileTable, Remark
 from stiction.storage.foreign import refuse_size
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stiction.errors import ResultError
-from stiction.recording.table import FileTable
+from stiction.formats.table import FileTable
 from stiction.storage.foreign import opening
 from stiction.storage.kinds import HDF5, RECORD, RESULT, use_of
 
@@ -40,7 +40,7 @@ FORMATS = (
     Format("Parquet", "parquet", lambda head: head.startswith(b"PAR1")),
     Format("TDMS", "tdms", lambda head: head.startswith((b"TDSm", b"TDSh"))),
     Format("LabVIEW measurement", "labview", lambda head: head[:64].find(b"LabVIEW Meas") >= 0),
-    Format("text", "text", lambda head: True),
+    Format("text", "text.reading", lambda head: True),
 )
 OTHERS = {
     b"\xd0\xcf\x11\xe0": "an Excel workbook; save it as CSV",

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from stiction.recording.formats import TextLayout
-from stiction.recording.formats.members import Member, plain_text, tables_of
-from stiction.recording.table import FileTable, natural_key
+from stiction.formats import TextLayout
+from stiction.formats.members import Member, plain_text, tables_of
+from stiction.formats.table import FileTable, natural_key
 from stiction.storage.foreign import read_through, refuse_other_files
 from stiction.storage.isolation import apart
 

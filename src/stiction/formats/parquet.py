@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.errors import ResultError
-from stiction.recording.formats import TextLayout
-from stiction.recording.formats.members import Member, tables_of
-from stiction.recording.table import FileTable
+from stiction.formats import TextLayout
+from stiction.formats.members import Member, tables_of
+from stiction.formats.table import FileTable
 from stiction.storage.foreign import refuse_size
 
 
