@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 from importlib import import_module
+from math import inf
 from pathlib import Path
 from typing import NamedTuple
 
@@ -17,10 +18,12 @@ HEAD = 512  # bytes by which a file is recognised
 
 
 class TextLayout(NamedTuple):
-    """How a text file is laid out, as far as the user says so."""
+    """How a text file is laid out, as far as it is known, and how long it may be."""
 
     decimal: str | None = None
     separator: str | None = None
+    columns: int = 1  # at least
+    largest: float = inf  # bytes of text
 
 
 class Format(NamedTuple):
@@ -42,6 +45,7 @@ FORMATS = (
     Format("LabVIEW measurement", "labview", lambda head: head[:64].find(b"LabVIEW Meas") >= 0),
     Format("text", "text.reading", lambda head: True),
 )
+TEXTS = ("text", "LabVIEW measurement")  # formats whose rows have lines
 OTHERS = {
     b"\xd0\xcf\x11\xe0": "an Excel workbook; save it as CSV",
     b"%PDF": "a PDF; export the numbers as CSV",
@@ -51,13 +55,13 @@ OTHERS = {
 }
 
 
-def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
-    """Return the tables of a file, by its content and not by its suffix.
+def format_of(path: Path) -> Format:
+    """Return the format of a file, by its content and not by its suffix.
 
     Raises
     ------
     ResultError
-        If it cannot be read, with line and column where there are any.
+        If there is no such file, or it is of no format that is read here.
     """
     if not os.path.isfile(path):
         what = "is not a file; name one" if os.path.lexists(path) else "no such file"
@@ -70,7 +74,18 @@ def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
     for magic, what in OTHERS.items():
         if head.startswith(magic):
             raise ResultError(f"{path}: is {what}")
-    kind = next(each for each in FORMATS if each.matches(head))
+    return next(each for each in FORMATS if each.matches(head))
+
+
+def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
+    """Return the tables of a file.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be read, with line and column where there are any.
+    """
+    kind = format_of(path)
     read = import_module(f"{__name__}.{kind.reader}").read
     try:
         with opening(path, f"is not a file of {kind.name} that can be read"):

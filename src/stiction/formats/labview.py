@@ -23,7 +23,7 @@ COLUMN_NAMES = "X_Value"
 
 def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return a table for each segment of a LabVIEW measurement file."""
-    lines = lines_of(path)
+    lines = lines_of(path, layout.largest)
     head, at = _header(path, lines, 0, None)
     mark = SEPARATORS.get(_first(head, "Separator").lower(), "\t")
     sign = layout.decimal or ("," if _first(head, "Decimal_Separator") == "," else ".")

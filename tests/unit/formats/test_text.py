@@ -64,6 +64,12 @@ def test_a_decimal_comma(write, separator):
     assert "decimal comma" in notes(record)
 
 
+def test_commas_between_numbers_with_points_separate(write):
+    """A comment of one cell is no headings of columns of half numbers."""
+    record = st.read_record(write(f"# a stage\n{lines()}"), time="1=s", force="2=N")
+    assert np.allclose(record.force, FORCE, rtol=1e-15)
+
+
 def test_commas_that_separate_and_are_decimal_signs_are_refused(write):
     path = write(f"time [s],force [N]\n{lines(',', ',')}")
     with pytest.raises(st.ResultError, match="if not, write the file with semicolons"):

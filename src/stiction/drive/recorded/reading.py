@@ -7,29 +7,15 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from pydantic_core import PydanticCustomError
-
-from stiction.drive.recorded.piece import KINDS, Recorded, RecordedLoad, Rows, row_faults
-from stiction.drive.recorded.table_file import (
-    ColumnHeading,
-    TextTable,
-    file_fault,
-    find_column,
-    heading,
-    numbers_in,
-    read_text_table,
-)
+from stiction.drive.recorded.piece import KINDS, Recorded, RecordedLoad
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.checksums import crc
 from stiction.storage.foreign import is_within
 from stiction.text.samples import FrozenColumn
-from stiction.text.units import to_si
 
 # from the name of a file in a description to its path, or a `DescriptionError`
 Locate = Callable[[str], Path]
 QUANTITIES = {"drive": ("velocity", "position"), "load": ("load",)}
-USUAL = {"time": ("time", "t")}  # names of a column that need not be given
 PIECE = "recorded"
 STAND_IN = {"piece": "hold", "duration": 1.0}
 
@@ -51,10 +37,11 @@ def read_recorded(
     Parameters
     ----------
     file : str or Path
-        Cells separated by commas, semicolons, tabs or blanks; lines that begin with # are comments.
+        Of text, as `stiction.read_record` reads it: any separator and decimal sign, headings and
+        lines above them; lines that begin with # are comments.
     time, velocity, position, load : str, optional
-        Names of the columns: by default those named ``time`` (or ``t``), and ``velocity``,
-        ``position`` or ``load``, whichever there is.
+        Names of the columns: by default those named ``time`` (or ``t``, or as instruments call
+        it), and ``velocity``, ``position`` or ``load``, whichever there is.
     scale : float, optional
         What the values are multiplied with.
 
@@ -72,6 +59,8 @@ def read_recorded(
     >>> round(st.protocols.read_recorded("stage.csv").duration, 6)
     1.9
     """
+    from stiction.drive.recorded.columns import rows_of  # readers of files are slow to import
+
     given = {"time": time, "velocity": velocity, "position": position, "load": load}
     names = {name: each for name, each in given.items() if each is not None}
     known = tuple(name for names in QUANTITIES.values() for name in names)
@@ -88,13 +77,15 @@ def locator(folder: Path, trust: bool = False) -> Locate:
     def locate(file: str) -> Path:
         path = Path(os.path.realpath(folder / file))
         if not trust and not is_within(folder, path):
-            raise file_fault(
+            raise DescriptionError.of(
+                "file",
                 f"{echo(file)} lies outside the folder of the description, {folder}: put the table "
                 "into it; or, if you trust who wrote this, allow it: trust=True, on the command "
-                "line --trust"
+                "line --trust",
             )
         if not path.is_file():
-            raise file_fault(f"no file {echo(file)} in {folder}; write its path from there")
+            message = f"no file {echo(file)} in {folder}; write its path from there"
+            raise DescriptionError.of("file", message)
         return path
 
     return locate
@@ -102,9 +93,8 @@ def locator(folder: Path, trust: bool = False) -> Locate:
 
 def locate_nothing(file: str) -> Path:
     """Refuse every file: what is stored holds its tables."""
-    raise file_fault(
-        f"the rows of {echo(file)} are not stored here; read the description it came from"
-    )
+    message = f"the rows of {echo(file)} are not stored here; read the description it came from"
+    raise DescriptionError.of("file", message)
 
 
 def with_rows(raw: Mapping[str, Any], locate: Locate) -> tuple[Mapping[str, Any], list[Fault]]:
@@ -147,6 +137,8 @@ def _with_own_rows(
             Fault(name, f"{echo(names[name])} is not a column; write 't [ms]'") for name in wrong
         ]
         if not found:
+            from stiction.drive.recorded.columns import rows_of
+
             try:
                 columns, found = rows_of(locate(file), names, quantities)
             except DescriptionError as error:
@@ -169,76 +161,3 @@ def checksum(piece: Mapping[str, Any]) -> str:
     except (TypeError, ValueError):
         return "none"
     return f"{crc(b''.join(mark.to_bytes(4, 'little') for mark in marks)):08x}"
-
-
-def rows_of(
-    path: Path, names: Mapping[str, str], quantities: tuple[str, ...]
-) -> tuple[dict[str, FrozenColumn], list[Fault]]:
-    """Return the columns of a file in SI by their quantity, and all faults.
-
-    `names` are those of the columns, as far as they are given, `quantities` those that it may hold.
-    """
-    try:
-        table = read_text_table(path)
-        quantity = _quantity(table, names, quantities)
-    except DescriptionError as error:
-        return {}, list(error.faults)
-    columns: dict[str, FrozenColumn] = {}
-    found: list[Fault] = []
-    for name in ("time", quantity):
-        try:
-            columns[name] = _column(table, name, names.get(name))
-        except DescriptionError as error:
-            found += error.faults
-    if not found:
-        unit = "N" if quantity == "load" else "m/s"
-        values = columns["time"].values, columns[quantity].values
-        rows = Rows(*values, quantity, unit, table.lines, "line")
-        found = [Fault(name, message) for name, message in row_faults(rows)]
-    return columns, found
-
-
-def _quantity(table: TextTable, names: Mapping[str, str], quantities: tuple[str, ...]) -> str:
-    """Return what is recorded: the one that is given, or the only one among the headings."""
-    headings = {each.name.lower() for each in table.headings}
-    given = [name for name in quantities if name in names]
-    found = given or [name for name in quantities if name in headings]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        raise file_fault(f"give either {' or '.join(found)}", found[0])
-    has = ", ".join(map(str, table.headings)) or f"{len(table.rows[0])} columns without headings"
-    example = _with_unit(quantities[0], ColumnHeading("NAME", None))
-    raise file_fault(
-        f"missing; name the column, such as {example}; the file has {has}", quantities[0]
-    )
-
-
-def _column(table: TextTable, name: str, given: str | None) -> FrozenColumn:
-    """Return a column in SI."""
-    wanted = heading(given) if given is not None else _usual(table, name)
-    index = find_column(table, wanted, name)
-    stated = table.headings[index].unit if table.headings else None
-    unit = wanted.unit or stated
-    if unit is None:
-        remedy = f"write {_with_unit(name, wanted)}"
-        raise file_fault(f"the column {echo(wanted.name)} has no unit; {remedy}", name)
-    if wanted.unit is not None and stated is not None and wanted.unit != stated:
-        message = f"is to be in {wanted.unit}, and the file says {stated}; leave the unit out"
-        raise file_fault(message, name)
-    try:
-        factor = to_si(f"1 {unit}", KINDS[name])
-    except PydanticCustomError as error:
-        raise file_fault(error.message(), name) from None
-    return FrozenColumn(np.array(numbers_in(table, index, name)) * factor)
-
-
-def _usual(table: TextTable, name: str) -> ColumnHeading:
-    """Return the heading by which a column goes if none is given."""
-    names = [each.name.lower() for each in table.headings]
-    usual = next((each for each in USUAL.get(name, ()) if each in names), name)
-    return ColumnHeading(usual, None)
-
-
-def _with_unit(name: str, wanted: ColumnHeading) -> str:
-    return f'{name} = "{wanted.name} [{KINDS[name].unit}]"'

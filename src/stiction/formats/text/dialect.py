@@ -12,6 +12,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
+from stiction.formats import TextLayout
 
 SAMPLE = 400  # lines by which they are found
 SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", "|": "a bar", " ": "spaces"}
@@ -105,9 +106,7 @@ def _split_quoted(line: str, separator: str) -> list[str]:
     return re.split(f'{re.escape(separator)}(?=(?:[^"]*"[^"]*")*[^"]*$)', line)
 
 
-def find_dialect(
-    path: object, lines: Sequence[str], decimal: str | None, separator: str | None
-) -> Dialect:
+def find_dialect(path: object, lines: Sequence[str], layout: TextLayout) -> Dialect:
     """Return separator and decimal sign with which most lines are samples.
 
     Raises
@@ -115,6 +114,7 @@ def find_dialect(
     ResultError
         If no line has samples, or two readings differ and are equally good.
     """
+    decimal, separator = layout.decimal, layout.separator
     filled = [line for line in lines if line.strip()]
     some = filled[: SAMPLE // 2] + filled[SAMPLE // 2 :][:: max(1, len(filled) // SAMPLE)][-SAMPLE:]
     signs = [decimal] if decimal else list(DECIMALS)
@@ -128,10 +128,12 @@ def find_dialect(
     ]
     for labels in (False, True):
         scores = {each: _score(each, some, labels) for each in choices}
+        wide = {each: score for each, score in scores.items() if score[1] >= layout.columns}
+        scores = wide or scores
         best = max(scores.values(), default=(0.0, 0))
         if best[0] > 0.0:
-            near = [each for each in choices if scores[each][0] > 0.9 * best[0]]
-            return _settle(path, near, some, labels, decimal)
+            near = [each for each in scores if scores[each][0] > 0.9 * best[0]]
+            return _settle(path, near, some, labels, layout)
     raise ResultError(_no_samples(path, filled))
 
 
@@ -167,7 +169,7 @@ def first_samples(lines: Sequence[str], dialect: Dialect) -> int:
 
 
 def _settle(
-    path: object, near: list[Dialect], lines: Sequence[str], labels: bool, decimal: str | None
+    path: object, near: list[Dialect], lines: Sequence[str], labels: bool, layout: TextLayout
 ) -> Dialect:
     """Return the one of several good readings that the file supports, or refuse to choose."""
     width = {each: _score(each, lines, labels)[1] for each in near}
@@ -176,22 +178,24 @@ def _settle(
     samples = next(line for line in lines if chosen.has_samples(line, labels)).strip()
     # '0,5' is one number, or two integers: the first line tells how many columns there are
     commas = [each for each in near if each.decimal == "," and width[each] < width[chosen]]
-    if chosen.separator == "," and decimal is None:
+    rows = [chosen.cells(line) for line in lines if chosen.has_samples(line, labels)]
+    points = all(any("." in x and chosen.is_number(x) for x in cells) for cells in rows)
+    if chosen.separator == "," and layout.decimal is None:
         if commas and headed == width[commas[0]]:
             return commas[0]
-        if (commas and headed != width[chosen]) or 2 * headed == width[chosen]:
+        half = not points and layout.columns <= headed and 2 * headed == width[chosen]
+        if (commas and headed != width[chosen]) or half:
             raise ResultError(
                 f"{path}: in {samples[:60]!r} commas separate {width[chosen]} columns, or are "
                 f"decimal signs; if they separate, say --decimal point; if not, {_remedy(commas)}"
             )
-    if chosen.decimal == "," and decimal is None:
-        lines = [line for line in lines if chosen.has_samples(line, labels)]
-        cells = [x for line in lines for x in chosen.cells(line) if "," in x]
+    if chosen.decimal == "," and layout.decimal is None:
+        cells = [cell for cells in rows for cell in cells if "," in cell]
         if cells and all(GROUPED.fullmatch(cell) for cell in cells):
             raise ResultError(
                 f"{path}: in {echo(cells[0])} the comma is a decimal sign, or groups "
                 "thousands; say "
-                "--decimal comma, or write the numbers without groups"
+                "--decimal comma, or write the numbers with points and without groups"
             )
     return chosen
 

@@ -6,6 +6,7 @@ import codecs
 import gzip
 import re
 import zlib
+from math import inf
 from pathlib import Path
 
 from stiction.errors import ResultError
@@ -26,18 +27,18 @@ MARKS = {  # byte-order marks, the longer first
 }
 
 
-def lines_of(path: Path) -> list[str]:
-    """Return the lines of a file of text, which may be compressed with gzip.
+def lines_of(path: Path, largest: float = inf) -> list[str]:
+    """Return the lines of a file of text of `largest` bytes at most, perhaps packed by gzip.
 
     Raises
     ------
     ResultError
-        If it is not text, or too large for this machine.
+        If it is not text, or too large, for this machine too.
     """
-    refuse_size(path, COPIES * float(path.stat().st_size))
+    _refuse_length(path, path.stat().st_size, largest)
     raw = path.read_bytes()
     if raw.startswith(GZIP):
-        raw = _unpack(path, raw)
+        raw = _unpack(path, largest)
     for mark, name in MARKS.items():
         if raw.startswith(mark):
             return _lines(path, raw, name)
@@ -68,13 +69,18 @@ def _lines(path: Path, raw: bytes, encoding: str) -> list[str]:
     return LINE_END.split(text)
 
 
-def _unpack(path: Path, raw: bytes) -> bytes:
-    most = int(largest_object() / COPIES)
+def _unpack(path: Path, largest: float) -> bytes:
+    most = int(min(largest, largest_object() / COPIES))
     try:
         with gzip.open(path) as file:
             raw = file.read(most + 1)
     except (OSError, EOFError, zlib.error) as error:
         raise ResultError(f"{path}: is damaged, gzip says: {error}; copy it again") from None
-    if len(raw) > most:
-        refuse_size(path, COPIES * float(len(raw)))
+    _refuse_length(path, len(raw), largest)
     return raw
+
+
+def _refuse_length(path: Path, size: int, largest: float) -> None:
+    if size > largest:
+        raise ResultError(f"{path}: has more than {largest:,.0f} bytes; thin its rows")
+    refuse_size(path, COPIES * float(size))

@@ -32,8 +32,8 @@ NUMERIC = 0.5  # of a column's cells: with fewer numbers it is one of words
 
 def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a text file."""
-    lines = lines_of(path)
-    dialect = find_dialect(path, lines, layout.decimal, layout.separator)
+    lines = lines_of(path, layout.largest)
+    dialect = find_dialect(path, lines, layout)
     return read_lines(path, lines, dialect)
 
 

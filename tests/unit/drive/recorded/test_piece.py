@@ -1,10 +1,12 @@
 """Faults of recorded rows, and of the files that hold them, by row and line."""
 
+import gzip
+
 import numpy as np
 import pytest
 
 import stiction as st
-from stiction.drive.recorded.table_file import LARGEST, heading
+from stiction.drive.recorded.columns import LARGEST
 from stiction.errors import DescriptionError
 
 T = np.linspace(0.0, 1.0, 101)
@@ -120,8 +122,21 @@ def rows(separator, decimal="."):
         ("\ufefft\tspeed\n\n" + rows("\t"), {"time": "t [ms]", "velocity": "speed [mm/s]"}),
         (rows(","), {"time": "1 [ms]", "velocity": "2 [mm/s]"}),
         ('"Time [ms]","V"\n' + rows(","), {"velocity": "v [mm/s]"}),
+        ("Zeit [ms];velocity [mm/s]\n" + rows(";", ","), {}),
+        ("Operator: A\n\nZeit|velocity\n[ms]|[mm/s]\n" + rows("|"), {}),
+        ("# one comment\n" + rows(","), {"time": "1 [ms]", "velocity": "2 [mm/s]"}),
     ],
-    ids=["commas", "comments", "blanks", "tabs", "numbers", "quotes"],
+    ids=[
+        "commas",
+        "comments",
+        "blanks",
+        "tabs",
+        "numbers",
+        "quotes",
+        "decimal-commas",
+        "bars",
+        "one-cell",
+    ],
 )
 def test_files_of_many_kinds(tmp_path, text, columns):
     made = st.protocols.read_recorded(file_of(tmp_path, text), **columns)
@@ -143,18 +158,24 @@ HEAD = "time [ms],velocity [mm/s]\n"
 @pytest.mark.parametrize(
     ("text", "columns", "words"),
     [
-        ("", {}, "holds no rows"),
-        (HEAD, {}, "holds headings and no rows"),
-        (HEAD + rows(",") + "\n1001\n1002,x\n", {}, "line 103, 104: has no number"),
+        ("", {}, "stage.csv: is empty"),
+        (HEAD, {}, "no line has samples; the first is 'time [ms],velocity [mm/s]'"),
+        (HEAD + rows(",") + "\n1001\n", {}, "line 103: nan is not a number; leave the row out"),
+        (HEAD + rows(",") + "\n1002,x\n", {}, "line 103: '1002,x' is not a row; mend the line"),
+        (HEAD + "0,1.0.0\n" + rows(","), {}, "line 2: '0,1.0.0' is not a row; mend the line"),
+        (HEAD + rows(",").replace("10.0", "1x", 1), {}, "line 3, column 1: '1x00000' is not a"),
+        (HEAD + "# a\n# b\n1,1\n2,2\nstop\n3,2\n# end\n4,3", {}, "line 6: 'stop' is not a row"),
+        (HEAD + "1,1\n2,2\nx [s],F [N]\n3,2\n4,3", {}, "holds 2 tables, the second from line 5"),
         (HEAD + rows(",") + "\n1001,nan\n", {}, "line 103: nan is not a number"),
         (HEAD + rows(",") + "\n999,1\n1000,1\n", {}, "line 103: 0.999 s comes after 1 s"),
-        ("t;v\n" + rows(";", ","), {"time": "t [s]", "velocity": "v [m/s]"}, "sign is a point"),
+        ("run time [s],step time [s],load [N]\n1,2,3\n", {}, "may be any of run time [s], step"),
         (HEAD + rows(","), {"velocity": "speed"}, "no column 'speed'"),
         (HEAD + rows(","), {"time": "time [s]"}, "is to be in s, and the file says ms"),
         ("time,velocity\n" + rows(","), {}, 'has no unit; write time = "time [s]"'),
         (rows(","), {"time": "1 [s]"}, "missing; name the column"),
-        (rows(","), {"time": "7 [s]", "velocity": "2 [m/s]"}, "count, 1 to 2"),
+        (rows(","), {"time": "7 [s]", "velocity": "2 [m/s]"}, "it has column 1, column 2"),
         ("time [ms],velocity [N]\n" + rows(","), {}, "not a unit of a velocity"),
+        ("time [ms],velocity [wink]\n" + rows(","), {}, "'wink' is not a known unit"),
         ("time [s],a,a\n0,1,2\n", {"velocity": "a [m/s]"}, "2 columns are named 'a'"),
         ("time [s],velocity [m/s],load [N]\n0,1,2\n", {}, "give either velocity or load"),
     ],
@@ -166,24 +187,28 @@ def test_what_is_wrong_with_a_file_is_told(tmp_path, text, columns, words):
 
 
 def test_files_that_are_none(tmp_path):
-    with pytest.raises(DescriptionError, match="No such file"):
+    with pytest.raises(DescriptionError, match="no such file"):
         st.protocols.read_recorded(tmp_path / "none.csv")
-    with pytest.raises(DescriptionError, match="directory"):
+    with pytest.raises(DescriptionError, match="is a folder"):
         st.protocols.read_recorded(tmp_path)
     path = tmp_path / "binary.csv"
-    path.write_bytes(b"\xff\xfe\x00\x01" * 100)
-    with pytest.raises(DescriptionError, match="not text"):
-        st.protocols.read_recorded(path)
+    for content, words in ((b"\x00\xff\x01" * 100, "not text"), (b"PK\x03\x04", "file of NumPy")):
+        path.write_bytes(content)
+        with pytest.raises(DescriptionError, match=words):
+            st.protocols.read_recorded(path)
     with path.open("wb") as file:
         file.truncate(LARGEST + 1)
     with pytest.raises(DescriptionError, match="thin its rows"):
         st.protocols.read_recorded(path)
 
 
-def test_headings():
-    assert heading(" position (mm) ") == ("position", "mm")
-    assert heading("x[um]") == ("x", "um")
-    assert heading('"u"') == ("u", None)
+def test_a_file_may_be_packed_and_unpacks_to_no_more_than_others(tmp_path):
+    path = tmp_path / "stage.csv.gz"
+    path.write_bytes(gzip.compress((HEAD + rows(",")).encode()))
+    assert st.protocols.read_recorded(path).duration == pytest.approx(1.0)
+    path.write_bytes(gzip.compress(bytes(LARGEST + 1), 1))
+    with pytest.raises(DescriptionError, match="more than 67,108,864 bytes; thin its rows"):
+        st.protocols.read_recorded(path)
 
 
 @pytest.mark.parametrize("seed", range(8))
