@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from math import cos, sin
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,7 +13,6 @@ from stiction.drive import drive_stretches, jump
 from stiction.drive.program import pick
 from stiction.errors import ResultError, echo
 from stiction.solver.accuracy import tolerance
-from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mass_tensor
 from stiction.trajectory import Trajectory
 
@@ -140,14 +138,14 @@ def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     """Return the powers `POWERS` (W), and those that the springs along x and y take up."""
     s = run.slider
     u_x, u_y, s_x, s_y, f_x, f_y = rows[:, :6].T
-    d_x, d_y = _on_axes(s, s.motion.rate(t))
+    d_x, d_y = s.along_axes(*s.motion.rate(t))
     v_x, v_y = d_x - s_x, d_y - s_y
     M, C, v = mass_tensor(s), damping_tensor(s), np.stack([v_x, v_y])
     c_x, c_y = C @ v
     work = (s.k_x * u_x + c_x) * d_x + (s.k_y * u_y + c_y) * d_y
     if s.driven == "plate":
         changes = pick(drive_stretches(s.motion), t, lambda course, at, _: course.rate_change(at))
-        a_x, a_y = _on_axes(s, changes)
+        a_x, a_y = s.along_axes(*changes)
         p_x, p_y = M @ v
         work = work - (p_x * a_x + p_y * a_y)
     angle = s.damping_angle - s.turn
@@ -168,20 +166,14 @@ def _momentum_gain(run: Trajectory, borders: Floats, rows: Floats) -> Floats:
     jumps = [end for end, _ in drive_stretches(s.motion) if borders[0] <= end < borders[-1]]
     times = np.union1d(borders, jumps)
     states = rows if len(times) == len(borders) else states_at(run, times)
-    d = np.reshape(_on_axes(s, s.motion.rate(times)), (2, -1))  # one column for a steady drive
+    d = np.reshape(s.along_axes(*s.motion.rate(times)), (2, -1))  # one column for a steady drive
     momentum = mass_tensor(s) @ (d - states[:, 2:4].T)
     carried = (momentum * d).sum(axis=0)
-    leaps = np.array([_on_axes(s, jump(s.motion, t)) for t in times[:-1].tolist()]).T
+    leaps = np.array([s.along_axes(*jump(s.motion, t)) for t in times[:-1].tolist()]).T
     inside = np.searchsorted(times, borders)
     gained = np.add.reduceat((momentum[:, :-1] * leaps).sum(axis=0), inside[:-1])
     found: Floats = np.diff(carried[inside]) - gained
     return found
-
-
-def _on_axes(slider: Slider, vector: tuple[Any, ...]) -> tuple[Any, Any]:
-    """Return the components of a vector (X, Y) along the principal axes x and y."""
-    (X, Y), (c, n) = vector, slider.direction
-    return X * c - Y * n, X * n + Y * c
 
 
 def _stored_energies(run: Trajectory, t: Floats, rows: Floats) -> Floats:
@@ -189,7 +181,7 @@ def _stored_energies(run: Trajectory, t: Floats, rows: Floats) -> Floats:
     s = run.slider
     u_x, u_y, v_x, v_y = rows[:, :4].T
     if s.driven == "plate":
-        d_x, d_y = _on_axes(s, s.motion.rate(t))
+        d_x, d_y = s.along_axes(*s.motion.rate(t))
         v_x, v_y = d_x - v_x, d_y - v_y
     M = mass_tensor(s)
     kinetic = 0.5 * (M[0, 0] * v_x**2 + 2.0 * M[0, 1] * v_x * v_y + M[1, 1] * v_y**2)

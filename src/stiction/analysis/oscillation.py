@@ -223,9 +223,9 @@ def _in_windows(run: Trajectory, middle: Floats, width: float) -> tuple[Floats, 
     def mean(name: str) -> Floats:
         return np.asarray(np.add.reduceat(data[name].values, pairs)[::2] / counts)
 
-    v_y, (c, s) = data["v_y"].values, slider.direction
+    v_y = data["v_y"].values
     range_y = np.maximum.reduceat(v_y, pairs)[::2] - np.minimum.reduceat(v_y, pairs)[::2]
-    across = np.abs(mean("drive_X") * s + mean("drive_Y") * c)
+    across = np.abs(slider.along_axes(mean("drive_X"), mean("drive_Y"))[1])
     holds = slider.F_0 * mean("normal_load") / slider.normal_load
     cosine = np.clip(np.abs(mean("spring_x")) / np.maximum(holds, 1e-300), 0.0, 1.0)
     m = slider.masses[1]  # the oscillation is across, on the stiff spring

@@ -390,8 +390,7 @@ def cell_axis(slider: Slider) -> CellAxis:
 
 def _share(x: float, y: float, slider: Slider) -> float:
     """Return the cosine of the angle between the cell's axis and the drive."""
-    c, s = slider.direction
-    share = x * c + y * s
+    share = float(slider.along_drive(x, y))
     return 0.0 if abs(share) < ROUND else share  # at a right angle
 
 
@@ -415,7 +414,7 @@ def record_of(run: Trajectory) -> Record:
     c, s = slider.direction
     x, y, way, along = cell.x, cell.y, cell.way, cell.velocity
     share = _share(x, y, slider)
-    stiffness = (x * slider.k_x * c + y * slider.k_y * s) / share if share else 0.0
+    stiffness = slider.along_drive(x * slider.k_x, y * slider.k_y) / share if share else 0.0
     names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load")
     columns = np.stack([samples[name] for name in names])
     time, f_x, f_y, X, slip_speed, load = columns[:, np.isfinite(columns).all(axis=0)]

@@ -191,8 +191,8 @@ def first_trough(values: Floats) -> int:
 
 def start(slider: Slider, row: Floats, time: float) -> Initial:
     """Return the state of a sample as the start of a run."""
-    (c, s), (X, Y) = slider.direction, slider.motion.rate(time)
-    v_x, v_y = X * c - Y * s - row[2], X * s + Y * c - row[3]
+    d_x, d_y = slider.along_axes(*slider.motion.rate(time))
+    v_x, v_y = d_x - row[2], d_y - row[3]
     names = [state.name for state in states(slider.law)]
     internal = dict(zip(names, row[4:].tolist(), strict=True)) or None
     return Initial.model_construct(

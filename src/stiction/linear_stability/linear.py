@@ -273,8 +273,7 @@ def drive_velocity(slider: Slider) -> Floats:
         found.append(Fault("load", f"is not constant; {STEADY}, or load=None"))
     if found:
         raise DescriptionError(found)
-    c, s = slider.direction
-    return np.array([X * c - Y * s, X * s + Y * c])
+    return np.array(slider.along_axes(X, Y))
 
 
 def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:

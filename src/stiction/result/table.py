@@ -118,8 +118,8 @@ def sample_table(
     (u_x, u_y, slip_x, slip_y, f_x, f_y, sticking), internal = rows[:7], rows[7:]
     travel_X, travel_Y = slider.motion.travel(0.0, times)
     rate_X, rate_Y = slider.motion.rate(times)
-    v_x = rate_X * c - rate_Y * s - slip_x
-    v_y = rate_X * s + rate_Y * c - slip_y
+    drive_x, drive_y = slider.along_axes(rate_X, rate_Y)
+    v_x, v_y = drive_x - slip_x, drive_y - slip_y
     friction = np.hypot(f_x, f_y)
     theta = np.degrees(np.arctan2(f_y, f_x))
     theta[friction <= 1e-14 * np.max(friction, initial=0.0)] = np.nan  # no force, no direction

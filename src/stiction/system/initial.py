@@ -88,8 +88,10 @@ class Initial(Described):
 
     def slip(self, slider: Slider) -> tuple[float, float]:
         """Return the slip velocity (x, y) at the start, in m/s."""
-        (c, s), (rate_X, rate_Y) = slider.direction, slider.motion.rate(self.time)
+        rates = slider.motion.rate(self.time)
         if self.v_x is not None and self.v_y is not None:
-            return rate_X * c - rate_Y * s - self.v_x, rate_X * s + rate_Y * c - self.v_y
+            d_x, d_y = slider.along_axes(*rates)
+            return d_x - self.v_x, d_y - self.v_y
         # the slip velocity is that of the mass over the floor: X' along X
-        return self.epsilon * rate_X * c, self.epsilon * rate_X * s
+        (c, s), X = slider.direction, self.epsilon * rates[0]
+        return X * c, X * s

@@ -272,6 +272,11 @@ class Slider(Apparatus):
         c, s = self.direction
         return c * x + s * y
 
+    def along_axes(self, X: Any, Y: Any) -> tuple[Any, Any]:
+        """Return the components along the axes (x, y) of a vector with these along (X, Y)."""
+        c, s = self.direction
+        return X * c - Y * s, X * s + Y * c
+
     @property
     def F_0(self) -> float:
         """Friction force at vanishing slip, mu_0 W, in N; for a law with internal state, which may

@@ -252,12 +252,15 @@ def test_the_load_cell_has_an_axis():
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_the_component_along_the_drive_is_what_a_turn_by_the_misalignment_leaves(seed):
+def test_components_along_axes_and_drive_are_those_of_a_turn_by_the_misalignment(seed):
     random = np.random.default_rng([1, seed])
     slider = BASE.replace(phi=f"{random.uniform(-90.0, 90.0)} deg")
     X, Y = random.standard_normal((2, 7))
     c, s = np.cos(slider.phi), np.sin(slider.phi)
-    assert slider.along_drive(c * X - s * Y, s * X + c * Y) == pytest.approx(X)
+    x, y = slider.along_axes(X, Y)
+    assert x == pytest.approx(c * X - s * Y)
+    assert y == pytest.approx(s * X + c * Y)
+    assert slider.along_drive(x, y) == pytest.approx(X)
 
 
 @pytest.mark.parametrize("slider", [BASE, BASE.replace(mass_y="0.3 kg", damping_angle="0 deg")])

@@ -91,7 +91,7 @@ def apparent_stiffness(slider: Slider) -> float:
     By Eq. (7) the transverse spring keeps its force: only the soft one is loaded.
     """
     cell, along = cell_axis(slider), slider.k_x * slider.direction[0]
-    share = cell.x * slider.direction[0] + cell.y * slider.direction[1]
+    share = slider.along_drive(cell.x, cell.y)
     return cell.x * along / share if share else nan
 
 

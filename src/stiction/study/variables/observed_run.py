@@ -116,8 +116,8 @@ class ObservedRun:
     @cached_property
     def velocity(self) -> Floats:
         """Velocity X' of the mass, positive in the direction of the drive (m/s)."""
-        c, s = self.description.slider.direction
-        return self.way * c * self.column(2) + self.way * s * self.column(3)
+        along = self.description.slider.along_drive(self.column(2), self.column(3))
+        return np.asarray(self.way * along)
 
     @property
     def positions(self) -> Floats:
