@@ -16,8 +16,8 @@ from stiction.solver.accuracy import tolerance
 from stiction.system.tensors import damping_tensor, mass_tensor
 from stiction.trajectory import Trajectory
 
-POWERS = ("work", "friction_x", "friction_y", "damper_x", "damper_y")
 ROUNDING = 4e-16  # of a stored energy, in each step: its displacement by half as much
+POWERS = 5  # of the energies, the first ones: they are integrals over time
 # name: long name; all in J
 ENERGIES = {
     "work": "work of the drive",
@@ -88,9 +88,9 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     """
     borders = _edges(run, edges)
     rtol = run.description.run.rtol
-    integrated = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol, len(POWERS))
+    integrated = integrals(run, borders, lambda t, rows: _powers(run, t, rows), rtol, POWERS)
     sizes, rows = integrated.size, integrated.states
-    powers, off = integrated.value[: len(POWERS)], integrated.error[: len(POWERS)]
+    powers, off = integrated.value[:POWERS], integrated.error[:POWERS]
     energies = _stored_energies(run, borders, rows)
     stored = np.diff(energies, axis=1)
     if run.slider.driven == "plate":
@@ -135,7 +135,7 @@ def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
 
 
 def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
-    """Return the powers `POWERS` (W), and those that the springs along x and y take up."""
+    """Return the first powers of `ENERGIES`, and those that the springs take up along x, y (W)."""
     s = run.slider
     u_x, u_y, s_x, s_y, f_x, f_y = rows[:, :6].T
     d_x, d_y = s.along_axes(*s.motion.rate(t))

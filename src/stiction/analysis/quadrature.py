@@ -17,8 +17,7 @@ import numpy as np
 from stiction.arrays import Floats, Indices
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
-from stiction.friction import has_state
-from stiction.solver.integrate import integrate
+from stiction.solver.integrate import integrate, is_smooth
 from stiction.solver.segments import fastest_swing, stretches
 from stiction.trajectory import Trajectory
 
@@ -183,7 +182,7 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     where the first ones do not suffice (see `integrals`).
     """
     slider, first, last = run.slider, edges[0], edges[-1]
-    smooth = is_smooth(run)
+    smooth = is_smooth(run.description)
     own = step_ends(run) if smooth else run.stick_intervals.ravel()
     programs = [end for end, _ in drive_stretches(slider.motion)]
     programs += [end for end, _ in load_stretches(slider.normal_load, slider.load)]
@@ -200,11 +199,6 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     if share < 1.0:
         counts = np.ceil(share * counts).astype(np.intp)
     return split(starts, lengths, counts)
-
-
-def is_smooth(run: Trajectory) -> bool:
-    """Return whether a run's friction is smooth: its law has states, or is regularised."""
-    return run.description.run.regularisation is not None or has_state(run.slider.law)
 
 
 def steps_of(run: Trajectory) -> int:

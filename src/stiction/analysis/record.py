@@ -24,7 +24,16 @@ from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
 from stiction.system.springs import ROUND
 from stiction.text.samples import as_numbers, samples_to_si, unit_on
-from stiction.text.units import Force, Kind, Mass, PositiveSpeed, Stiffness
+from stiction.text.units import (
+    FORCE,
+    LENGTH,
+    TIME,
+    VELOCITY,
+    Force,
+    Mass,
+    PositiveSpeed,
+    Stiffness,
+)
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
 
@@ -67,15 +76,15 @@ def _spread(time: Floats) -> Floats:
     return np.asarray(np.repeat(ends, count) + number * np.repeat(length / count, count))
 
 
-A_FORCE, A_LENGTH = Kind("a force", "N", "mN"), Kind("a length", "m", "um")
+A_FORCE, A_LENGTH = FORCE._replace(example="mN"), LENGTH._replace(example="um")
 KINDS = {
-    "time": Kind("a time", "s", "ms"),
+    "time": TIME._replace(example="ms"),
     "force": A_FORCE,
     "force_across": A_FORCE,
     "load": A_FORCE,
     "position": A_LENGTH,
     "drive_position": A_LENGTH,
-    "slip_speed": Kind("a velocity", "m/s", "mm/s"),
+    "slip_speed": VELOCITY._replace(example="mm/s"),
 }
 Samples = Annotated[Any, BeforeValidator(_samples)]
 

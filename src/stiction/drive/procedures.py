@@ -17,9 +17,7 @@ from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
 from stiction.errors import DescriptionError, echo
-from stiction.text.units import FORCE, VELOCITY, Kind, Quantity, to_si
-
-TIME, LENGTH = Kind("a time", "s", "5 s"), Kind("a length", "m", "0.1 mm")
+from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantity, to_si
 
 
 def velocity_steps(

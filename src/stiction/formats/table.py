@@ -71,8 +71,6 @@ class FileTable:
         (n,), the line of each row.
     notes : tuple of str
         Sentences on what was skipped.
-    interval : float or None
-        s, between two samples, as the file states it; ``stated`` is its text.
     promised : int or None
         Number of samples that the file states.
     start : str
@@ -87,8 +85,6 @@ class FileTable:
     remarks: tuple[Remark, ...] = ()
     lines: Indices | None = None
     notes: tuple[str, ...] = ()
-    interval: float | None = None
-    stated: str = ""
     promised: int | None = None
     start: str = ""
     labels: tuple[tuple[str, NDArray[np.object_]], ...] = ()

@@ -116,7 +116,7 @@ def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurem
     """Return the measurements of one table."""
     reading = asked.reading
     said = what_is_said(table.remarks)
-    interval = reading.interval or table.interval or said.interval
+    interval = reading.interval or said.interval
     by_interval = reading.interval is not None
     if not by_interval and interval is not None:  # a column of times comes first
         by_interval = not _has_times(path, table, reading)
@@ -226,8 +226,7 @@ def _notes_on_clock(
     if by_interval:
         notes = [f"times are the number of the sample times {said.stated or 'the interval'}"]
     else:
-        stated = table.stated or said.stated
-        notes = [*check_stated(part.time, table.interval or said.interval, stated)]
+        notes = [*check_stated(part.time, said.interval, said.stated)]
     promised, count = said.promised or table.promised, len(part.rows)
     if promised is not None and promised > count and (parts == 1 or said.promised):
         notes.append(f"the file promises {promised} samples and has {count}: it is cut off")

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.drive.recorded.resolution import NORMAL_MEDIAN
 
 ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
-NORMAL = 0.6744897501960817  # median of |x| of a standard normal x
 FEWEST = 64  # samples
 CODES = 12  # different values at least, by which a lattice is recognised
 REPEATED = 4  # samples for each of them, on average
@@ -59,7 +59,7 @@ def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> flo
     few slips do not move.
     """
     weights = sqrt(comb(2 * order, order))  # root of the sum of their squares
-    return _median(np.abs(np.diff(values, order)), step) / (NORMAL * weights)
+    return _median(np.abs(np.diff(values, order)), step) / (NORMAL_MEDIAN * weights)
 
 
 def _median(values: Floats, step: float) -> float:

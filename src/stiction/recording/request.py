@@ -13,9 +13,9 @@ from stiction.formats.channels import CHANNELS
 from stiction.recording.sensor import Sensor
 from stiction.text.toml import read_toml
 from stiction.text.units import (
+    LENGTH,
     Duration,
     Force,
-    Kind,
     Mass,
     PositiveSpeed,
     Read,
@@ -38,7 +38,7 @@ def _wrap(value: object) -> object:
     """Return a length, or 0 where a displacement does not start again."""
     if value is None or value == WHOLE:
         return 0.0 if value == WHOLE else None
-    length = to_si(value, Kind("a length", "m", "10 mm"))
+    length = to_si(value, LENGTH)
     if length <= 0.0:
         raise fault(f"must be greater than 0, is {echo(value)}; or write {WHOLE!r}")
     return length

@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.arrays import Floats
 from stiction.errors import Fault, ResultError, echo
-from stiction.text.units import Kind, Number, Rate, split_uncertain, to_si
+from stiction.text.units import FORCE, LENGTH, VELOCITY, Kind, Number, Rate, split_uncertain, to_si
 from stiction.text.validation import Described, faulty
 
 LEVELS = ("zero", "zero_uncertainty", "quantisation", "noise")  # in the unit of the channel
@@ -22,9 +22,9 @@ RATES = ("zero_drift", "zero_drift_uncertainty")  # in this unit over time
 OF = "_uncertainty"  # ending of the name of a standard uncertainty
 UNCERTAIN = ("gain", "zero", "zero_drift")  # may be written with their uncertainty: "0 +- 3 mN"
 KINDS = {
-    "N": Kind("a force", "N", "3 mN"),
-    "m": Kind("a length", "m", "1 um"),
-    "m/s": Kind("a velocity", "m/s", "1 mm/s"),
+    "N": FORCE._replace(example="3 mN"),
+    "m": LENGTH._replace(example="1 um"),
+    "m/s": VELOCITY,
 }
 KINDS_OF_RATES = {
     "N": Kind("a force over time", "N/s", "5 mN/min"),

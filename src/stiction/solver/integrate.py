@@ -84,14 +84,19 @@ class Method(Protocol):
         """Return the matrix of a small disturbance of a state; see `stepping.amplification`."""
 
 
+def is_smooth(description: Description) -> bool:
+    """Return whether friction is smooth: its law has states, or is regularised."""
+    return description.run.regularisation is not None or has_state(description.slider.law)
+
+
 def method_of(description: Description) -> Method:
     """Return the solver for a description."""
-    slider, delta = description.slider, description.run.regularisation
-    if delta is not None or has_state(slider.law):
-        return Smooth(slider, delta, description.run.smoothing)
-    if description.run.multiscale == "auto":
-        return Automatic(slider, description.run.rtol)
-    return Multiscale(slider, description.run.rtol) if description.run.multiscale else Exact(slider)
+    slider, run = description.slider, description.run
+    if is_smooth(description):
+        return Smooth(slider, run.regularisation, run.smoothing)
+    if run.multiscale == "auto":
+        return Automatic(slider, run.rtol)
+    return Multiscale(slider, run.rtol) if run.multiscale else Exact(slider)
 
 
 def integrate(

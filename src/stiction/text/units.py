@@ -81,6 +81,7 @@ LONGEST = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
 FORCE = Kind("a force", "N", "10 N")
+TIME, LENGTH = Kind("a time", "s", "5 s"), Kind("a length", "m", "0.1 mm")
 
 # one number, then its unit: no arithmetic, no decimal comma
 QUANTITY = re.compile(

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from stiction.analysis.signals.robust import median
 from stiction.arrays import Floats
+from stiction.drive.recorded.resolution import NORMAL_MEDIAN
 
 ORDERED = -0.9  # rank correlation of size and number: each smaller than the last, but for noise
 # Swings in such order, how many, and what is left of the first: by chance once in a thousand
@@ -31,7 +32,6 @@ PARTS = 4 * QUARTER
 # A lone fall: its share of the record's time at most, and its height in standard deviations of the
 # noise, whose range over a million samples is 10
 BRIEF, STANDS_OUT = 1 / 16, 15.0
-DEVIATION = 1.4826  # standard deviation over median deviation, of normal noise
 
 
 def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
@@ -111,7 +111,7 @@ def lone_fall(time: Floats, force: Floats) -> tuple[float, float] | None:
     others = max(_largest_fall(part)[2] for part in (force[:begin], force[end:]))
     steps = np.abs(np.diff(force))
     step = float(np.median(steps[steps > 0.0])) if steps.any() else 0.0  # of a digitised force
-    noise = max(DEVIATION * float(np.median(np.abs(force - np.median(force)))), step)
+    noise = max(float(np.median(np.abs(force - np.median(force)))) / NORMAL_MEDIAN, step)
     quick = float(time[end] - time[begin]) < BRIEF * float(time[-1] - time[0])
     alone = height > max(STANDS_OUT * noise, 2.0 * others)
     return (float(time[begin]), height) if quick and alone else None

@@ -24,7 +24,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import part_means, part_starts, standard_error
+from stiction.analysis.signals.robust import mean_and_spread, part_means, part_starts, statistics
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, xr
 from stiction.recording.noise import ORDER, white_noise
@@ -253,21 +253,10 @@ def _over(forces: Floats, reduced: Floats, load: float, rounding: float = 0.0) -
 
     Rounding (N) may be the same for all of them: no mean is better than that.
     """
-    force, error, spread = _statistics(forces)
-    mu, mu_error, mu_spread = (each / load for each in _statistics(reduced))
+    force, error, spread = statistics(forces)
+    mu, mu_error, mu_spread = (each / load for each in statistics(reduced))
     error, mu_error = np.hypot(error, rounding), np.hypot(mu_error, rounding / load)
     return Measured(force, float(error), spread, mu, float(mu_error), mu_spread)
-
-
-def _statistics(values: Floats) -> tuple[float, float, float]:
-    """Return mean, standard error and spread of values, of which neighbours may be alike."""
-    mean, spread = _mean_and_spread(values)
-    return mean, standard_error(values), spread
-
-
-def _mean_and_spread(values: Floats) -> tuple[float, float]:
-    """Return mean and standard deviation of values."""
-    return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
 
 
 def _sliding(record: Record, slides: Sliding, kind: str, relative: Floats) -> Measured:
@@ -278,6 +267,6 @@ def _sliding(record: Record, slides: Sliding, kind: str, relative: Floats) -> Me
         first = int(np.searchsorted(time, 0.5 * (time[first] + time[last - 1])))
     force, reduced = record.force[first:last], record.force[first:last] / relative[first:last]
     blocks = _over(part_means(force, BLOCKS), part_means(reduced, BLOCKS), load)
-    mean, spread = _mean_and_spread(force)
-    mu, mu_spread = (each / load for each in _mean_and_spread(reduced))
+    mean, spread = mean_and_spread(force)
+    mu, mu_spread = (each / load for each in mean_and_spread(reduced))
     return Measured(mean, blocks.error, spread, mu, blocks.coefficient_error, mu_spread)

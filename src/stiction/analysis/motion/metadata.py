@@ -296,9 +296,15 @@ def _transverse_frequency(record: Record) -> StatedQuantity | None:
     return StatedQuantity(name, "Hz", shown, nan, frequency, 1.0, float("inf"), how)
 
 
+def first_reading(record: Record) -> Floats:
+    """Return the forces with which a record begins: some of them, to see whether they change."""
+    force: Floats = record.force[: max(8, len(record) // 400)]
+    return force
+
+
 def _zero(record: Record) -> StatedQuantity | None:
     """Return the reading with which a record begins, where that is constant: a zero perhaps."""
-    some = record.force[: max(8, len(record) // 400)]
+    some = first_reading(record)
     if not len(some) or len(record) < 4 * len(some):
         return None
     largest = largest_magnitude(record.force)

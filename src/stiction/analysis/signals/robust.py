@@ -87,10 +87,20 @@ def correlation_time(values: Floats) -> float:
     return max(2.0 * float(share[: ends[0] if len(ends) else None].sum()) - 1.0, 1.0)
 
 
+def mean_and_spread(values: Floats) -> tuple[float, float]:
+    """Return mean and standard deviation of values."""
+    return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
+
+
+def statistics(values: Floats) -> tuple[float, float, float]:
+    """Return mean, standard error and spread of values, of which neighbours may be alike."""
+    mean, spread = mean_and_spread(values)
+    return mean, float(spread * (correlation_time(values) / len(values)) ** 0.5), spread
+
+
 def standard_error(values: Floats) -> float:
     """Return the standard error of the mean of values, of which neighbours may be alike."""
-    spread = float(values.std(ddof=1)) if len(values) > 1 else np.nan
-    return float(spread * (correlation_time(values) / len(values)) ** 0.5)
+    return statistics(values)[1]
 
 
 def uniform_mean(values: Floats, length: int) -> Floats:

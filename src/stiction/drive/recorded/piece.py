@@ -13,14 +13,23 @@ from stiction.drive.recorded.resolution import advice, roughness
 from stiction.drive.recorded.spline import Recording, recording, spline
 from stiction.errors import echo
 from stiction.text.samples import FrozenColumn, as_numbers, samples_to_si, unit_on
-from stiction.text.units import FORCE, LARGEST, VELOCITY, Kind, Number, fault, in_words
+from stiction.text.units import (
+    FORCE,
+    LARGEST,
+    LENGTH,
+    TIME,
+    VELOCITY,
+    Kind,
+    Number,
+    fault,
+    in_words,
+)
 from stiction.text.validation import validate
 
 FEWEST = 4  # rows, which fix a cubic
 MOST = 1_000_000  # rows
 GAP = 10.0  # of the distances beside it
 SHOWN = 4  # rows of one fault
-TIME, LENGTH = Kind("a time", "s", "5 ms"), Kind("a length", "m", "0.1 mm")
 KINDS = {"time": TIME, "velocity": VELOCITY, "position": LENGTH, "load": FORCE}
 COLUMN = {"anyOf": [{"type": "array", "items": {"type": "number"}}, {"type": "string"}]}
 PERIOD = 8.0  # rows of a period that a table shows well

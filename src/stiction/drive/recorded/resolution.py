@@ -22,7 +22,7 @@ SLOPE_NOISE = 3.0 * sqrt(2.0 / sqrt(3.0) - 1.0)
 ISOLATED = 0.2  # typical deviation over the root of the mean square: below, few rows have it all
 FAR = 6.0  # typical deviations: beyond it is a jump
 BINS, ABOVE, MARGIN = 9, 5.0, 2.0  # of the spectrum: smoothed over, over the noise, of a cut-off
-NORMAL = 0.6745  # the median of the magnitude of a standard normal variable
+NORMAL_MEDIAN = 0.6744897501960817  # of |x| of a standard normal x
 
 
 class Roughness(NamedTuple):
@@ -60,7 +60,7 @@ def roughness(time: Floats, values: Floats, largest: float, integrated: bool) ->
     share = effect * sqrt(square) / largest
     if share <= NOTICED or correlation(off) >= LEAST_CORRELATION:
         return None
-    typical = float(np.median(np.abs(off))) / NORMAL
+    typical = float(np.median(np.abs(off))) / NORMAL_MEDIAN
     jumps: list[int] = []
     if typical < ISOLATED * sqrt(square):
         least = max(FAR * typical, sqrt(square))

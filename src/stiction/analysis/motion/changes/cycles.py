@@ -7,8 +7,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.course import DEVIATION, ORDERED, order
+from stiction.analysis.motion.course import ORDERED, order
 from stiction.arrays import Floats, xr
+from stiction.drive.recorded.resolution import NORMAL_MEDIAN
 
 FEW_CYCLES = 4  # in each part
 CHANGED = 0.25  # logarithm of the ratio of two periods, or rates: a quarter more or less
@@ -40,7 +41,7 @@ def parts_of(period: Floats) -> list[slice]:
 def _variance(size: Floats) -> float:
     """Return the variance from cycle to cycle, of which single steps are no part."""
     steps = np.abs(np.diff(size))
-    return 0.5 * (DEVIATION * float(np.median(steps))) ** 2 if len(steps) else 0.0
+    return 0.5 * (float(np.median(steps)) / NORMAL_MEDIAN) ** 2 if len(steps) else 0.0
 
 
 def _splits(size: Floats) -> list[int]:

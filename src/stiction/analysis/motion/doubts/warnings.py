@@ -25,7 +25,13 @@ from stiction.analysis.motion.doubts.sampling import (
 )
 from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import LOADING_RATE, SWING, StatedQuantity
+from stiction.analysis.motion.metadata import (
+    AT_REST,
+    LOADING_RATE,
+    SWING,
+    StatedQuantity,
+    first_reading,
+)
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
@@ -42,7 +48,6 @@ UNITS = (("mN", "milli", 1e-3), ("uN", "micro", 1e-6), ("kN", "kilo", 1e3))  # s
 TINY_MU = 1e-3  # no friction is so small, but of a film of fluid
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
-AT_REST = 0.02  # of the largest force
 BOTH_SIGNS = 0.3  # of the largest force: so far it goes the other way where a drive turns
 VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
@@ -331,7 +336,7 @@ def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[st
         return
     if friction.break_away is None or record.zero is not None:
         return
-    some = record.force[: max(8, len(record) // 400)]
+    some = first_reading(record)
     noise = float(np.std(np.diff(some))) / 2.0**0.5
     first = float(some[0])
     plateau = float(np.ptp(some)) < max(NOISE * noise, 1e-9 * largest) * 2.0
