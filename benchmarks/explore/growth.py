@@ -27,7 +27,7 @@ SIZES = (1e-4, 1e-7, 1e-10)  # of the drive's speed, or of a state
 RTOLS = (1e-3, 1e-6, 1e-9)
 GROWN = 1e12
 LONGER = 1.5  # times as long as that takes
-LONGEST = 3e5  # radians of the mode, so that a run takes a second at most
+LONGEST_RUN = 3e5  # radians of the mode, so that a run takes a second at most
 LEFT = 0.01  # of the drive's speed: slip that is so far off has left
 
 
@@ -73,7 +73,7 @@ def look(seed: int, kind: str, number: int) -> Found | None:
     growth, rate = sliding.growth_rate, abs(sliding.eigenvalues[0])
     # what grows by less in a radian than a step may err by is not for this tolerance
     rtols = [rtol for rtol in RTOLS if growth > tolerance(rtol) * rate]
-    if not rtols or rate > growth * LONGEST / (LONGER * log(GROWN)):
+    if not rtols or rate > growth * LONGEST_RUN / (LONGER * log(GROWN)):
         return None
     runs = [(rtol, size) for rtol in rtols for size in SIZES]
     rests = tuple(each for each in runs if not leaves(drawn, sliding, *each))

@@ -20,7 +20,7 @@ from rich.console import Console
 import stiction as st
 
 COVERED, FACTOR = 0.9, 3.0
-LONGEST = 2e5  # transverse periods in a run
+LONGEST_RUN = 2e5  # transverse periods in a run
 STICKING = ("stick-slip", "transitional oscillation")
 Generator = np.random.Generator
 
@@ -61,7 +61,7 @@ def look(rng: Generator, noise: float, off: float) -> Seen | None:
     period = 2.0 * weakens * F_0 / slider.k_x / V
     duration = F_0 / slider.k_x / V + rng.uniform(4.0, 9.0) * period
     rate = rng.uniform(300.0, 3000.0) / period
-    if duration * sqrt(slider.k_y / slider.mass) / (2.0 * pi) > LONGEST:
+    if duration * sqrt(slider.k_y / slider.mass) / (2.0 * pi) > LONGEST_RUN:
         return None
     run = st.simulate(slider, duration, sample_rate=rate)
     cycles = st.analysis.find_cycles(run)

@@ -11,7 +11,7 @@ from reprlib import Repr
 from shlex import quote
 from typing import NamedTuple
 
-LONGEST = 2000  # characters of a message
+LONGEST_MESSAGE = 2000  # characters of a message
 LONGEST_PATH = 400  # characters of the path of a fault, or of a file
 ECHOED = 80  # characters of a value in a message
 ITEMS = 4  # of a list in a message
@@ -26,7 +26,7 @@ _shortened.maxstring = _shortened.maxother = _shortened.maxlong = ECHOED + 2  # 
 
 def one_line(error: BaseException) -> str:
     """Return the error of another library in one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST]
+    return " ".join(f"{type(error).__name__}: {error}".split())[:LONGEST_MESSAGE]
 
 
 def visible(text: str) -> str:
@@ -116,7 +116,7 @@ class Fault(NamedTuple):
     def __str__(self) -> str:
         """Return ``path: message``, shortened if very long."""
         path = without_middle(self.path, LONGEST_PATH)
-        return without_middle(f"{path}: {self.message}" if path else self.message, LONGEST)
+        return without_middle(f"{path}: {self.message}" if path else self.message, LONGEST_MESSAGE)
 
 
 class DescriptionError(StictionError, ValueError):

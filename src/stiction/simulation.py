@@ -292,7 +292,7 @@ def sample_times(start: float, duration: float, rate: float) -> np.ndarray:
 
 
 PER_FAST_PERIOD, PER_SLOW_PERIOD = 20, 32  # samples
-FEWEST, MANY, MOST = 1_000, 200_000, 1_000_000  # samples of one run
+FEWEST_SAMPLES, MANY_SAMPLES, MOST_SAMPLES = 1_000, 200_000, 1_000_000  # samples of one run
 
 
 def automatic_times(description: Description) -> np.ndarray:
@@ -300,7 +300,7 @@ def automatic_times(description: Description) -> np.ndarray:
     slider, duration = description.slider, description.run.duration
     slow, fast = slider.natural_frequencies
     fine = PER_FAST_PERIOD * duration * max((fast, *slider.modulation_frequencies))
-    wanted = max(min(fine, MANY), PER_SLOW_PERIOD * duration * slow, FEWEST)
+    wanted = max(min(fine, MANY_SAMPLES), PER_SLOW_PERIOD * duration * slow, FEWEST_SAMPLES)
     start = description.initial.time
-    times: np.ndarray = np.linspace(start, start + duration, ceil(min(wanted, MOST)) + 1)
+    times: np.ndarray = np.linspace(start, start + duration, ceil(min(wanted, MOST_SAMPLES)) + 1)
     return np.unique(times)  # some may be the same to rounding

@@ -19,7 +19,7 @@ PERIODS = 10.0  # of the leading mode, in a block of time
 SAMPLES = 64  # per period: the largest error of a peak is 0.1 %
 EVEN = 0.01  # largest relative difference between settled blocks
 TOLD = 3.0  # times EVEN by which a small disturbance would change meanwhile
-FEWEST = 6  # blocks, of which the later half must be even
+FEWEST_BLOCKS = 6  # blocks, of which the later half must be even
 REST, OSCILLATING, UNDECIDED = range(3)
 
 
@@ -47,7 +47,7 @@ def settle(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Fou
         told = abs(growth) * block * len(late) > TOLD * EVEN  # else slow change looks settled
         if (
             told
-            and count >= FEWEST
+            and count >= FEWEST_BLOCKS
             and min(late) > GROWN * small
             and max(late) < (1 + EVEN) * min(late)
         ):

@@ -43,7 +43,7 @@ SHARP = 1e-3  # of the load: noise of it that is averaged away
 # errors of the variance of noise, by which a load varies for sure; by fourth differences, which are
 # correlated, that is known half as well as by the noise itself
 CERTAIN = 10.0
-LONGEST = 1 / 400  # of the record: over so much of it the load is averaged at most
+LONGEST_MEAN = 1 / 400  # of the record: over so much of it the load is averaged at most
 CHANNELS = (  # (n,), beside the time
     *("force", "force_across", "load", "position", "drive_position", "slip_speed"),
 )
@@ -313,7 +313,7 @@ class Record(Described):
 
         noise = white_noise(self.load) if len(self) > ORDER else 0.0
         wanted = (noise / (SHARP * float(self.load.mean()))) ** 2
-        width = int(max(1.0, min(wanted, LONGEST * len(self))))
+        width = int(max(1.0, min(wanted, LONGEST_MEAN * len(self))))
         load = uniform_filter1d(self.load, width, mode="nearest")
         return np.asarray(np.where(load > 0.0, load, np.nan) / self.normal_load)
 

@@ -30,7 +30,7 @@ from stiction.trajectory import Trajectory
 CYCLES = 6  # of expected stick-slip to simulate
 LOAD_UPS = 4.0  # to wait for a force that approaches the friction limit only slowly
 DECAYS = 8.0  # e-folds of a disturbance to wait for, down to a thousandth
-LONGEST = 2000.0  # longest wait for that, in swings on the soft spring
+LONGEST_WAIT = 2000.0  # longest wait for that, in swings on the soft spring
 COARSE = 40.0  # samples in each swing on the soft spring
 ALMOST = 0.99  # of the drive's speed: the mass slides
 MOST_SAMPLES = 200_000
@@ -169,7 +169,7 @@ def simulate_test(
     if not prediction.slips and growth > 0.0:  # what grows swings, and may rest between swings
         slips = CYCLES * 2.0 / prediction.f_x
     wait = DECAYS / abs(growth) if growth != 0.0 else 0.0
-    longest = LOAD_UPS * load_up + LONGEST / min(prediction.f_x, prediction.f_y)
+    longest = LOAD_UPS * load_up + LONGEST_WAIT / min(prediction.f_x, prediction.f_y)
     duration = min(max(LOAD_UPS * load_up, 1.2 * load_up + max(slips, wait)), longest)
     if multiscale is None:
         multiscale = duration * prediction.f_y > MANY

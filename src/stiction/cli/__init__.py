@@ -16,7 +16,14 @@ from rich.console import Console
 import stiction
 from stiction.cli.refusals import command_of, message_of, show_notices
 from stiction.cli.terminal import give_up, spell_out
-from stiction.errors import LONGEST, LONGEST_PATH, StictionError, one_line, visible, without_middle
+from stiction.errors import (
+    LONGEST_MESSAGE,
+    LONGEST_PATH,
+    StictionError,
+    one_line,
+    visible,
+    without_middle,
+)
 
 app = cyclopts.App(
     name="stiction",
@@ -109,7 +116,9 @@ def refuse(errors: Console, what: str, message: str) -> NoReturn:
     try:
         errors.print(f"[red]error[/red] {what}:")
         for line in visible(message).splitlines():
-            errors.print(f"  {without_middle(line, LONGEST)}", markup=False, highlight=False)
+            errors.print(
+                f"  {without_middle(line, LONGEST_MESSAGE)}", markup=False, highlight=False
+            )
     except OSError:  # nowhere to print
         give_up(sys.stderr)
     sys.exit(2)

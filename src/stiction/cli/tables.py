@@ -14,7 +14,7 @@ from rich.text import Text
 from stiction.errors import visible
 from stiction.text.sections import Section, Table
 
-LONGEST = 24  # letters of the longest unbroken word
+LONGEST_WORD = 24  # letters of the longest unbroken word
 
 
 def print_sections(title: str, parts: Iterable[Section]) -> None:
@@ -88,7 +88,7 @@ def narrowest(cells: Iterable[str]) -> int:
     A number and its unit are one word.
     """
     words = (word for text in cells for word in re.split(r"(?<!\d)\s+(?!s/m)", text))
-    return min(max(map(len, words), default=0), LONGEST)
+    return min(max(map(len, words), default=0), LONGEST_WORD)
 
 
 def number(text: str) -> bool:

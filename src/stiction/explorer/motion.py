@@ -25,7 +25,7 @@ from stiction.text.units import in_words
 CURVES = ("spring_x", "spring_y", "friction", "psi", "X", "V_X", "slip_speed", "v_y", "normal_load")
 TRACK = ("u_x", "u_y", "slip_x", "slip_y", "friction", "theta", "X", "V_X", "normal_load")
 PER_COLUMN = 16  # samples in a column of pixels while a slider moves
-FEWEST, MOST = 4_000, 24_000  # samples of the whole run then
+FEWEST_SAMPLES, MOST_SAMPLES = 4_000, 24_000  # samples of the whole run then
 CLOSE = 4  # columns between two rests that look like one
 IN_SLIP = 48  # samples in a slip between two rests
 FINE = 4_001  # samples under the microscope
@@ -69,7 +69,7 @@ def pictures(whole: np.ndarray, window: Window, columns: int) -> list[np.ndarray
     """
     low, high = window
     there = whole[(whole >= low) & (whole <= high)]
-    quick = min(max(PER_COLUMN * columns, FEWEST), MOST)
+    quick = min(max(PER_COLUMN * columns, FEWEST_SAMPLES), MOST_SAMPLES)
     if len(there) > quick:
         return [np.linspace(low, high, quick), there]
     return [np.union1d(there, np.linspace(low, high, quick))]
@@ -112,7 +112,7 @@ def slip_times(sticks: np.ndarray, times: np.ndarray) -> np.ndarray:
     starts, ends = sticks[:-1, 1], sticks[1:, 0]
     held = np.searchsorted(times, ends) - np.searchsorted(times, starts)
     short = (held < IN_SLIP) & (ends > starts)
-    count = min(MOST // max(int(short.sum()), 1), IN_SLIP)
+    count = min(MOST_SAMPLES // max(int(short.sum()), 1), IN_SLIP)
     if count < 3:
         return np.zeros(0)
     return np.unique(np.linspace(starts[short], ends[short], count))

@@ -10,7 +10,7 @@ import numpy as np
 from stiction.formats.table import FileColumn, FileTable, Remark, natural_key
 from stiction.formats.units import split_unit
 
-LONGEST = 400  # characters of a text in a file
+LONGEST_TEXT = 400  # characters of a text in a file
 WIDE = 64  # columns of an array
 
 
@@ -70,7 +70,7 @@ def _text(member: Member) -> str:
     value = np.asarray(member.values).ravel()
     first = value[0] if value.size == 1 else ""
     unit = f" {member.unit}" if member.unit else ""
-    return f"{plain_text(first):.{LONGEST}}{unit}"
+    return f"{plain_text(first):.{LONGEST_TEXT}}{unit}"
 
 
 def plain_text(value: Any) -> str:

@@ -16,7 +16,7 @@ from stiction.inference.observation import Conditions, Observation, Source, obse
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
 
-FEWEST = 300  # simulations with cycles, below which nothing is learned
+FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
 
 def fit(
@@ -120,7 +120,7 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
     ResultError
         If too few of its simulations have cycles.
     """
-    refuse_too_few("simulated records", len(library.scores), library.wanted, FEWEST)
+    refuse_too_few("simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS)
     observed = np.concatenate([each.features for each in seen])
     place = None if folder is None else folder / f"learned-{library.wanted}.npz"
     learned = study(library.features, library.scores, place)

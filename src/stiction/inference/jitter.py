@@ -29,9 +29,9 @@ LARGE = 0.15  # of the span in a cycle's window: a fall by so much, and a rise, 
 SMALLEST = 1e-3  # of the elongation: a smaller fall is not a slip
 REACH = 1.3  # lengths of the last cycle that are simulated at once in search of the next trough
 MORE = 0.4  # of them, if it is not among these
-LONGEST = 4.0  # of them without a trough: the friction of a further cycle is drawn
+LONGEST_WAIT = 4.0  # of them without a trough: the friction of a further cycle is drawn
 IDLE = 10.0  # of them without a trough: the motion has no more cycles
-FEWEST = 8  # samples that are simulated at once
+FEWEST_SAMPLES = 8  # samples that are simulated at once
 MOST_STEPS = 2_000_000
 
 
@@ -122,7 +122,7 @@ def move(
     rows = np.empty((len(times), len(kept)))
     troughs: list[int] = []
     origin, begin, initial = 0, 0, Initial(epsilon=0.0)  # where the cycle and its part begin
-    whole = max(int(REACH * cycle / step), FEWEST)
+    whole = max(int(REACH * cycle / step), FEWEST_SAMPLES)
     window = whole
     own = laws(slider.friction, jitter, random)
     law, last = next(own), len(times) - 1
@@ -143,18 +143,18 @@ def move(
         trough = first_trough(rows[origin : end + 1, 0])
         if trough >= 0:
             begin = origin + trough
-            whole = max(int(REACH * trough), FEWEST) if troughs else whole
+            whole = max(int(REACH * trough), FEWEST_SAMPLES) if troughs else whole
             troughs.append(begin)
             if len(troughs) == cycles:
                 break
             origin, window, law = begin, whole, next(own)
-        elif end - origin > LONGEST * whole:  # no slip: sliding, or loading
+        elif end - origin > LONGEST_WAIT * whole:  # no slip: sliding, or loading
             begin = origin = end
             if cycles is not None and end - (troughs or [0])[-1] > IDLE * whole:
                 break
             window, law = whole, next(own)
         else:  # a longer cycle
-            begin, window = end, max(int(MORE * whole), FEWEST)
+            begin, window = end, max(int(MORE * whole), FEWEST_SAMPLES)
         initial = start(slider, rows[begin], float(times[begin]))
     until = begin + 1
     return SampledMotion(times[:until], rows[:until], np.array(troughs, dtype=np.int64), True)

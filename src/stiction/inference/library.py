@@ -31,7 +31,7 @@ Progress = Callable[[float], None] | None
 SIMULATIONS = 4000  # of a library, by default
 BLOCK = 32  # simulations that are stored together
 SPARE = 2  # cycles simulated beyond those that are used: the first begins from rest
-LONGEST = 4.0  # of the measured cycles: simulations with longer ones end without
+LONGEST_CYCLE = 4.0  # of the measured cycles: simulations with longer ones end without
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
 NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names of priors
 SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
@@ -190,7 +190,7 @@ def synthesise(
         jitter = Jitter(spread, common, values.get("drift", 0.0) / conditions.cycles)
         rig = conditions.slider_of(slider)
         wanted = conditions.cycles + SPARE
-        most = LONGEST * wanted * conditions.cycle
+        most = LONGEST_CYCLE * wanted * conditions.cycle
         times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
         motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
         channels = measure(conditions, rig, motion, values, random)

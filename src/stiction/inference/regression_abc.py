@@ -26,7 +26,7 @@ import numpy as np
 from stiction.arrays import Floats
 
 SHARE = 0.25  # of the library that is near
-FEWEST = 200  # of its records, which a local regression needs
+FEWEST_RECORDS = 200  # of its records, which a local regression needs
 FARTHEST = 6.0  # standard deviations of the prior: no adjusted score lies beyond
 LEAST = 1e-9
 SCALE = 0.1, 10.0  # bounds of the rescaling
@@ -76,7 +76,7 @@ def posterior(
     """
     apart = summaries - observed
     distance = np.sqrt((apart * apart).sum(axis=1))
-    count = min(max(int(SHARE * len(distance)), FEWEST), len(distance))
+    count = min(max(int(SHARE * len(distance)), FEWEST_RECORDS), len(distance))
     near = np.argpartition(distance, count - 1)[:count]
     edge = distance[near].max()
     kernel = 1.0 - (distance[near] / edge) ** 2 if edge > 0.0 else np.ones(count)  # Epanechnikov

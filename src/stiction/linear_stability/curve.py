@@ -27,7 +27,7 @@ LOOKS = 33  # points on each line
 Point = tuple[float, float]
 Growth = Callable[[Point], float]  # beyond an edge of the plane, its value at the edge
 
-LONGEST, SHORTEST = 0.02, 1e-4  # steps along the curve
+LONGEST_STEP, SHORTEST_STEP = 0.02, 1e-4  # steps along the curve
 STRAIGHT = 0.3  # rad; where the curve turns more in a step, the step is shortened
 AHEAD = (0.4, 1.0, 1.6, 2.2)  # rad to both sides of straight ahead, searched in this order
 CLOSE = 1e-9  # rad: a point is sought to that, so it is accurate to 2e-11 of the ranges
@@ -152,15 +152,15 @@ def near(point: Point, branch: Floats) -> bool:
     length = np.maximum(np.sum(along**2, axis=1), 1e-30)
     part = np.clip(np.sum((np.array(point) - a) * along, axis=1) / length, 0.0, 1.0)
     gap = np.hypot(*(a + part[:, None] * along - point).T)
-    return bool(gap.min(initial=np.inf) < 0.25 * LONGEST)
+    return bool(gap.min(initial=np.inf) < 0.25 * LONGEST_STEP)
 
 
 def both_ways(growth: Growth, seed: Point) -> Floats:
     """Return the curve through a point, (n, 2), from end to end."""
     angles = np.linspace(-pi, pi, 17)
-    values = [growth(beside(seed, angle, LONGEST)) for angle in angles]
+    values = [growth(beside(seed, angle, LONGEST_STEP)) for angle in angles]
     ways = [
-        zero(growth, seed, LONGEST, a, b)
+        zero(growth, seed, LONGEST_STEP, a, b)
         for (a, f_a), (b, f_b) in pairwise(zip(angles, values, strict=True))
         if f_a * f_b < 0.0
     ]
@@ -180,12 +180,12 @@ def farthest(ways: Sequence[float]) -> float:
 
 def follow(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
     """Yield the points of a curve from `seed` to the edge of the plane, or back to `seed`."""
-    here, step, gone, start = seed, LONGEST, 0.0, way
+    here, step, gone, start = seed, LONGEST_STEP, 0.0, way
     for _ in range(MOST):
         found = ahead(growth, here, way, step)
-        shorter = step > SHORTEST
+        shorter = step > SHORTEST_STEP
         if shorter and (found is None or abs(turn(way, found)) > STRAIGHT):
-            step = max(step / 2.0, SHORTEST)
+            step = max(step / 2.0, SHORTEST_STEP)
             continue
         if found is None:
             return
@@ -195,20 +195,22 @@ def follow(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
         if not all(0.0 <= each <= 1.0 for each in here):
             # beyond the edge the growth rate stays constant: the curve leaves at a right angle
             edge = min(max(here[0], 0.0), 1.0), min(max(here[1], 0.0), 1.0)
-            if hypot(edge[0] - last[0], edge[1] - last[1]) > SHORTEST**2:  # not yet at the edge
+            if (
+                hypot(edge[0] - last[0], edge[1] - last[1]) > SHORTEST_STEP**2
+            ):  # not yet at the edge
                 yield edge
             return
-        back = gone > 2.0 * LONGEST and hypot(seed[0] - last[0], seed[1] - last[1]) < step
+        back = gone > 2.0 * LONGEST_STEP and hypot(seed[0] - last[0], seed[1] - last[1]) < step
         if back and abs(turn(start, way)) < pi / 2.0:  # `start` is ahead, not behind
             yield seed
             return
         yield here
-        step = min(LONGEST, 1.5 * step) if bent < STRAIGHT / 3.0 else step
+        step = min(LONGEST_STEP, 1.5 * step) if bent < STRAIGHT / 3.0 else step
 
 
 def ahead(growth: Growth, here: Point, way: float, step: float) -> float | None:
     """Return the direction (rad) of the next point, None if there is none."""
-    for angle in AHEAD if step <= SHORTEST else AHEAD[:1]:
+    for angle in AHEAD if step <= SHORTEST_STEP else AHEAD[:1]:
         values = [growth(beside(here, way + side, step)) for side in (-angle, angle)]
         if values[0] * values[1] < 0.0:
             return zero(growth, here, step, way - angle, way + angle)
@@ -239,5 +241,5 @@ def orient(growth: Growth, curve: Floats) -> Floats:
     middle = len(curve) // 2
     (x, y), (dx, dy) = curve[middle], curve[middle] - curve[middle - 1]
     left = atan2(dy, dx) + pi / 2.0
-    sides = [growth(beside((x, y), left + way, 10.0 * SHORTEST)) for way in (0.0, pi)]
+    sides = [growth(beside((x, y), left + way, 10.0 * SHORTEST_STEP)) for way in (0.0, pi)]
     return curve if sides[0] > sides[1] else curve[::-1]

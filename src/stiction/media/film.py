@@ -34,7 +34,7 @@ from stiction.trajectory import Trajectory, load
 
 SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
 RATE = 25  # frames a second
-LENGTH, LONGEST = 10.0, 300.0  # s of film
+LENGTH, LONGEST_FILM = 10.0, 300.0  # s of film
 PERIODS = 4  # of the fast oscillation under the microscope
 FINE = 2_000  # samples of these
 IN_WINDOW = 20_000  # samples of the time series, at least
@@ -131,9 +131,9 @@ def animate(
     'film.mp4'
     """
     found = run if isinstance(run, Trajectory) else load(run, trust=trust)
-    if not 1.0 / RATE <= length <= LONGEST:
+    if not 1.0 / RATE <= length <= LONGEST_FILM:
         raise ResultError(
-            f"length must lie between {1 / RATE:g} s and {LONGEST:g} s, is {length:g}"
+            f"length must lie between {1 / RATE:g} s and {LONGEST_FILM:g} s, is {length:g}"
         )
     if kind not in KINDS:
         raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {echo(kind)}")

@@ -28,7 +28,7 @@ from stiction.trajectory import Trajectory, load
 WAV = (".wav",)
 RATE = 48_000  # samples of sound a second
 LOUD = 0.8  # of full scale
-SHORTEST, LONGEST = 0.01, 600.0  # s of sound
+SHORTEST_SOUND, LONGEST_SOUND = 0.01, 600.0  # s of sound
 EVEN = 1e-5  # of a mean rate: ten times what epsilon, which starts a run, alters
 HEARD = (50.0, 8_000.0)  # Hz: a pitch that small loudspeakers give
 LARGEST = 2**15 - 1  # of 16 bits
@@ -134,15 +134,15 @@ def listen(
     if not chosen > 0.0:
         raise ResultError(f"speed must be above 0, is {chosen:g}; 0.1 is ten times slower")
     length = (end - start) / chosen
-    if length > LONGEST:
+    if length > LONGEST_SOUND:
         raise ResultError(
             f"at speed {chosen:g} the sound lasts {in_words(length, 's')}; it may last up to "
-            f"{LONGEST:g} s: choose a window or a larger speed"
+            f"{LONGEST_SOUND:g} s: choose a window or a larger speed"
         )
-    if length < SHORTEST:
+    if length < SHORTEST_SOUND:
         raise ResultError(
             f"at speed {chosen:g} the sound lasts {in_words(length, 's')}; it must last at least "
-            f"{in_words(SHORTEST, 's')}: choose a smaller speed, or another window"
+            f"{in_words(SHORTEST_SOUND, 's')}: choose a smaller speed, or another window"
         )
     count = floor(length * RATE)
     times = start + np.arange(count, dtype=np.float64) * (chosen / RATE)

@@ -23,7 +23,7 @@ GU_DOI = "10.1016/0022-5096(84)90007-3"
 A, V, D = 0.01, 1e-6, 10e-6  # direct effect; m/s; m: they only set the units
 BETA_1, BETA_2, RHO = 1.0, 0.84, 0.048
 INERTIA = 1e-8  # m V^2/(a W D_c)
-TRANSIENT, LONGEST = 1.6e4, 1.9e4  # D_c/V
+TRANSIENT, LONGEST_RUN = 1.6e4, 1.9e4  # D_c/V
 
 
 def critical_stiffness() -> float:
@@ -42,7 +42,9 @@ def two_states(share: float, inertia: float = INERTIA) -> Description:
     states = {"log_theta_1": (y - x - z) / BETA_1, "log_theta_2": z / BETA_2}
     start = Initial(u_x=(0.6 + A * y) / k, v_x=V * (1.0 - exp(x)), v_y=0.0, states=states)
     T = D / V
-    return Description(slider, start, Settings(duration=LONGEST * T, sample_rate=4 / T, rtol=1e-9))
+    return Description(
+        slider, start, Settings(duration=LONGEST_RUN * T, sample_rate=4 / T, rtol=1e-9)
+    )
 
 
 def crossings(run: Trajectory) -> tuple[Floats, Floats]:

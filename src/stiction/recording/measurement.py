@@ -33,7 +33,7 @@ from stiction.text.units import in_words
 T = TypeVar("T")
 FORCES = {"force", "force_across"}
 DISPLACEMENTS = ("position", "drive_position")
-FEWEST = 2  # samples of a block
+FEWEST_SAMPLES = 2  # samples of a block
 STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
 UNEVEN = 0.01  # relative: intervals that differ by more are reported
 
@@ -126,14 +126,14 @@ def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurem
     found = []
     before = -1
     for part in parts:
-        if len(part.rows) < FEWEST:
+        if len(part.rows) < FEWEST_SAMPLES:
             continue
         its = _remarks(table, before, int(part.rows[0]))
         before = int(part.rows[-1])
         own = what_is_said(its) if len(parts) > 1 else said
         found.append(_measurement(path, table, asked, choice, part, own, by_interval, len(parts)))
     if not found:
-        raise ResultError(f"{path}: fewer than {FEWEST} samples; record it again")
+        raise ResultError(f"{path}: fewer than {FEWEST_SAMPLES} samples; record it again")
     return found
 
 
@@ -189,7 +189,7 @@ def _measurement(
         lost = int(np.count_nonzero(~whole))
         notes.append(f"{number_of(lost, 'sample')} without a force left out, the first at {first}")
         time = time[whole]
-    if len(time) < FEWEST:
+    if len(time) < FEWEST_SAMPLES:
         raise ResultError(f"{path}: {len(time)} samples with a force; a record needs two")
     notes += _spacing(time)
     sensors: dict[str, Sensor] = {}
@@ -267,7 +267,7 @@ def _on(
     if len(own) == len(whole) and known[whole].all() and np.array_equal(own[whole], time):
         return np.asarray(values[whole])
     meaning = CHANNELS[name].meaning
-    if np.count_nonzero(known) < FEWEST:
+    if np.count_nonzero(known) < FEWEST_SAMPLES:
         notes.append(f"the {meaning} has no values and is left out")
         return None
     notes.append(f"the {meaning} is interpolated to the times of the force by straight lines")

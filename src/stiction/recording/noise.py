@@ -11,7 +11,7 @@ from stiction.arrays import Floats
 from stiction.drive.recorded.resolution import NORMAL_MEDIAN
 
 ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
-FEWEST = 64  # samples
+FEWEST_SAMPLES = 64  # samples
 CODES = 12  # different values at least, by which a lattice is recognised
 REPEATED = 4  # samples for each of them, on average
 LARGEST = 100_000  # steps of a difference: larger ones count as that
@@ -42,7 +42,7 @@ def noise_level(values: Floats) -> NoiseLevel:
     >>> round(noise_level(smooth + 0.01 * random.standard_normal(20000)).noise, 3)
     0.01
     """
-    if len(values) < FEWEST:
+    if len(values) < FEWEST_SAMPLES:
         return NoiseLevel(0.0, 0.0)
     step = lattice(values)
     total = white_noise(values, step)

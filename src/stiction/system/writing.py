@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
 TomlTable = dict[str, Any]
-LONGEST = 100  # numbers of a list that are shown
+LONGEST_LIST = 100  # numbers of a list that are shown
 
 
 def slider_tables(slider: Slider) -> dict[str, TomlTable]:
@@ -50,7 +50,7 @@ def abbreviate(value: Any) -> Any:
         return {name: abbreviate(each) for name, each in value.items()}
     if not isinstance(value, list | tuple):
         return value
-    if len(value) > LONGEST and not any(isinstance(each, Mapping) for each in value):
+    if len(value) > LONGEST_LIST and not any(isinstance(each, Mapping) for each in value):
         return f"{len(value)} values"
     return [abbreviate(each) for each in value]
 

@@ -15,7 +15,7 @@ from typing import Any
 
 from stiction.errors import echo
 
-LONGEST = 60  # characters
+LONGEST_UNIT = 60  # characters
 TOKEN = re.compile(
     r"\s*(?:(?P<name>[^\W\d_][^\W\d]*|°)"
     r"(?P<power>\s*(?:\*\*|\^)\s*[+-]?\d(?!\d)|[+-]?\d(?!\d)|[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹])?"
@@ -88,7 +88,7 @@ def _metric_factor(text: str, wanted: str) -> float | None:
 
     The registry knows them too, but takes a quarter of a second to read its own definitions.
     """
-    if len(text) > LONGEST:
+    if len(text) > LONGEST_UNIT:
         return None
     total: Counter[str] = Counter()
     for sign, each in ((1, text), (-1, wanted)):
@@ -108,8 +108,8 @@ def short(text: str) -> str:
 
 def plain(text: str) -> str:
     """Return a unit as a product of whole powers of names, or refuse it."""
-    if len(text) > LONGEST:
-        raise UnitError(f"it is longer than {LONGEST} characters")
+    if len(text) > LONGEST_UNIT:
+        raise UnitError(f"it is longer than {LONGEST_UNIT} characters")
     tokens = _tokens(text)
     powers = _product(tokens, text, closing="")
     for name in powers:

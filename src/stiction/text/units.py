@@ -77,7 +77,7 @@ else:
 hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, include_extras=True))
 LARGE = 1e6  # a number below it is written without a power of ten
 FACTOR = 12  # digits of a factor that is exact, such as 0.45359237 of a pound
-LONGEST = 200  # characters of a number and its unit
+LONGEST_QUANTITY = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
 FORCE = Kind("a force", "N", "10 N")
@@ -178,8 +178,8 @@ def bare(value: object) -> object:
 
 
 def _parse(text: str, kind: Kind) -> float:
-    if len(text) > LONGEST:
-        raise fault(f"has {len(text)} characters; a quantity has at most {LONGEST}")
+    if len(text) > LONGEST_QUANTITY:
+        raise fault(f"has {len(text)} characters; a quantity has at most {LONGEST_QUANTITY}")
     found = QUANTITY.fullmatch(text)
     if not found:
         comma = " (the decimal sign is a point)" if "," in text else ""

@@ -95,7 +95,7 @@ def test_what_may_be_added():
 
 
 def test_a_design_of_a_rig(monkeypatch, tmp_path):
-    monkeypatch.setattr(module, "FEWEST", 20)  # few and short: to see that all of it works
+    monkeypatch.setattr(module, "FEWEST_RIGS", 20)  # few and short: to see that all of it works
     monkeypatch.setattr(further, "CYCLES", 6)
     asked = {"angles": ["3 deg"], "velocities": ["1 m/s"], "loads": (), "simulations": 100}
     found = st.design(TEXT, library=tmp_path, **asked)

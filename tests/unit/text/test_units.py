@@ -5,7 +5,7 @@ import pint
 import pytest
 
 from stiction.text.quantity_text import percent, quantity_text
-from stiction.text.unit_text import COMMON, LONGEST, factor
+from stiction.text.unit_text import COMMON, LONGEST_UNIT, factor
 from stiction.text.units import (
     FORCE,
     VELOCITY,
@@ -88,7 +88,7 @@ def test_what_is_written_in_decimals_becomes_the_nearest_float():
         ("1 nan", LENGTH, "'nan' is not a unit that can be converted"),
         ("1 N**9999999", FORCE, "not one number and its unit"),
         ("1 N^" + "9" * 40, FORCE, "not one number and its unit"),
-        ("1 " + "m*" * LONGEST + "m", LENGTH, "longer than"),
+        ("1 " + "m*" * LONGEST_UNIT + "m", LENGTH, "longer than"),
         ("1 (" * 20, LENGTH, "not one number and its unit"),
         ("1 m/", LENGTH, "incomplete"),
         ("1 m)", LENGTH, "')'"),

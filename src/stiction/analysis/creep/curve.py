@@ -15,7 +15,7 @@ from stiction.trajectory import Trajectory
 
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
 LAG = 8  # samples, for the noise; successive samples of a load cell are correlated
-FEWEST = 4  # samples in a bin of a run
+FEWEST_SAMPLES = 4  # samples in a bin of a run
 OF_RECORD = 4.5  # intervals: so many hold four samples, two in each half, wherever they begin
 AIM = 0.1  # of the drive velocity: error of the mean curve in its narrowest bins
 
@@ -180,7 +180,7 @@ def _least_width(record: Record, position: Floats, length: Floats, exact: bool) 
     """Return the narrowest width (s) of bins that the noise allows, given the number of phases."""
     fine = float(np.median(length)) / FINEST if len(length) else 1.0
     if len(record) > 1:  # the motion between two samples is not known
-        fine = max(fine, (FEWEST if exact else OF_RECORD) / record.sample_rate)
+        fine = max(fine, (FEWEST_SAMPLES if exact else OF_RECORD) / record.sample_rate)
     if exact:
         return fine
     if not len(length) or record.drive_velocity is None or len(record) <= 2 * LAG + 1:

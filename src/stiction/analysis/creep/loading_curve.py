@@ -12,7 +12,7 @@ from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 
 LEVELS = 40  # number of forces on the curve
-FEWEST = 10  # bins in a rise, each of at least two samples
+FEWEST_BINS = 10  # bins in a rise, each of at least two samples
 AFTER_TROUGH, BEFORE_SLIP = 0.1, 0.12  # of the drop, left out because inertia matters there
 
 
@@ -75,7 +75,7 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
             rows.append(row)
     if not rows:
         raise ResultError(
-            f"no rise has {2 * FEWEST} samples between its trough and its peak; sample faster"
+            f"no rise has {2 * FEWEST_BINS} samples between its trough and its peak; sample faster"
         )
     table = np.array(rows)
     table -= table.mean(axis=1, keepdims=True)
@@ -91,7 +91,7 @@ def _creep_distances(
     """Return k_x times the distance crept at each force in one cycle; None if too coarse."""
     first, last = np.searchsorted(record.time, [start, top], side="left")
     count = min(LEVELS + 8, int(last - first) // 2)
-    if count < FEWEST:
+    if count < FEWEST_BINS:
         return None
     edges = np.linspace(first, last, count + 1).astype(np.intp)
     size = np.diff(edges)

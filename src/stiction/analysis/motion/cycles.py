@@ -29,7 +29,7 @@ from stiction.analysis.signals.turning_points import TurningPoints, turning_poin
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
 
-FEWEST = 3  # cycles beside a ringing
+FEWEST_CYCLES = 3  # cycles beside a ringing
 LINES = 4  # subtracted at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least
 OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
@@ -174,7 +174,7 @@ def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
     smooth = without_ringing(record.time, record.force, ringing)
     left = _swings(record.model_copy(update={"force": smooth}))
     left = left._replace(table=beside(left.table, ringing), ringing=ringing)
-    enough = len(left.table) >= FEWEST and not left.dying
+    enough = len(left.table) >= FEWEST_CYCLES and not left.dying
     sticks = enough and rest_share(left.table.median("rise_share")) >= STICKING
     return left if sticks else None
 

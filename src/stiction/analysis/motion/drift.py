@@ -14,7 +14,7 @@ from stiction.arrays import Floats, xr
 SURE = 4.0  # standard errors
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
 PARTS = 20  # number of means of a force without cycles, over its second half
-FEWEST = 4  # cycles that show a drift
+FEWEST_CYCLES = 4  # cycles that show a drift
 STEADY = 1.0  # of its rate, by which that of the two halves may differ
 
 
@@ -36,7 +36,7 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
 
     The standard error assumes scatter that is independent from cycle to cycle.
     """
-    if cycles.sizes["cycle"] >= FEWEST:
+    if cycles.sizes["cycle"] >= FEWEST_CYCLES:
         at = 0.5 * (cycles["peak_time"].values + cycles["trough_time"].values)
         middle = 0.5 * (cycles["peak"].values + cycles["trough"].values)
         start = float(record.time[0])
@@ -63,7 +63,7 @@ def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
     """Return whether both halves change at about this rate: a loading, once, is no drift."""
-    if len(at) < 2 * FEWEST:
+    if len(at) < 2 * FEWEST_CYCLES:
         return True
     half = len(at) // 2
     halves = [_fit_line(at[part], middle[part]) for part in (slice(half), slice(half, None))]

@@ -32,7 +32,7 @@ from stiction.text.quantity_text import percent
 
 PARTS = 400  # number of means of a record in which its break-away is sought
 LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading is not resolved
-FEWEST = 32  # least number of samples
+FEWEST_SAMPLES = 32  # least number of samples
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
@@ -107,8 +107,8 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     """Return the friction of a record with known cycles: see `find_friction`."""
     missing: dict[str, str] = {}
     kind, load, relative = regime.kind, record.normal_load or np.nan, record.relative_load()
-    if len(record) < FEWEST:
-        few = f"of the {FEWEST} samples that are needed the record has {len(record)}"
+    if len(record) < FEWEST_SAMPLES:
+        few = f"of the {FEWEST_SAMPLES} samples that are needed the record has {len(record)}"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
     count, peak, trough = len(cycles), cycles["peak"], cycles["trough"]
     slides = sliding(record)
@@ -162,7 +162,7 @@ def _find_break_away(
     end = len(force)
     if len(cycles):
         before, first = np.searchsorted(time, [cycles["start"][0], cycles["trough_time"][0]])
-        end = min(end, max(FEWEST, int(first) + 1, PARTS // LOADING * int(before)))
+        end = min(end, max(FEWEST_SAMPLES, int(first) + 1, PARTS // LOADING * int(before)))
     force = force[:end]
     forces, noise = _means(force)
     at, reason = _first_peak(forces, noise)

@@ -9,7 +9,11 @@ import numpy as np
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.arrays import Complex, Floats
 
-FEWEST, TURNS, PER_TURN = 16, 4.0, 3.0  # cycles, turns of the wave, and cycles in each, at least
+FEWEST_CYCLES, TURNS, PER_TURN = (
+    16,
+    4.0,
+    3.0,
+)  # cycles, turns of the wave, and cycles in each, at least
 FINE = 8  # frequencies tried in each that a record resolves
 # Share of the variance of the cycles' middles about a line that is the wave's, how alike it is in
 # both halves of a record, and its height over the median drop. Of 4000 random walks, white middles
@@ -26,7 +30,7 @@ class SlowWave(NamedTuple):
 
 def regular_wave(table: CycleTable) -> SlowWave | None:
     """Return the regular wave on which the middles of the cycles lie, if there is one."""
-    if len(table) < FEWEST:
+    if len(table) < FEWEST_CYCLES:
         return None
     at = 0.5 * (table["peak_time"] + table["trough_time"])
     middle = 0.5 * (table["peak"] + table["trough"])

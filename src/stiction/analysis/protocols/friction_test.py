@@ -24,7 +24,7 @@ from stiction.errors import ResultError
 from stiction.trajectory import Trajectory
 
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
-FEWEST = 3  # samples that show a change, and scatter
+FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 LISTED = 3  # times that a sentence lists
 
@@ -110,7 +110,7 @@ class FrictionTest(NamedTuple):
 
     def is_sampled(self, stretch: ConstantStretch) -> bool:
         """Return whether a stretch, and its end, have enough samples to see a change there."""
-        return len(self.within(*stretch[:2])) >= FEWEST and len(self.late(stretch)) > 0
+        return len(self.within(*stretch[:2])) >= FEWEST_SAMPLES and len(self.late(stretch)) > 0
 
     def slides(self, stretch: ConstantStretch) -> bool:
         """Return whether the mass slides in the end of a stretch: the spring is loaded no more.
@@ -130,7 +130,7 @@ class FrictionTest(NamedTuple):
 
     def _latest(self, stretch: ConstantStretch) -> Indices:
         """Return the samples in the end of a stretch, but at least as many as show a change."""
-        count = max(len(self.late(stretch)), FEWEST)
+        count = max(len(self.late(stretch)), FEWEST_SAMPLES)
         return self.within(*stretch[:2])[-count:]
 
     def successions(self) -> list[tuple[ConstantStretch, ConstantStretch]]:

@@ -26,7 +26,7 @@ from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 ROUNDED = 1e-9  # of a drive's travel: no way there and back
-FEWEST = 20  # samples of a loop: an ellipse through them has 1.6 % less area
+FEWEST_SAMPLES = 20  # samples of a loop: an ellipse through them has 1.6 % less area
 A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
 MOST = 1e6  # such times between two jumps
 NOISE = 20.0  # standard deviations: a smaller way of a measured drive is none
@@ -143,9 +143,9 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     loops = [_loop(test, way, turns[i], turns[i + 1], turns[i + 2]) for i in starts]
     found = [each for each in loops if each is not None]
     few = len(loops) - len(found)
-    said = (f"Of fewer than {FEWEST} samples, and left out: {few} of {len(loops)} loops.",)
+    said = (f"Of fewer than {FEWEST_SAMPLES} samples, and left out: {few} of {len(loops)} loops.",)
     if loops and not found:
-        raise ResultError(f"no loop has {FEWEST} samples; raise the sample rate")
+        raise ResultError(f"no loop has {FEWEST_SAMPLES} samples; raise the sample rate")
     if not found:
         raise ResultError("the drive does not turn twice; see st.protocols.reversal_loops")
     return Hysteresis(tuple(found), said if few else ())
@@ -247,7 +247,7 @@ def _stirs(drive: ConstantVelocity | DriveProgram, time: Floats) -> float:
 def _loop(test: FrictionTest, way: _Way, first: _Turn, middle: _Turn, second: _Turn) -> Loop | None:
     """Return the loop between two turns; None if it has too few samples."""
     at = test.within(first.leaves, second.comes)
-    if len(at) < FEWEST:
+    if len(at) < FEWEST_SAMPLES:
         return None
     time, force, load = test.time[at], test.force[at], test.load[at]
     travel = way.sampled[at] - first.X

@@ -27,7 +27,7 @@ from stiction.trajectory import Trajectory
 
 Law = Literal["slip", "ageing"]
 SHOWN = 10.0  # D_c of slip that a fit looks at, at most
-FEWEST = 8  # samples of a fit
+FEWEST_SAMPLES = 8  # samples of a fit
 STIFF = 300.0  # k D_c/(b W) above which D_c is found to 2 %
 
 
@@ -260,7 +260,7 @@ def _evolution(
 
     unknown = nan, nan, nan, np.full(len(mu), nan)
     change = mu[0] - mu[-1]
-    if len(mu) < FEWEST or change == 0.0:
+    if len(mu) < FEWEST_SAMPLES or change == 0.0:
         return unknown
     reached = np.flatnonzero(np.abs(mu - mu[0]) > (1.0 - np.exp(-1.0)) * abs(change))
     guess = slip[reached[0]] - slip[0] if len(reached) else slip[-1] - slip[0]

@@ -25,7 +25,7 @@ MOST_MISSING = 0.1  # of the grid's points, without a spectrum beyond
 CROWDED = 0.5  # of a step: so close to the sample before, a sample is one too many
 MOST_CROWDED = 0.25  # of the samples: a clock that jitters by a third of a step has 15 %
 COARSER = 3  # mean intervals: a step in which 1 of 20 has no sample, if their times are random
-FEWEST = 16  # samples with which the step is first refined
+FEWEST_SAMPLES = 16  # samples with which the step is first refined
 
 
 @dataclass(frozen=True)
@@ -140,7 +140,7 @@ def even_grid(time: Floats) -> EvenGrid | None:
     if size > n / (1.0 - MOST_MISSING) + 2:  # so many are missing that it is of no use
         size = min(size, 4 * n)
     found = EvenGrid(time, float(start), step, size)
-    if found.serves or n < COARSER * FEWEST:
+    if found.serves or n < COARSER * FEWEST_SAMPLES:
         return found
     size = (n - 1) // COARSER + 1
     coarse = EvenGrid(time, float(time[0]), plain.step * (n - 1) / (size - 1), size)
@@ -151,7 +151,7 @@ def _fit_grid(time: Floats) -> tuple[float, float]:
     """Return start and step of the grid, fitted to ever more samples, outliers left out."""
     middle = len(time) // 2  # the first interval, and the last, may be unlike the others
     step, start = float(np.median(np.diff(time))), float(time[middle])
-    around = FEWEST
+    around = FEWEST_SAMPLES
     while True:
         part = time[max(middle - around, 0) : middle + around]
         for _ in range(2):

@@ -31,7 +31,7 @@ LEAST = 1e-12  # of the largest power: what is less is nothing
 MUCH = 0.3  # of the power; the first harmonic of a sawtooth has 0.6
 TRIED = 20  # of the strongest
 BLOCK = 5  # periods in each mean of amplitude and phase
-LONGEST = 250  # periods over which amplitude and phase are taken for constant
+LONGEST_PART = 250  # periods over which amplitude and phase are taken for constant
 
 MAINS, MAINS_VARIES = (50.0, 60.0, 100.0, 120.0), 0.004  # Hz; a grid keeps its frequency to 0.4 %
 
@@ -249,7 +249,7 @@ def _envelope(turned: Complex, cycles: float) -> Complex:
     edges = np.linspace(0, n, max(int(n * cycles / BLOCK), 3) + 1).astype(np.intp)
     size = np.diff(edges)
     means = np.add.reduceat(turned, edges[:-1])
-    half = min(LONGEST // (2 * BLOCK), (len(size) - 1) // 2)
+    half = min(LONGEST_PART // (2 * BLOCK), (len(size) - 1) // 2)
     away = np.arange(-half, half + 1)
     weights = [np.hanning(2 * half + 3)[1:-1] * away**power for power in range(3)]
     s0, s1, s2 = (np.convolve(size, weight, "same") for weight in weights)

@@ -14,7 +14,7 @@ CUT = 0.1  # share of the values left out at each end
 FAR = 8.0  # times the typical step from sample to sample
 FARTHER = 2.0  # times the motion on either side: a fast movement is not an outlier
 WIDEST = 4  # samples in a row: two pairs
-LONGEST = 8  # samples in a group from first to last, including correct ones
+LONGEST_GROUP = 8  # samples in a group from first to last, including correct ones
 BESIDE = 3  # samples on either side for the motion of the signal; one of them may be wild
 PASSES = 4  # a group beside another is seen after that one is removed
 MOST = 0.05  # of the samples: if there are more, they are the signal
@@ -189,7 +189,7 @@ def _outliers(values: Floats) -> NDArray[np.bool_]:
         return found
     far = FAR * median(steps[steps > 0.0])
     jumps = np.flatnonzero(steps > far)  # the last samples before them
-    for width in range(1, LONGEST + 1):
+    for width in range(1, LONGEST_GROUP + 1):
         left = jumps[(jumps >= BESIDE) & (jumps + width + 1 + BESIDE < len(values))]
         left = left[steps[left + width] > far]
         right = left + width + 1

@@ -35,7 +35,7 @@ EACH = np.log(2.0)
 Number = TypeVar("Number", np.int64, np.float64)
 
 FINE = 2**26  # counts over a signal's range; sums over 2^30 samples still fit into 64 bits
-FEWEST = 8  # samples a cycle has at least; with fewer, no shape can be seen
+FEWEST_PER_CYCLE = 8  # samples a cycle has at least; with fewer, no shape can be seen
 COARSE_TURNS = 12  # turning points of cycles of few samples, which are needed at least
 ALIKE = 0.5  # the smaller legs over the larger ones, the tenths beyond left out; 0.08 for noise
 EVEN = 0.3  # standard deviation of the periods over their mean
@@ -179,7 +179,7 @@ def turning_points(values: Floats) -> TurningPoints:
         widest_gap(
             all_heights(each) / 2**level,
             max(step, typical_step(each) / 2**level),
-            len(each) / FEWEST,
+            len(each) / FEWEST_PER_CYCLE,
         )
         for level, each in enumerate(levels)
     ]
@@ -260,7 +260,7 @@ def running_sums(counts: Counts) -> Iterator[Counts]:
     """Yield the signal, then its sums over 2, 4, 8 ... samples, single wild ones replaced."""
     from scipy.ndimage import median_filter  # type: ignore[attr-defined]
 
-    while len(counts) >= 2 * FEWEST:
+    while len(counts) >= 2 * FEWEST_PER_CYCLE:
         yield counts
         pairs = counts[: len(counts) // 2 * 2].reshape(-1, 2).sum(axis=1)
         counts = median_filter(pairs, 3, mode="nearest")

@@ -26,8 +26,8 @@ from stiction.text.units import (
 )
 from stiction.text.validation import validate
 
-FEWEST = 4  # rows, which fix a cubic
-MOST = 1_000_000  # rows
+FEWEST_ROWS = 4  # rows, which fix a cubic
+MOST_ROWS = 1_000_000  # rows
 GAP = 10.0  # of the distances beside it
 SHOWN = 4  # rows of one fault
 KINDS = {"time": TIME, "velocity": VELOCITY, "position": LENGTH, "load": FORCE}
@@ -66,10 +66,10 @@ def row_faults(table: Rows) -> Iterator[tuple[str, str]]:
 
 def _count(table: Rows) -> Iterator[tuple[str, str]]:
     count = len(table.time)
-    if count < FEWEST:
-        yield "time", f"has {count} rows; a smooth curve needs {FEWEST} at least"
-    if count > MOST:
-        yield "time", f"has {count:,} rows, more than {MOST:,}; thin them, or cut the record"
+    if count < FEWEST_ROWS:
+        yield "time", f"has {count} rows; a smooth curve needs {FEWEST_ROWS} at least"
+    if count > MOST_ROWS:
+        yield "time", f"has {count:,} rows, more than {MOST_ROWS:,}; thin them, or cut the record"
 
 
 def _numbers(table: Rows) -> Iterator[tuple[str, str]]:

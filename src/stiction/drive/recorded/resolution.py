@@ -13,7 +13,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 
-FEWEST = 8  # rows: fewer are taken as they are
+FEWEST_JUDGED_ROWS = 8  # rows: fewer are taken as they are
 NOTICED = 1e-3  # of the largest value: smaller deviations, as of rounded digits, have no effect
 # of neighbours' deviations: 0 is that of a wave with four rows to its period, white noise has -0.8
 LEAST_CORRELATION = 0.0
@@ -51,7 +51,7 @@ def roughness(time: Floats, values: Floats, largest: float, integrated: bool) ->
     integrated : bool
         Whether the values are positions, whose slope counts.
     """
-    if len(time) < FEWEST or largest == 0.0:
+    if len(time) < FEWEST_JUDGED_ROWS or largest == 0.0:
         return None
     off = deviations(time, values)
     square = float(np.mean(off * off))

@@ -34,7 +34,7 @@ from stiction.storage.arrays import read_arrays, write_arrays
 
 Progress = Callable[[float], None] | None
 
-FEWEST = 40  # simulations with cycles, below which a mechanism is left out
+FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out
 WIDTH = 1.0  # of the kernel, over the typical distance between records
 WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are distinguished for sure
 
@@ -78,14 +78,14 @@ def simulate(
             parts.append(rows[np.isfinite(rows).all(axis=1)])
             done += 1
         features = np.concatenate(parts)
-        if len(features) < FEWEST:
+        if len(features) < FEWEST_SIMULATIONS:
             absent.append(rival.name)
         else:
             found[rival.name] = features
     if not found:
         raise ResultError(
-            f"by no mechanism {FEWEST} of {count} simulated records have cycles of stick and slip: "
-            "check the priors, or simulate more"
+            f"by no mechanism {FEWEST_SIMULATIONS} of {count} simulated records have cycles of "
+            "stick and slip: check the priors, or simulate more"
         )
     labels = np.repeat(np.arange(len(found)), [len(each) for each in found.values()])
     return Simulations((*found,), np.concatenate([*found.values()]), labels, (*absent,))

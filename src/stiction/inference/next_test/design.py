@@ -33,7 +33,7 @@ from stiction.text.quantity_text import percent
 from stiction.text.units import Quantity, in_words
 from stiction.text.validation import read_arguments
 
-FEWEST = 100  # rigs with cycles in the present test, below which nothing is learned
+FEWEST_RIGS = 100  # rigs with cycles in the present test, below which nothing is learned
 
 
 def design(
@@ -203,7 +203,7 @@ def expectations(
         return features[:, number * width : (number + 1) * width][:, columns]
 
     complete = whole(seen(0, present.channels))
-    refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST)
+    refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST_RIGS)
     truth = scores[complete]
     before = misses([seen(0, present.channels)[complete]], truth)
     yield expectation(trial, present.name, truth, before, before)

@@ -11,7 +11,7 @@ from pydantic import AfterValidator, Field
 from stiction.drive import ConstantVelocity
 from stiction.inference.features import LEAST_CYCLES, USED, find_cycles
 from stiction.inference.jitter import Jitter, move
-from stiction.inference.library import LONGEST
+from stiction.inference.library import LONGEST_CYCLE
 from stiction.inference.observation import PER_CYCLE, Conditions, Noise
 from stiction.system.slider import Slider
 from stiction.text.units import Angle, Force, PositiveLength, PositiveSpeed, in_words
@@ -93,7 +93,7 @@ def with_cycle(conditions: Conditions, slider: Slider) -> Conditions | None:
     rig = conditions.slider_of(slider)
     guess = rig.F_0 / (rig.k_x * abs(conditions.velocity))
     wanted = 2 * LEAST_CYCLES  # the first slips may be too small for cycles, and the last is cut
-    times = guess / PER_CYCLE * np.arange(LONGEST * wanted * PER_CYCLE)
+    times = guess / PER_CYCLE * np.arange(LONGEST_CYCLE * wanted * PER_CYCLE)
     motion = move(
         rig, times, Jitter(0.0, 0.0), np.random.default_rng(0), cycle=guess, cycles=wanted
     )

@@ -15,7 +15,7 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-LONGEST = 300.0  # s: then a process compiles beside the other, which may hang
+LONGEST_WAIT = 300.0  # s: then a process compiles beside the other, which may hang
 PAUSE = 0.02  # s between two looks
 
 _taken: dict[Path, int] = {}  # file of code, and byte of its lock
@@ -24,7 +24,7 @@ _locks: dict[Path, int] = {}  # folder, and descriptor of its lock file: closing
 
 def take_turn(code: Path) -> None:
     """Return once this process may compile the code for a file, or another has written the file."""
-    end = time.monotonic() + LONGEST
+    end = time.monotonic() + LONGEST_WAIT
     while not code.exists() and not _lock(code) and time.monotonic() < end:
         time.sleep(PAUSE)
 

@@ -37,7 +37,7 @@ FORMERLY = {
     "damped approach": kinds.SETTLING,
     "song": kinds.TRANSVERSE,
 }
-FEWEST = 1  # cycles needed for a kind, as for an analysis of one run
+FEWEST_CYCLES = 1  # cycles needed for a kind, as for an analysis of one run
 OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
 
 
@@ -119,7 +119,7 @@ def kind_of(
         Return for which share of each of some swings the mass rests or creeps, and sticks.
     """
     lasting = cycles_among(cycles, end)
-    if len(lasting.drop) >= FEWEST:
+    if len(lasting.drop) >= FEWEST_CYCLES:
         return by_shape(lasting, own, still, sticks)
     dying = die_out(cycles, end)
     kind = kinds.SETTLING if dying else by_course(found, start, end, drive)

@@ -41,7 +41,7 @@ def other(code):
 
 
 def test_another_process_waits_no_longer_than_it_must(code, other, monkeypatch):
-    monkeypatch.setattr(turn, "LONGEST", 0.2)
+    monkeypatch.setattr(turn, "LONGEST_WAIT", 0.2)
     start = time.monotonic()
     turn.take_turn(code)
     assert time.monotonic() - start >= 0.2
@@ -59,7 +59,7 @@ def test_the_turn_comes(code, other, how):
     else:
         other.kill()
         other.wait()
-    turn.take_turn(code)  # not after LONGEST
+    turn.take_turn(code)  # not after LONGEST_WAIT
     assert (code in turn._taken) == (how != "it writes the file")
 
 

@@ -18,7 +18,7 @@ CHANGED = 0.25  # logarithm of the ratio of two periods, or rates: a quarter mor
 SURE = 20.0
 # A cycle apart: times the median, and its distance from it over the span of the others, a tenth of
 # these left out at each end where there are many; of measured stick-slip the largest comes to 1.4
-FAR, BEYOND, FEWEST, MANY = 2.0, 5.0, 5, 10
+FAR, BEYOND, FEWEST_CYCLES, MANY = 2.0, 5.0, 5, 10
 RARE = 4  # one in so many at most
 
 
@@ -92,7 +92,7 @@ def cycles_apart(cycles: xr.Dataset) -> NDArray[np.bool_]:
     None are where the period changes: then each part has its own.
     """
     period, drop = cycles["period"].values, cycles["drop"].values
-    if len(period) < FEWEST or len(parts_of(period)) > 1:
+    if len(period) < FEWEST_CYCLES or len(parts_of(period)) > 1:
         return np.zeros(len(period), bool)
     return stand_apart(period) | stand_apart(drop)
 
@@ -102,7 +102,7 @@ def stand_apart(values: Floats) -> NDArray[np.bool_]:
 
     Of few values the others span all that is known.
     """
-    if len(values) < FEWEST:
+    if len(values) < FEWEST_CYCLES:
         return np.zeros(len(values), bool)
     middle = float(np.median(values))
     far = values >= FAR * middle

@@ -13,7 +13,7 @@ from stiction.arrays import Floats
 SHORT = 0.25  # of the record: a ringing that lasts no longer is no motion of its own
 BEFORE = 0.75  # of a period before its first peak
 LEFT, SLOWEST = 0.05, 0.95  # of its last swing at its end; a swing over the last one at most
-FEWEST = 3  # swings
+FEWEST_SWINGS = 3  # swings
 ELSEWHERE = 3.0  # times the period: two peaks farther apart, of which one is no ringing's
 
 
@@ -40,7 +40,7 @@ def ringing_of(time: Floats, table: CycleTable) -> Ringing | None:
     first = int(apart[apart < largest][-1]) + 1 if (apart < largest).any() else 0
     last = int(apart[apart >= largest][0]) if (apart >= largest).any() else len(peak) - 1
     size = table["drop"][first : last + 1]
-    if len(size) < FEWEST or order(size) > ORDERED:
+    if len(size) < FEWEST_SWINGS or order(size) > ORDERED:
         return None
     factor = min(float(size[-1] / size[0]) ** (1.0 / (len(size) - 1)), SLOWEST)
     begin = float(peak[first]) - BEFORE * period

@@ -28,7 +28,7 @@ from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
 from stiction.trajectory import Trajectory
 
-FEWEST = 3.5  # samples a cycle: below it is not known, nor what it is
+FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
 MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it
@@ -71,7 +71,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
     if not len(found.table) or per_cycle < MANY_SAMPLES:
         per_cycle = min(per_cycle, samples_per_period(record.force))
-    if per_cycle < FEWEST:
+    if per_cycle < FEWEST_PER_CYCLE:
         needed = ENOUGH / per_cycle * record.sample_rate
         return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
     if found.dying or _is_over(record, found):
