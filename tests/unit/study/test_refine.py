@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 import stiction as st
+from stiction.study.execution.refine import side
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.observed_run import REVERSAL
 
@@ -63,6 +64,26 @@ def test_it_goes_on_where_it_was_and_is_kept(found):
     assert (np.abs(finer["phi"] - changes["phi"]) <= changes["half_width"]).all()
     kept = xr.open_zarr(path, group="refined/phi/changes", consolidated=False).load()
     np.testing.assert_array_equal(kept["phi"], finer["phi"])
+
+
+def test_one_store_is_refined_for_several_kinds(found, tmp_path):
+    """Each set of runs stays, under the names of earlier versions where one is alone."""
+    study, path, changes = found
+    path = shutil.copytree(path, tmp_path / "a.zarr")
+    levels = {each.name for each in path.glob("refined/phi/*.zarr")}
+    assert levels == {f"{level}.zarr" for level in range(1, len(levels) + 1)}
+    for apart in (None, ["settling"], [*CALM]):
+        first = st.refine(study, path, "phi", "0.4 deg", apart=apart)
+        tallies = []
+        again = st.refine(study, path, "phi", "0.4 deg", apart=apart, progress=tallies.append)
+        assert not tallies
+        assert again.identical(first)
+        assert first.attrs.get("apart") == apart
+        below, above = (side(np.array(KINDS)[first[name]], apart) for name in ("below", "above"))
+        assert (below != above).all()
+    assert (np.abs(first["phi"] - changes["phi"]) <= first["half_width"]).all()
+    assert len([*path.glob("refined/phi/*.zarr")]) > len(levels)
+    assert st.check(path).ok
 
 
 def test_along_another_axis_with_one_zipped_to_it(tmp_path):

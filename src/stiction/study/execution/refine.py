@@ -7,6 +7,7 @@ halved at once, by a study inside the store, so that an interrupted refinement c
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,7 +25,7 @@ from stiction.study.plan.coordinates import number
 from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.kept import UNKNOWN, flag_attributes
 from stiction.study.store.seal import seal
-from stiction.study.store.store import errors_as_message, open_study
+from stiction.study.store.store import errors_as_message, group_at, open_study
 from stiction.study.variables.fast_regime import FORMERLY, KINDS
 from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
 from stiction.text.paths import canonical_path
@@ -135,8 +136,9 @@ def refine(
     Dataset
         The changes over ``point``: the value of every axis, for ``along`` the middle of the final
         interval; its ``half_width``; ``below`` and ``above``, the kinds on both sides, coded like
-        "regime" in the store. Attribute ``runs``: the total number of runs. The dataset is also
-        kept in the store, in the group ``refined/ALONG/changes``; `stiction map` draws it.
+        "regime" in the store. Attributes ``runs``: the total number of runs, and ``apart``, if
+        given. The dataset is also kept in the store, in the group ``refined/ALONG/changes``, in
+        place of an earlier one; `stiction map` draws it. Refinements with other kinds share runs.
 
     Raises
     ------
@@ -165,12 +167,28 @@ def refine(
             break
         middle = {name: half_way(found.low[name], found.high[name]) for name in found.low}
         part = samples(study, middle)
-        sweep(part, folder / f"{level}.zarr", engine=engine, progress=progress)
-        at_middle = kinds(open_study(folder / f"{level}.zarr").load())
+        store = _store_of(part, folder, level)
+        sweep(part, store, engine=engine, progress=progress)
+        at_middle = kinds(open_study(store).load())
         found, runs = halve(found, middle, at_middle, apart), runs + part.layout.runs
     made = table(study, found, along, runs)
+    made.attrs |= {} if apart is None else {"apart": apart}
     _keep(made, folder / CHANGES)
     return made
+
+
+def _store_of(part: Study, folder: Path, level: int) -> Path:
+    """Return the store of a level's runs: the first that has them, or is not there yet.
+
+    Intervals depend on the kinds that are compared: one level may have several sets of runs.
+    """
+    paths = (folder / f"{level}{f'-{n}' if n > 1 else ''}.zarr" for n in count(1))
+    wanted = part.to_json()
+    return next(
+        each
+        for each in paths
+        if not each.exists() or group_at(each, "r").attrs.get("description") == wanted
+    )
 
 
 def request(
