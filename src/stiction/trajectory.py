@@ -23,6 +23,7 @@ from stiction.result.table import (
     as_dataset,
     as_table,
     cf_attributes,
+    largest,
     stick_table,
 )
 from stiction.storage.files import NETCDF, placeable, whole
@@ -109,11 +110,10 @@ class Trajectory:
 
     def _facts(self) -> Table:
         """Return the numbers that one looks for first."""
-        force = self.samples["spring_x"]
-        peak = int(np.nanargmax(force)) if np.isfinite(force).any() else 0
+        at, peak = largest(self.samples["spring_x"])
         rows = [
-            ("largest k_x u_x", in_words(float(force[peak]), "N")),
-            ("at", in_words(float(self.samples["time"][peak]), "s")),
+            ("largest k_x u_x", in_words(peak, "N")),
+            ("at", in_words(float(self.samples["time"][at]), "s")),
             ("largest slip speed", in_words(float(np.nanmax(self.samples["slip_speed"])), "m/s")),
             ("stick intervals", str(self.statistics.stick_count)),
             ("time at rest", in_words(self.statistics.time_stuck, "s")),

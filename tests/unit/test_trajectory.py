@@ -5,8 +5,11 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.cli.commands.run import report_lines
+from stiction.explorer import motion
 from stiction.result.table import VARIABLES
 from stiction.simulation import automatic_times
+from stiction.text.units import in_words
 
 
 @pytest.fixture(scope="module")
@@ -229,3 +232,20 @@ def test_samples_far_from_zero_are_apart(slider):
     settings = st.Settings(duration=1e-9)
     late = st.Description(slider, st.Initial(time=1e6), settings)
     assert (np.diff(automatic_times(late)) > 0).all()
+
+
+@pytest.mark.parametrize("velocity", ["1 mm/s", "-1 mm/s"])
+def test_the_largest_force_is_that_of_either_direction(slider, velocity, tmp_path):
+    """In a notebook, in the explorer and on the command line."""
+    slider = slider.replace(drive=st.ConstantVelocity(velocity))
+    run = st.simulate(slider, "3 s", sample_rate="100 Hz")
+    at = np.abs(run.samples["spring_x"]).argmax()
+    force, time = (run.samples[name][at] for name in ("spring_x", "time"))
+    told = in_words(abs(force), "N")
+    page = run._repr_html_()
+    assert f"<td>largest k_x u_x</td><td>{told}</td>" in page
+    assert f"<td>at</td><td>{in_words(time, 's')}</td>" in page
+    assert f"k_x u_x: {told}, " in "\n".join(report_lines(run, tmp_path / "run.nc"))
+    solution, table = motion.simulate(run.description, run.samples["time"], lambda: None)
+    facts = motion.facts(run.description, solution, table, None)
+    assert [each["value"] for each in facts[:2]] == [abs(force), time]

@@ -15,7 +15,7 @@ from stiction.errors import STATUSES
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import ellipse
 from stiction.friction.law import limit_coefficient
-from stiction.result.table import ColumnTable, fastest_slip, sample_table
+from stiction.result.table import ColumnTable, fastest_slip, largest, sample_table
 from stiction.simulation import automatic_times, solve
 from stiction.solver.integrate import Solution
 from stiction.system.description import Description
@@ -210,15 +210,15 @@ def facts(
     reached, slider = table["time"], description.slider
     counted = np.full(len(reached), True) if times is None else np.isin(reached, times)
     counted[-1] = True  # where it ended
-    force, counts = table["spring_x"][counted], solution.counts
-    peak = int(np.nanargmax(force)) if np.isfinite(force).any() else 0
+    counts = solution.counts
+    at, peak = largest(table["spring_x"][counted])
     fastest, shown = fastest_slip({name: table[name][counted] for name in WAY})
     slow, fast = slider.natural_frequencies
     A = theory.damping_number_of(slider, nominal_velocity(slider.motion))
     duration = float(solution.times[-1] - solution.times[0]) or 1.0
     listed: list[tuple[str, float, str]] = [
-        ("largest k_x u_x", float(force[peak]), "N"),
-        ("  at", float(reached[counted][peak]), "s"),
+        ("largest k_x u_x", peak, "N"),
+        ("  at", float(reached[counted][at]), "s"),
         ("largest slip speed" if shown else AT_LEAST, fastest, "m/s"),
         ("u_x at the end", float(table["u_x"][-1]), "m"),
         ("u_y at the end", float(table["u_y"][-1]), "m"),

@@ -93,6 +93,16 @@ def as_table(data: xr.Dataset) -> ColumnTable:
     return ColumnTable(columns, data.attrs)
 
 
+def largest(force: np.ndarray) -> tuple[int, float]:
+    """Return where a force is largest in either direction, and its magnitude there.
+
+    >>> largest(np.array([float("nan"), 1.0, -2.0]))
+    (2, 2.0)
+    """
+    at = int(np.nanargmax(np.abs(force))) if np.isfinite(force).any() else 0
+    return at, float(abs(force[at]))
+
+
 def sample_table(
     description: Description,
     times: np.ndarray,

@@ -5,8 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
 from stiction.errors import argument
@@ -83,6 +81,7 @@ def compare_with_published(preset: str, result: Trajectory) -> None:
 def report_lines(result: Trajectory, output: Path) -> list[str]:
     """Return the lines of text about a written run."""
     from stiction.friction.law import implausible
+    from stiction.result.table import largest
     from stiction.text.units import in_words
 
     statistics = result.statistics
@@ -90,9 +89,8 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     if not result.status.ok:
         reached = float(result.samples["time"][-1])
         lines.append(f"ended early at t = {reached:.6g} s: {result.status.value}")
-    force = np.abs(result.samples["spring_x"])
-    at = int(np.argmax(force))
-    peak, load = float(force[at]), float(result.samples["normal_load"][at])
+    at, peak = largest(result.samples["spring_x"])
+    load = float(result.samples["normal_load"][at])
     then = "" if result.slider.load is None else " at that time"
     mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
     count = len(result.samples["time"])
