@@ -2,8 +2,8 @@
 
 A function asks no type of its arguments as long as it can work with them. When it fails, the
 annotations in its signature tell whether an argument is to blame. This costs a call that succeeds
-nothing, and an error of the function itself stays what it is. Only a number in place of a path is
-refused beforehand.
+nothing, and an error of the function itself stays what it is. Two things come beforehand: a number
+in place of a path is refused, and whole numbers are read, of whatever type they are.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from functools import wraps
 from inspect import Signature, isclass, signature, unwrap
 from numbers import Integral, Real
 from os import PathLike
+from pkgutil import resolve_name
 from typing import Any, TypeVar, cast, get_args
 
 from stiction.errors import DescriptionError, Fault, StictionError, echo
@@ -24,6 +25,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 ANYTHING = {"Any", "object", "Unpack", "Literal"}  # values of a Literal have messages of their own
 PLAIN: dict[str, Any] = {"float": Real, "int": Integral, "Path": PathLike, "None": type(None)}
 NO_PATH = int, bytes  # yet the system takes a number for a file that is open, and closes it
+FROM_ZERO = {"seed", "port"}  # other whole numbers count something: at least 1
 IN_WORDS = {
     "float": "a number",
     "int": "a whole number",
@@ -66,19 +68,29 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
     # what is no description is refused by its reader, with a remedy of its own
     texts = {each: str(hint) for each, hint in hints.items() if "Description" not in str(hint)}
     paths = {each for each, hint in texts.items() if "Path" in hint}
-    title = f"st{room.removeprefix('stiction')}.{name}"
+    counts = [each for each, hint in texts.items() if is_whole(hint) and each != "return"]
+    order = [*signature(function).parameters]
 
     @wraps(function)
     def public(*args: Any, **values: Any) -> Any:
+        if counts:
+            args = *map(read, order, args), *args[len(order) :]
+            values = {each: read(each, value) for each, value in values.items()}
         if paths and any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
-            refuse([each for each in faults(function, args, values, title) if each.path in paths])
+            refuse(each for each in faults(public, args, values) if each.path in paths)
         try:
             return function(*args, **values)
         except StictionError:
             raise
         except Exception:
-            refuse(faults(function, args, values, title))
+            refuse(faults(public, args, values))
             raise
+
+    def read(name: str, value: Any) -> Any:
+        try:
+            return read_whole(name, value) if name in counts else value
+        except ValueError as error:
+            raise DescriptionError.of(name, f"{error}{remedy(public)}") from None
 
     public.__module__, public.__qualname__ = room, name
     return _doors.setdefault(function, public)
@@ -89,23 +101,94 @@ def name_arguments(function: F) -> F:
     return cast(F, doorway(function, function.__module__, function.__name__))
 
 
-def refuse(found: list[Fault]) -> None:
+def is_whole(hint: str) -> bool:
+    """Return whether an annotation allows whole numbers only, perhaps beside what is no number."""
+    names = {name_of(each) for each in members(ast.parse(hint, mode="eval").body)}
+    return "int" in names and "float" not in names
+
+
+def read_whole(name: str, value: Any) -> Any:
+    """Return an argument that is a number as an integer; what is none, the function judges.
+
+    Raises
+    ------
+    ValueError
+        If the number is not whole, or too small.
+    """
+    if not isinstance(plain(value), Real):
+        return value
+    number, least = whole(value), 0 if name in FROM_ZERO else 1
+    if number < least:
+        raise ValueError(f"must be at least {least}, is {echo(number)}")
+    return number
+
+
+def plain(value: Any) -> Any:
+    """Return a number of NumPy as one of Python, and all else as it is."""
+    return value.item() if hasattr(value, "item") and getattr(value, "shape", None) == () else value
+
+
+def whole(value: object) -> int:
+    """Return a whole number as an integer, also one of NumPy, or a float.
+
+    >>> import numpy as np
+    >>> whole(np.int64(3)), whole(1e5)
+    (3, 100000)
+
+    Raises
+    ------
+    ValueError
+        If it is none; True is none.
+    """
+    value = plain(value)
+    if isinstance(value, float) and value.is_integer():
+        return int(value)
+    if isinstance(value, bool) or not isinstance(value, int):
+        raise ValueError(f"must be a whole number, is {echo(value)}")
+    return value
+
+
+def address(public: Callable[..., Any]) -> str | None:
+    """Return where a session finds a public function.
+
+    >>> import stiction as st
+    >>> address(st.protocols.end), address(st.presets.find), address(print)
+    ('st.protocols.end', 'st.presets.find', None)
+    """
+    _, *rooms = public.__module__.split(".")
+    name = public.__qualname__
+    for path in [f"{room}.{name}" for room in (*rooms[::-1], ".".join(rooms)) if room] or [name]:
+        try:
+            if resolve_name(f"stiction:{path}") is public:
+                return f"st.{path}"
+        except AttributeError:
+            continue
+    return None
+
+
+def remedy(public: Callable[..., Any]) -> str:
+    """Return where a message says that more is to be read."""
+    found = address(public)
+    return "" if found is None else f"; see help({found})"
+
+
+def refuse(faults: Iterable[Fault]) -> None:
     """Raise the faults, if there are any."""
-    if found:
+    if found := [*faults]:
         raise DescriptionError(found) from None
 
 
 def faults(
-    function: Callable[..., Any], args: tuple[Any, ...], values: Mapping[str, Any], title: str
+    public: Callable[..., Any], args: tuple[Any, ...], values: Mapping[str, Any]
 ) -> list[Fault]:
     """Return the arguments that are not of the type that the signature states."""
-    shape, scope = signature(function), vars(builtins) | unwrap(function).__globals__
+    shape, scope = signature(public), vars(builtins) | unwrap(public).__globals__
     try:
         given = shape.bind(*args, **values).arguments
     except TypeError:  # too many, or too few: Python's message says so
         return []
     return [
-        Fault(name, f"must be {types_in_words(hint)}, is {echo(value)}; see help({title})")
+        Fault(name, f"must be {types_in_words(hint)}, is {echo(value)}{remedy(public)}")
         for name, hint, value in pairs(shape, given)
         if not accepts(hint, value, scope)
     ]

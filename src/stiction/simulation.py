@@ -232,8 +232,6 @@ def solve(
         If it cannot be simulated.
     """
     _, initial, settings = description
-    if not isinstance(max_steps, int) or max_steps < 1:
-        raise DescriptionError.of("max_steps", f"must be at least 1, is {echo(max_steps)}")
     if settings.regularisation is not None and has_state(description.slider.law):
         message = "the law is smooth at zero slip by itself; leave regularisation out"
         raise DescriptionError.of("run.regularisation", message)

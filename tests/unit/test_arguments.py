@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import pickle
+import re
 import traceback
 from enum import EnumMeta
 from pkgutil import resolve_name
@@ -15,7 +16,8 @@ import pytest
 from tests.docs.test_reference import public_objects
 
 import stiction as st
-from stiction.arguments import doorway, is_list
+from stiction.arguments import FROM_ZERO, address, doorway, is_list
+from stiction.errors import echo
 
 mpl.use("Agg")
 NO_ONE_S = (b"12", object())  # nothing takes bytes
@@ -34,6 +36,7 @@ def is_called(name, each):
     return not kinds and name.partition(".")[0] not in MADE
 
 
+PAPER = st.presets.nakano_popov_2020()
 NAMES = public_objects().values()
 CALLED = {name: resolve_name(f"stiction:{name}") for name in sorted(NAMES)}
 CALLED = {name: each for name, each in CALLED.items() if is_called(name, each)}
@@ -71,6 +74,8 @@ def test_nonsense_is_refused_in_words(name, tmp_path, monkeypatch):
         told = "".join(traceback.format_exception(error))
         assert error is not None or not any(value is each for each in NO_ONE_S), value
         assert error is None or isinstance(error, st.StictionError) or is_arity(error), told
+        for found in re.findall(r"help\(st\.([^)]+)\)", told):
+            assert resolve_name(f"stiction:{found}") is CALLED[name]
     assert not [*tmp_path.iterdir()]
 
 
@@ -81,6 +86,9 @@ def test_the_registry_is_not_empty():
 @pytest.mark.parametrize(
     ("wrong", "words"),
     [
+        (lambda: st.simulate(PAPER, 1, max_steps=1.5), r"number, is 1.5; see help\(st.simulate\)"),
+        (lambda: st.Grid(1, 2, "many"), "Grid.count: must be a whole number, is 'many'"),
+        (lambda: st.protocols.reversal_loops(1, 1, loops="2"), r"help\(st.protocols.reversal_l"),
         (lambda: st.check(5), r"path: must be text or a path, is 5; see help\(st.check\)"),
         (lambda: st.read_record(5), r"path: must be text or a path, is 5; see help"),
         (lambda: st.Slider(5), r"Slider: its values have names, 5 has none; write Slider\(mass="),
@@ -98,6 +106,49 @@ def test_the_registry_is_not_empty():
 def test_the_message_names_the_rule_the_value_and_the_remedy(wrong, words):
     with pytest.raises(st.StictionError, match=words):
         wrong()
+
+
+FUNCTIONS = [each for each in CALLED.values() if isinstance(each, FunctionType)]
+
+
+def test_where_a_message_sends_its_reader_there_is_the_function():
+    found = {
+        each: resolve_name(str(address(each)).replace("st.", "stiction:", 1)) for each in FUNCTIONS
+    }
+    assert [each for each in FUNCTIONS if found[each] is not each] == []
+
+
+def whole_numbers():
+    """Yield each public function or class, and the name of an argument that is a whole number."""
+    for name, each in CALLED.items():
+        for argument in inspect.signature(each).parameters.values():
+            hint = argument.annotation
+            hint = getattr(hint, "__name__", hint)
+            if isinstance(hint, str) and re.search(r"\bint\b", hint):
+                yield pytest.param(each, argument, id=f"{name}-{argument.name}")
+
+
+@pytest.mark.parametrize(("public", "argument"), [*whole_numbers()])
+def test_a_whole_number_is_read_whatever_its_type(public, argument):
+    """The outcome is that of an integer, an error of the rest or none; others are named."""
+    shape = inspect.signature(public).parameters.values()
+    needed = [each.name for each in shape if each.default is each.empty and each != argument]
+    others = dict.fromkeys(needed, object())
+
+    def told(value):
+        try:
+            made = str(public(**others, **{argument.name: value}))
+        except st.StictionError as error:
+            made = str(error)
+        return re.sub("object at 0x[0-9a-f]+", "", made)
+
+    least = 0 if argument.name in FROM_ZERO else 1
+    good = told(4)
+    for value in (4.0, np.int64(4), np.uint8(4), np.float32(4.0), np.array(4)):
+        assert told(value) == good
+    for value in (4.5, True, np.True_, np.nan, np.inf):
+        assert f"{argument.name}: must be a whole number, is {echo(value)}" in told(value)
+    assert re.search(rf"{argument.name}: must .*[0-9], is {least - 1}", told(least - 1))
 
 
 def test_an_error_of_another_origin_stays_what_it_is():

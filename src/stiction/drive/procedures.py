@@ -109,8 +109,6 @@ def reversal_loops(velocity: Quantity, travel: Quantity, *, loops: int = 3) -> D
     """
     V = _positive("velocity", velocity, VELOCITY)
     leg = _positive("travel", travel, LENGTH) / V
-    if loops < 1:
-        raise _fault("loops", f"must be at least 1, is {echo(loops)}")
     turns = [Reversal(duration=leg)] * (2 * loops)
     return DriveProgram(velocity=V, program=[Constant(duration=0.5 * leg), *turns])
 

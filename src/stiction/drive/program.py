@@ -22,11 +22,11 @@ from stiction.drive.steady import ConstantLoad, ConstantVelocity, VaryingLoad, V
 from stiction.errors import DescriptionError
 from stiction.machine import shortage
 from stiction.text.samples import FrozenColumn
-from stiction.text.units import FORCE, VELOCITY, Velocity
+from stiction.text.units import FORCE, VELOCITY, Velocity, Whole
 from stiction.text.validation import Described
 
 Times = Any  # a float or an array
-Repeat = Annotated[int, Field(ge=1, le=100_000)]
+Repeat = Annotated[Whole, Field(ge=1, le=100_000)]
 AT_REST = 0.1  # of the largest speed between two rows
 TO_AND_FRO = 0.5  # of the way travelled
 ROW = 40.0  # bytes of memory for a recorded row, each time it is gone through

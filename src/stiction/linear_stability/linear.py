@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from stiction.arguments import whole
 from stiction.arrays import Complex, Floats
 from stiction.drive import drive_stretches, load_stretches
-from stiction.errors import DescriptionError, Fault, StictionError
+from stiction.errors import DescriptionError, Fault, StictionError, echo
 from stiction.friction import has_state, states
 from stiction.linear_stability.derivatives import (
     Response,
@@ -150,9 +151,15 @@ class Linearisation:
             Amplitude of the elongation rate, relative to the drive's speed; or of a logarithm of
             internal state, if that is larger: ageing slowly, it hardly moves the mass.
         mode : int, optional
-            The disturbed mode; by default the fastest growing.
+            The disturbed mode; by default the fastest growing, -1 for the fastest decaying.
         """
-        shape = self.shapes[:, mode]
+        try:
+            shape = self.shapes[:, whole(mode)]
+        except ValueError as error:
+            raise DescriptionError.of("mode", str(error)) from None
+        except IndexError:
+            message = f"must be below {self.shapes.shape[1]}, the number of modes, is {echo(mode)}"
+            raise DescriptionError.of("mode", message) from None
         speed = hypot(*self.slider.motion.rate(0.0))
         rates = np.abs(shape[2:4])
         shape = shape / np.exp(1j * np.angle(shape[2 + int(np.argmax(rates))]))

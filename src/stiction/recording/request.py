@@ -20,6 +20,7 @@ from stiction.text.units import (
     PositiveSpeed,
     Read,
     Stiffness,
+    Whole,
     fault,
     reader,
     to_si,
@@ -105,8 +106,8 @@ class ReadingOptions(Described):
     decimal: Literal["point", "comma"] | None = None
     separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
     wrap: Annotated[Read[float] | None, BeforeValidator(_wrap)] = None
-    block: Annotated[int, Field(ge=1)] | None = None
-    stroke: Annotated[int, Field(ge=1)] | None = None
+    block: Annotated[Whole, Field(ge=1)] | None = None
+    stroke: Annotated[Whole, Field(ge=1)] | None = None
 
     @property
     def columns(self) -> dict[str, str]:

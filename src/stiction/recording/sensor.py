@@ -14,7 +14,17 @@ from pydantic_core import PydanticCustomError
 
 from stiction.arrays import Floats
 from stiction.errors import Fault, ResultError, echo
-from stiction.text.units import FORCE, LENGTH, VELOCITY, Kind, Number, Rate, split_uncertain, to_si
+from stiction.text.units import (
+    FORCE,
+    LENGTH,
+    VELOCITY,
+    Kind,
+    Number,
+    Rate,
+    Whole,
+    split_uncertain,
+    to_si,
+)
 from stiction.text.validation import Described, faulty
 
 LEVELS = ("zero", "zero_uncertainty", "quantisation", "noise")  # in the unit of the channel
@@ -33,7 +43,7 @@ KINDS_OF_RATES = {
 }
 FASTEST = 0.4  # of the sample rate: a faster filter cannot be distinguished from none
 AtLeastZero = Annotated[Number, Field(ge=0)]
-Order = Annotated[int, Field(ge=1), Field(le=12)]
+Order = Annotated[Whole, Field(ge=1), Field(le=12)]
 
 
 class LowPass(NamedTuple):

@@ -30,6 +30,7 @@ from typing import (
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 from pydantic_core import PydanticCustomError
 
+from stiction.arguments import plain, whole
 from stiction.errors import echo
 from stiction.text.quantity_text import DIGITS, MEASURABLE, angle_text, suited_unit
 from stiction.text.unit_text import UnitError, factor, short
@@ -174,7 +175,7 @@ def bare(value: object) -> object:
     """Turn a NumPy number into a Python number and a pint quantity into text."""
     if hasattr(value, "magnitude") and hasattr(value, "units"):
         return f"{bare(value.magnitude)!r} {value.units}"
-    return value.item() if hasattr(value, "item") and getattr(value, "shape", None) == () else value
+    return plain(value)
 
 
 def _parse(text: str, kind: Kind) -> float:
@@ -308,6 +309,8 @@ Time = Annotated[Read[float], reader("a time", "s", "5 s")]
 Duration = Annotated[Read[float], reader("a time", "s", "5 s"), Field(gt=0)]
 Rate = Annotated[Read[float], reader("a frequency", "Hz", "10 kHz"), Field(gt=0)]
 SampleRate = Annotated[Read[float], reader("a frequency", "Hz", "10 kHz"), Field(ge=0)]
+# a count, or another whole number: 3, 3.0, one of NumPy, or text
+Whole = Annotated[int, BeforeValidator(lambda value: value if type(value) is str else whole(value))]
 
 
 def in_words(value: float, unit: str, digits: int = DIGITS) -> str:

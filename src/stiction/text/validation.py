@@ -226,6 +226,8 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
             return f"must not be above {limit['le']:g}, is {echo(value)}"
         case "less_than":
             return f"must be below {limit['lt']:g}, is {echo(value)}"
+        case "int_parsing":
+            return f"must be a whole number, is {echo(value)}"
         case "unit" | "value_error":
             return detail["msg"].removeprefix("Value error, ")
         case _:

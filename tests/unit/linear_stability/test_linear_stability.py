@@ -559,3 +559,12 @@ def test_the_report_names_the_critical_stiffness_of_rate_and_state(k, said):
     strengthens = slider.replace(friction=law._replace(b=0.005))
     assert "stable on any spring k_x" in str(st.stability(strengthens, over="phi"))
     assert "k_c" not in str(st.stability(st.presets.nakano_popov_2020(), over="phi"))
+
+
+def test_the_disturbed_mode_is_a_whole_number_of_one_that_there_is(slider):
+    linear = steady_sliding(slider)
+    second = linear.disturbed_start(mode=1)
+    assert linear.disturbed_start(mode=1.0) == second == linear.disturbed_start(mode=np.int32(1))
+    for mode, says in ((1.5, "a whole number, is 1.5"), (True, "is True"), (4, "below 4, the")):
+        with pytest.raises(st.DescriptionError, match=says):
+            linear.disturbed_start(mode=mode)

@@ -14,7 +14,7 @@ from stiction.inference.jitter import Jitter, move
 from stiction.inference.library import LONGEST_CYCLE
 from stiction.inference.observation import PER_CYCLE, Conditions, Noise
 from stiction.system.slider import Slider
-from stiction.text.units import Angle, Force, PositiveLength, PositiveSpeed, in_words
+from stiction.text.units import Angle, Force, PositiveLength, PositiveSpeed, Whole, in_words
 from stiction.text.validation import Described
 
 ANGLES = ("2 deg", "5 deg")
@@ -45,7 +45,7 @@ class Wanted(Described):
     loads: tuple[Force, ...] | None = None
     noise: Force | None = None
     position_noise: PositiveLength | None = None
-    simulations: Annotated[int, Field(ge=LEAST)] = SIMULATIONS
+    simulations: Annotated[Whole, Field(ge=LEAST)] = SIMULATIONS
 
 
 class Further(NamedTuple):

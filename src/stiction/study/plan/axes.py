@@ -12,7 +12,7 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from stiction.arguments import is_list
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.text.units import Read, unread
+from stiction.text.units import Read, Whole, unread
 from stiction.text.validation import Described, unknown_name
 
 MOST = 1_000_000_000  # values of an axis
@@ -30,7 +30,7 @@ def _list(value: Any) -> Any:
 # the parameter of the axis determines the unit
 Quantity = Annotated[Any, AfterValidator(unread)]
 Quantities = Annotated[Read[tuple[Quantity, ...]], BeforeValidator(_list)]
-Count = Annotated[int, Field(ge=1, le=MOST)]
+Count = Annotated[Whole, Field(ge=1, le=MOST)]
 Spacing = Literal["linear", "log"]
 
 

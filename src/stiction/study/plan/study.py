@@ -33,6 +33,7 @@ from stiction.system.description import Description
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.toml import folder_of, read_json, read_toml
+from stiction.text.units import Whole
 from stiction.text.validation import Described, faulty
 
 
@@ -75,8 +76,8 @@ class Study(Described):
     axes: Annotated[Any, BeforeValidator(axes_of)]
     measures: Annotated[tuple[str, ...], BeforeValidator(measures_of)] = DEFAULT
     traces: Annotated[tuple[str, ...], BeforeValidator(traces_of)] = ()
-    trace_samples: Annotated[int, Field(ge=2, le=100_000)] = 256
-    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    trace_samples: Annotated[Whole, Field(ge=2, le=100_000)] = 256
+    seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 0
 
     @model_validator(mode="after")
     def _can_be_laid_out(self) -> Self:
