@@ -98,7 +98,7 @@ def _segment(
                     f"{path}: line {row + 1}, column {column + 1}: {cell[:40]!r} is not a number "
                     f"with a decimal {'comma' if dialect.decimal == ',' else 'point'}"
                 )
-            numbers[each, column] = float(cell.replace(dialect.decimal, "."))
+            numbers[each, column] = float(dialect.as_python(cell))
     units, steps = header.get("Y_Unit_Label", []), header.get("Delta_X", [])
     starts, samples = header.get("X0", []), header.get("Samples", [])
     columns, channel = [], 0
@@ -138,8 +138,7 @@ def _at(cells: Sequence[str], place: int) -> str:
 
 
 def _number(cell: str, dialect: Dialect) -> float:
-    text = cell.replace(dialect.decimal, ".")
     try:
-        return float(text)
+        return float(dialect.as_python(cell))
     except ValueError:
         return float("nan")

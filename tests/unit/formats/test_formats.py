@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 
 import h5py
 import numpy as np
@@ -218,6 +219,18 @@ def test_labview_with_times_for_each_channel(tmp_path):
     record = st.read_record(tmp_path / "a.lvm")
     assert np.allclose(record.force, 1e-3 * FORCE, rtol=1e-12)
     assert np.allclose(record.drive_position[1:], 2e-3 * TIME[1:], rtol=1e-9)
+
+
+def test_labview_with_the_minus_of_a_typesetter(tmp_path):
+    names = ("X_Value", "Kraft", "drive position", "Comment")
+    rows = [(f"{t}", f"{-f:.4f}", f"{-2 * t}") for t, f in zip(TIME, FORCE, strict=True)]
+    text = lvm("One", [(1, names, rows, 50)]).replace("1,0E-3", "-1,0E-3")
+    for name, each in (("a.lvm", text), ("b.lvm", re.sub(r"(?<!E)-", "−", text))):
+        (tmp_path / name).write_text(each, "utf-8")
+    plain, typeset = (st.read_record(tmp_path / name) for name in ("a.lvm", "b.lvm"))
+    assert (plain.force < 0.0).any()
+    for name in ("time", "force", "drive_position"):
+        assert np.array_equal(getattr(typeset, name), getattr(plain, name))
 
 
 def test_labview_with_a_wrong_cell(tmp_path):

@@ -145,6 +145,12 @@ def test_files_of_many_kinds(tmp_path, text, columns):
     assert made.file == "stage.csv"
 
 
+def test_a_typeset_minus_is_one(tmp_path):
+    text = "\n".join(f"{t:.6f},−{v:.9f}" for t, v in zip(T, V, strict=True))
+    made = st.protocols.read_recorded(file_of(tmp_path, text), time="1 [s]", velocity="2 [m/s]")
+    assert made.velocity.values == pytest.approx(-np.abs(V), abs=1e-9)
+
+
 def test_a_file_of_a_load(tmp_path):
     path = file_of(tmp_path, "time [s],load [kN]\n" + rows(","))
     made = st.protocols.read_recorded(path, scale=2.0)
