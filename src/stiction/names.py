@@ -19,6 +19,7 @@ from types import FunctionType
 from typing import Any
 
 from stiction.arguments import doorway
+from stiction.errors import StictionError
 
 
 @cache
@@ -63,6 +64,43 @@ def public(
         return sorted([*public_names(room), *own])
 
     return old_names(room, formerly or {}, find), names
+
+
+def refuse_second(what: str, name: str, earlier: Any, later: Any) -> None:
+    """Refuse another class or function under a name: who uses the name would get the wrong one.
+
+    The same one again is not another, as where its module is loaded anew.
+
+    Raises
+    ------
+    StictionError
+        With the places of both.
+    """
+    first, second = (f"{each.__module__}.{each.__qualname__}" for each in (earlier, later))
+    if first != second:
+        raise StictionError(f"the {what} {name!r} is {first}; give {second} another name")
+
+
+def entry(room: str, name: str, attribute: str | None, registry: str) -> Any:
+    """Return the file of a room that a line of a registry names, or an attribute of it.
+
+    Raises
+    ------
+    StictionError
+        If there is none.
+    """
+    path = f"{room}.{name}"
+    try:
+        module = import_module(path)
+        return module if attribute is None else getattr(module, attribute)
+    except ModuleNotFoundError as error:
+        if error.name is None or not path.startswith(error.name):
+            raise  # what the file imports is missing
+        lacks = "there is no such file"
+    except AttributeError:
+        lacks = f"it has no function {attribute}"
+    file = f"{path.replace('.', '/')}.py"
+    raise StictionError(f"{registry} names {name!r}, {file}: {lacks}; correct the line, or add it")
 
 
 def draw(figure: str, *what: Any) -> Any:

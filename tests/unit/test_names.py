@@ -7,7 +7,11 @@ from pkgutil import iter_modules
 import pytest
 
 import stiction as st
+from stiction.analysis import parts
+from stiction.cli import BESIDE, function_of
+from stiction.friction.registry import LAWS, register
 from stiction.names import public_names, session_name
+from stiction.presets.preset import preset
 
 ROOMS = [
     "stiction",
@@ -75,3 +79,36 @@ def test_a_class_is_spelled_as_a_session_writes_it():
     assert session_name(Coulomb) == "Coulomb"
     Coulomb.__module__ = "stiction.text.validation"
     assert session_name(Coulomb) == "Coulomb"
+
+
+def test_a_name_in_a_registry_is_that_of_one_thing():
+    """Who described an apparatus with 'coulomb' would have got another law without a word."""
+    own = LAWS["coulomb"]
+    other = type("Other", (own,), {"__module__": "mine"})
+    message = r"the law 'coulomb' is stiction.*\.Coulomb; give mine.Other another name"
+    with pytest.raises(st.StictionError, match=message):
+        register("coulomb")(other)
+    assert LAWS["coulomb"] is own
+    assert register("coulomb")(own) is own  # its module, loaded anew
+
+    def leine_belt():
+        """Another one."""
+
+    fields = dict.fromkeys(("shows", "reference", "doi", "grade", "published"), "")
+    with pytest.raises(st.StictionError, match="the preset 'leine-belt' is stiction"):
+        preset(print, **fields)(leine_belt)
+    assert st.presets.find("leine-belt").make.__module__ != __name__
+
+
+def test_a_line_that_names_no_file_is_named_where_it_is_used(monkeypatch):
+    """One wrong line does not disable the command line."""
+    absent = function_of("nonsense")
+    message = r"COMMANDS names 'nonsense', stiction/cli/commands/nonsense.py: there is no such file"
+    with pytest.raises(st.StictionError, match=message):
+        absent()
+    monkeypatch.setitem(BESIDE, "nonsense", "run")
+    with pytest.raises(st.StictionError, match=r"commands/run.py: it has no function nonsense"):
+        function_of("nonsense")()
+    monkeypatch.setattr(parts, "PARTS", ("motion", "nonsense"))
+    with pytest.raises(st.StictionError, match=r"PARTS names 'nonsense'.*; correct the line, or"):
+        [*parts.functions("section")]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Sequence
-from importlib import import_module
+from collections.abc import Callable, Sequence
 from keyword import iskeyword
 from traceback import extract_tb
 from types import ModuleType
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import cyclopts
 from rich.console import Console
@@ -24,6 +23,7 @@ from stiction.errors import (
     visible,
     without_middle,
 )
+from stiction.names import entry
 
 app = cyclopts.App(
     name="stiction",
@@ -67,10 +67,26 @@ COMMANDS = (
 BESIDE = {"presets": "init", "import": "analyse"}
 BESIDE |= {name: f"inference.{name}" for name in ("fit", "design")}
 BESIDE |= {name: f"live.{name}" for name in ("explore", "animate", "listen")}
+
+
+def function_of(name: str) -> Callable[..., Any]:
+    """Return the function of a command; one that is not there fails when it is called."""
+    home, function = BESIDE.get(name, name), f"{name}_" if iskeyword(name) else name
+    try:
+        found: Callable[..., Any] = entry("stiction.cli.commands", home, function, "COMMANDS")
+    except StictionError as error:
+        reason = error
+
+        def absent() -> NoReturn:
+            """Say which line is wrong."""
+            raise reason
+
+        return absent
+    return found
+
+
 for _name in COMMANDS:  # light modules, which import heavy ones when called
-    _file = BESIDE.get(_name, _name)
-    _module = import_module(f"stiction.cli.commands.{_file}")
-    app.command(getattr(_module, f"{_name}_" if iskeyword(_name) else _name), name=_name)
+    app.command(function_of(_name), name=_name)
 app.register_install_completion_command(
     help="Let the shell (bash, zsh, fish or PowerShell) complete commands and options."
 )

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
+from stiction.names import refuse_second
+
 Kind = TypeVar("Kind", bound=type[Any])
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -14,9 +16,10 @@ METHODS: list[Any] = []  # functions that call a law's method of their name
 
 
 def register(name: str) -> Callable[[Kind], Kind]:
-    """Class decorator: descriptions know the law by this name."""
+    """Class decorator: descriptions know the law by this name, which no other law has."""
 
     def register(kind: Kind) -> Kind:
+        refuse_second("law", name, LAWS.get(name, kind), kind)
         LAWS[name] = kind
         return kind
 

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from stiction.arguments import name_arguments
 from stiction.errors import DescriptionError
+from stiction.names import refuse_second
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.validation import unknown_name
@@ -160,7 +161,9 @@ def preset(measure: Measure, **fields: Any) -> Callable[[Make], Make]:
 
     def register(make: Make) -> Make:
         name = make.__name__.replace("_", "-")
-        PRESETS[name] = Preset(name=name, make=make, measure=measure, **fields)
+        made = Preset(name=name, make=make, measure=measure, **fields)
+        refuse_second("preset", name, PRESETS.get(name, made).make, make)
+        PRESETS[name] = made
         return make
 
     return register

@@ -7,8 +7,9 @@ to it (or raises the reason why not), ``section`` tells it, ``tables`` and ``num
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from importlib import import_module
 from typing import TYPE_CHECKING, Any
+
+from stiction.names import entry
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
@@ -28,6 +29,6 @@ PARTS = (
 def functions(name: str) -> Iterator[tuple[str, Callable[[Analysis], Any]]]:
     """Return each part that has a function of this name, and the function."""
     for part in PARTS:
-        function = getattr(import_module(f"{__name__}.{part}"), name, None)
+        function = getattr(entry(__name__, part, None, "PARTS"), name, None)
         if function is not None:
             yield part, function
