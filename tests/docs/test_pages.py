@@ -104,7 +104,7 @@ def test_what_a_page_says_works(page, tmp_path, monkeypatch, capsys):
 
 def test_blocks_have_one_way_to_be_marked():
     kinds = {(kind, page.name) for page in WITH_BLOCKS for _, kind, _ in blocks_of(page)}
-    assert {kind for kind, _ in kinds} <= {"sh", "python", "toml", "text", "bibtex"}, kinds
+    assert {kind for kind, _ in kinds} <= {"sh", "python", "toml", "text", "bibtex", "md"}, kinds
     marks = sum(len(re.findall("^ *<!-- not run", page.read_text("utf-8"), re.M)) for page in PAGES)
     assert marks == sum(bool(why) for page in PAGES for why, _, _ in blocks_of(page))
 

@@ -46,10 +46,18 @@ def public_objects() -> dict[int, str]:
     return {id(each): name for name, each in found.items() if callable(each)}
 
 
+def page_of(name: str) -> str:
+    """Return a public name, and the page that should list it."""
+    room, _, short = name.rpartition(".")
+    return f"docs/reference/python/{room or 'index'}.md {short}"
+
+
 def test_the_reference_lists_each_public_name_once():
     names = public_objects()
     assert len(names) > 200
-    assert sorted(name for key, name in names.items() if key not in map(id, FOUND.values())) == []
+    there = {id(each) for each in FOUND.values()}
+    lacking = sorted(name for key, name in names.items() if key not in there)
+    assert not lacking, f"these pages lack a line: {', '.join(map(page_of, lacking))}"
     assert len({id(each) for each in FOUND.values()}) == len(LISTED)
     assert sorted(name for name, each in FOUND.items() if id(each) not in names) == []
 

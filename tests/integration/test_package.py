@@ -101,9 +101,11 @@ def test_the_glossary_explains_every_public_class_part_of_an_analysis_and_kind_o
     rooms = (st, st.analysis, st.laws, st.linear_stability, st.protocols, st.results)
     public = {each: getattr(room, each) for room in rooms for each in dir(room)}
     classes = {each for each, value in public.items() if isinstance(value, type)}
-    assert sorted((classes | {*st.analysis.__all__}) - IN_CODE) == []
+    lacking = sorted((classes | {*st.analysis.__all__}) - IN_CODE)
+    assert not lacking, f"docs/glossary.md lacks {', '.join(lacking)}"
     names = {value for name, value in vars(kinds).items() if name.isupper() and type(value) is str}
-    assert sorted(each for each in names if f"\n| {each} |" not in GLOSSARY) == []
+    lacking = sorted(each for each in names if f"\n| {each} |" not in GLOSSARY)
+    assert not lacking, f"docs/glossary.md lacks rows of {', '.join(lacking)}"
 
 
 def test_names_in_the_glossary_are_names_in_the_code():

@@ -18,7 +18,7 @@ from tests.waiting import PATIENCE
 
 import stiction as st
 from stiction.cli import main
-from stiction.cli.commands.sweep import engine
+from stiction.cli.commands.studies.sweep import engine
 from stiction.cli.tables import print_sections
 from stiction.errors import StictionError
 from stiction.study.execution.engines import Processes

@@ -66,6 +66,7 @@ COMMANDS = (
 # commands in the file of another, or in a room
 BESIDE = {"presets": "init", "import": "analyse"}
 BESIDE |= {name: f"inference.{name}" for name in ("fit", "design")}
+BESIDE |= {name: f"studies.{name}" for name in ("sweep", "map")}
 BESIDE |= {name: f"live.{name}" for name in ("explore", "animate", "listen")}
 
 
