@@ -23,7 +23,7 @@ from stiction.linear_stability import steady_sliding
 from stiction.names import draw
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
-from stiction.text.units import Quantity, with_error
+from stiction.text.units import Quantities, with_error
 
 Kind = Literal["soft", "hard", "not determined", "none"]
 
@@ -126,7 +126,7 @@ class OnsetEstimate(NamedTuple):
 def find_onset(
     slider: Slider,
     path: str,
-    values: Sequence[Quantity],
+    values: Quantities,
     *,
     most_blocks: int = 40,
     rtol: float = 1e-6,

@@ -13,6 +13,7 @@ from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import rate_spectrogram
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
+from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name
@@ -101,9 +102,9 @@ def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
     rate = (len(times) - 1) / span if span > 0.0 else 0.0
     if rate < 2.0 * HIGHEST * natural or span < width:
         raise ResultError(
-            f"the transverse oscillation has {natural:.4g} Hz: sample the run at "
-            f"{5 * natural:.4g} Hz or more and for {width:.3g} s at least; it has "
-            f"{rate:.4g} Hz and {span:.3g} s"
+            f"the transverse oscillation has {in_words(natural, 'Hz')}: sample the run at "
+            f"{in_words(5.0 * natural, 'Hz')} or more and for {in_words(width, 's')} at least; it "
+            f"is sampled at {in_words(rate, 'Hz')} for {in_words(span, 's')}"
         )
     return rate_spectrogram(run, "y", width=width, steps=STEPS)
 

@@ -10,18 +10,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from stiction.arguments import is_list
 from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
 from stiction.errors import DescriptionError, echo
-from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantity, to_si
+from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantities, Quantity, to_si
 
 
 def velocity_steps(
-    velocities: Sequence[Quantity],
+    velocities: Quantities,
     *,
     duration: Quantity | None = None,
     distance: Quantity | None = None,
@@ -59,9 +57,7 @@ def velocity_steps(
     return DriveProgram(velocity=first[0], program=[Constant(duration=first[1]), *steps])
 
 
-def slide_hold_slide(
-    velocity: Quantity, holds: Sequence[Quantity], *, slide: Quantity
-) -> DriveProgram:
+def slide_hold_slide(velocity: Quantity, holds: Quantities, *, slide: Quantity) -> DriveProgram:
     """Return the program of slide-hold-slide: sliding, a hold, sliding, a longer hold, ...
 
     Parameters
@@ -113,9 +109,7 @@ def reversal_loops(velocity: Quantity, travel: Quantity, *, loops: int = 3) -> D
     return DriveProgram(velocity=V, program=[Constant(duration=0.5 * leg), *turns])
 
 
-def load_ramp(
-    levels: Sequence[Quantity], *, ramp: Quantity, hold: Quantity | None = None
-) -> LoadProgram:
+def load_ramp(levels: Quantities, *, ramp: Quantity, hold: Quantity | None = None) -> LoadProgram:
     """Return the program of a load ramp: from the slider's load to each level in turn.
 
     Parameters
@@ -166,13 +160,13 @@ def _end(program: DriveProgram | LoadProgram) -> float | None:
     return None if not times or None in times else program.repeat * float(sum(times))
 
 
-def _at_least_one(path: str, values: Sequence[Quantity]) -> Sequence[Quantity]:
+def _at_least_one(path: str, values: Quantities) -> Quantities:
     if not is_list(values) or not len(values):
         raise _fault(path, f"{echo(values)} must be a list of at least one value")
     return values
 
 
-def _read_all(path: str, values: Sequence[Quantity], kind: Kind) -> list[float]:
+def _read_all(path: str, values: Quantities, kind: Kind) -> list[float]:
     return [
         _read(f"{path}.{i}", each, kind) for i, each in enumerate(_at_least_one(path, values), 1)
     ]

@@ -29,7 +29,8 @@ from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.text.quantity_text import metric_prefix
-from stiction.text.units import Quantity, in_words
+from stiction.text.units import Duration, Quantity, in_words
+from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory, load
 
 SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
@@ -81,11 +82,17 @@ def filmable(path: str | Path) -> Path:
     return placeable(path, [f".{kind}" for kind in KINDS])
 
 
+class Screening(Described):
+    """How long a film lasts, s."""
+
+    length: Duration
+
+
 def animate(
     run: Trajectory | str | Path,
     *,
     window: Sequence[Quantity] | None = None,
-    length: float = LENGTH,
+    length: Quantity = LENGTH,
     at: Quantity | None = None,
     kind: str = "mp4",
     trust: bool = False,
@@ -99,7 +106,7 @@ def animate(
         A run, or its file; it is solved again, with a sample for each frame.
     window : tuple of float or str, optional
         Start and end in the run, s; all of it by default.
-    length : float, optional
+    length : float or str, optional
         Of the film, s: how slowly the window passes.
     at : float or str, optional
         The time, s, whose surroundings are shown under the microscope: a few periods of the fast
@@ -131,16 +138,17 @@ def animate(
     'film.mp4'
     """
     found = run if isinstance(run, Trajectory) else load(run, trust=trust)
-    if not 1.0 / RATE <= length <= LONGEST_FILM:
+    lasts = read_arguments(Screening, length=length).length
+    if not 1.0 / RATE <= lasts <= LONGEST_FILM:
         raise ResultError(
-            f"length must lie between {1 / RATE:g} s and {LONGEST_FILM:g} s, is {length:g}"
+            f"length must lie between {1 / RATE:g} s and {LONGEST_FILM:g} s, is {lasts:g} s"
         )
     if kind not in KINDS:
         raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {echo(kind)}")
     start, end = window_of(found.description, window)
     middle = None if at is None else time_in(found.description, at)
-    times = np.linspace(start, end, ceil(length * RATE))
-    frames = draw(found.description, times, middle, length)
+    times = np.linspace(start, end, ceil(lasts * RATE))
+    frames = draw(found.description, times, middle, lasts)
     return Film(encode(_count(frames, len(times), progress), RATE, kind), kind)
 
 

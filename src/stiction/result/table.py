@@ -59,7 +59,7 @@ class Column(NamedTuple):
     attributes: Mapping[str, Any]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ColumnTable:
     """Columns by name, and attributes of the whole.
 
@@ -73,6 +73,11 @@ class ColumnTable:
 
     columns: Mapping[str, Column]
     attributes: Mapping[str, Any]
+
+    def __repr__(self) -> str:
+        """Return the names of the columns."""
+        sizes = {len(each.values) for each in self.columns.values() if each.values.ndim}
+        return f"<{' and '.join(map(str, sorted(sizes)))} rows of {', '.join(self.columns)}>"
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Return the values of a column."""

@@ -14,6 +14,7 @@ BARE = ("", "1", "%", "1/s", "1/s²", "deg")  # units that take no prefix
 DIGITS = 4  # of a number in a sentence
 ALL = 1e-6  # a share that is less is none, and one that lacks less is the whole
 MEASURABLE = 1e-12  # m, a hundredth of an atom: no instrument follows a mass so closely
+YEAR = 31557600.0  # s: 365.25 days, as "yr" is read
 PREFIXES = {3 * power: "u" if letter == "µ" else letter for power, letter in SI.items()}
 # unit: the name that takes the prefix, and the powers of ten that are used
 SMALL, BOTH = (0, -3, -6, -9), (9, 6, 3, 0, -3, -6, -9)
@@ -76,9 +77,13 @@ def suited_unit(value: float, unit: str, digits: int = DIGITS) -> tuple[float, s
     --------
     >>> suited_unit(0.0123, "kg"), suited_unit(8e3, "kg"), suited_unit(0.5, "1")
     ((0.001, 'g'), (1000.0, 't'), (1.0, ''))
+    >>> suited_unit(1e6, "s"), suited_unit(1e9, "s")
+    ((1.0, 's'), (31557600.0, 'yr'))
     """
     if unit == "rad":
         return pi / 180.0, "deg"
+    if unit == "s" and abs(value) >= YEAR:
+        return YEAR, "yr"
     power = thousands(1e3 * value if unit == "kg" else value, unit, digits)
     if unit == "kg" and value != 0.0:
         name = f"{SI[power]}g" if power < 2 else f"{SI[power - 2]}t"

@@ -8,7 +8,7 @@ does not say whether it is in degrees or radians.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, lru_cache, partial
 from math import floor, inf, isfinite, isinf, isnan, log10, radians
@@ -58,6 +58,12 @@ class PintQuantity(Protocol):
 
 # what a public function takes: a number in SI, or with its unit
 Quantity = float | str | PintQuantity
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    Quantities: TypeAlias = Sequence[Quantity] | NDArray[Any]
+else:  # NumPy takes its time
+    Quantities = Sequence[Quantity]
 
 # A field that is read from something else, such as a float from text. A type checker knows one type
 # for what a constructor takes and for the field: with Any beside it, text is taken, a float read.

@@ -203,7 +203,7 @@ def test_both_commands(run, tmp_path, capsys):
     path = run.save(tmp_path / "run.nc")
     for arguments in (
         ("listen", path, "-o", tmp_path / "a.wav", "--window", "10 ms", "40 ms", "--speed", "0.1"),
-        ("animate", path, "-o", tmp_path / "a.gif", "--length", "0.1"),
+        ("animate", path, "-o", tmp_path / "a.gif", "--length", "0.1s"),
     ):
         with pytest.raises(SystemExit) as end:
             main([str(each) for each in arguments])

@@ -3,7 +3,7 @@
 import { Form, element } from "./form.js";
 import { Link } from "./link.js";
 import { Microscope, spanText } from "./microscope.js";
-import { Player, SPEEDS } from "./player.js";
+import { Player, SPEEDS, speedText } from "./player.js";
 import { clock, quantity } from "./quantity.js";
 import { Scene } from "./scene.js";
 import { Series } from "./series.js";
@@ -56,7 +56,7 @@ function begin(answer) {
   data.study = answer.study ? { ...answer.study, arrays: answer.arrays } : null;
   data.origin = answer.origin;
   for (const { name, shows } of answer.presets) $("preset").append(element("option", { value: name, textContent: name, title: shows }));
-  for (const slow of SPEEDS) $("speed").append(element("option", { value: slow, textContent: slow === 1 ? "real time" : `1 : ${slow.toLocaleString("en")}` }));
+  for (const slow of SPEEDS) $("speed").append(element("option", { value: slow, textContent: speedText(slow) }));
   const linked = decodeState(location.hash);
   state = new State(answer.tables, changed);
   if (linked?.tables) state.tables = linked.tables;

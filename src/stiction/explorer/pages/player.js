@@ -1,6 +1,13 @@
 // Time: it plays, stands, is moved by hand, and follows the sound where that is heard.
 
-export const SPEEDS = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000];
+// Times as slow as the run: holds of an hour, and years on a fault, pass faster than they last.
+export const SPEEDS = [1e-8, 1e-7, 1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.1, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000, 10000, 20000, 50000, 100000];
+
+export function speedText(slow) {
+  if (slow === 1) return "real time";
+  const ratio = Math.round(slow < 1 ? 1 / slow : slow).toLocaleString("en");
+  return slow < 1 ? `${ratio} : 1` : `1 : ${ratio}`;
+}
 
 export class Player {
   constructor(changed) {

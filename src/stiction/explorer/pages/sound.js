@@ -21,7 +21,7 @@ export class Sound {
 
   play(t, slow) {
     this.stop();
-    if (!this.on || !this.buffer || t < this.start || t >= this.start + this.buffer.duration) return;
+    if (!this.on || !this.buffer || slow < 1 || t < this.start || t >= this.start + this.buffer.duration) return;
     this.context.resume();
     this.source = this.context.createBufferSource();
     this.source.buffer = this.buffer;

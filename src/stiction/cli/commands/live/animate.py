@@ -14,7 +14,7 @@ def animate(
     *,
     output: Output,
     window: Window = None,
-    length: float = 10.0,
+    length: float | str = 10.0,
     at: str | None = None,
     trust: Trust = False,
 ) -> None:
@@ -25,7 +25,7 @@ def animate(
 
         stiction animate my.nc -o lecture.mp4
 
-        stiction animate my.nc -o slip.mp4 --window 1.9s 2.2s --length 15
+        stiction animate my.nc -o slip.mp4 --window 1.9s 2.2s --length 15s
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def animate(
     window
         Start and end in the run; all of it by default. Example: --window 1.9s 2.2s.
     length
-        Of the film, s: it decides how slowly the window passes. Example: --length 15.
+        Of the film, s: it decides how slowly the window passes. Example: --length 15s.
     at
         The time whose surroundings are shown under the microscope: a few periods of the fast
         oscillation; by default a third into the window. Example: --at 2.05s.
