@@ -474,7 +474,7 @@ def critical_stiffness(
     for motion along the spring: Rice & Ruina, J. Appl. Mech. 50 (1983), 343. It holds for ageing
     and slip law; per unit area W is the normal stress, m the mass per area, and k_c in Pa/m. It is
     negative where friction strengthens, a > b: then steady sliding is stable on any spring. With a
-    misalignment, or a spring across, see `stiction.stability(slider, over="k_x")`.
+    misalignment, or a spring across, see ``st.stability(slider, over="k_x")``.
 
     Parameters
     ----------
