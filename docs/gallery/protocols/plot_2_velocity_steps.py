@@ -2,8 +2,9 @@
 Velocity steps: a, b and D_c
 ============================
 
-Each step of the drive gives a jump of a ln(V₂/V₁), and an evolution over the distance D_c. The fit
-finds the parameters that the law was given.
+Each step of the drive gives a jump of a ln(V₂/V₁), and an evolution over the distance D_c, both
+rounded by the rig's spring. The fit is that of law and spring together: it finds the parameters
+that the law was given.
 """
 
 import stiction as st

@@ -45,7 +45,7 @@ def plot_velocity_steps(found: VelocitySteps, ax: Axes | None = None) -> Axes:
             ax.set_xlim(0.0, 1e6 * far)
         ax.set_xlabel("slip since the step (µm)")
         ax.set_ylabel(r"friction $\mu$ (1)")
-        ax.legend(loc="best", title="points: data; lines: fit")
+        ax.legend(loc="best", title=f"points: data; lines: {found.steps[0].law} law")
     return ax
 
 

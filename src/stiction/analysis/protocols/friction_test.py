@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf, isclose, isnan, nan
+from math import inf, isclose, isnan, nan, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.protocols.settling import RESTS, SETTLED, has_settled, line
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices
 from stiction.drive import (
     ConstantLoad,
@@ -21,11 +22,15 @@ from stiction.drive import (
     load_stretches,
 )
 from stiction.errors import ResultError
+from stiction.friction import Law
+from stiction.recording.noise import ORDER, white_noise
+from stiction.system.tensors import damping_tensor
 from stiction.trajectory import Trajectory
 
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
+HIDDEN = 1 / 3  # of a step of rounding: noise that does not average it away
 LISTED = 3  # times that a sentence lists
 
 
@@ -74,7 +79,13 @@ class FrictionTest(NamedTuple):
     lag : ndarray
         (n,), elongation of the spring along the drive, m; zero where the stiffness is unknown.
     stiffness : float
-        Of the soft spring, N/m; NaN if unknown.
+        Of the spring along the drive, N/m; NaN if unknown.
+    damping : float
+        Of a damper beside it, N s/m; zero if unknown.
+    off : float
+        Force by which all samples may be off together, N: rounding, or the tolerance of a run.
+    law : object or None
+        Friction law of a run; None if unknown.
     drive : ConstantVelocity or DriveProgram
         Motion of the drive.
     stretches : list of ConstantStretch
@@ -86,6 +97,9 @@ class FrictionTest(NamedTuple):
     load: Floats
     lag: Floats
     stiffness: float
+    damping: float
+    off: float
+    law: Law | None
     drive: ConstantVelocity | DriveProgram
     stretches: list[ConstantStretch]
 
@@ -183,12 +197,17 @@ def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionT
     slider, samples = run.slider, run.samples
     there = np.isfinite(samples["spring_x"])
     d = {name: samples[name][there] for name in COLUMNS}
+    force = slider.along_drive(d["spring_x"], d["spring_y"])
+    way = np.array(slider.direction)
     return FrictionTest(
         d["time"],
-        slider.along_drive(d["spring_x"], d["spring_y"]),
+        force,
         np.asarray(d["normal_load"], dtype=np.float64),
         slider.along_drive(d["u_x"], d["u_y"]),
-        slider.k_x,
+        1.0 / float(way**2 @ [1.0 / slider.k_x, 1.0 / slider.k_y]),
+        float(way @ damping_tensor(slider) @ way),
+        run.description.run.rtol * float(np.abs(force).max(initial=0.0)),
+        slider.law,
         drive,
         stretches(drive, load_stretches(slider.normal_load, slider.load), d["time"]),
     )
@@ -200,8 +219,27 @@ def of_record(
     """Return a record with a normal load as a friction test."""
     load = (record.normal_load or nan) * record.relative_load()
     lag = record.force / record.stiffness if record.stiffness else np.zeros(len(record.time))
-    found = stretches(drive, loads, record.time)
-    return FrictionTest(record.time, record.force, load, lag, record.stiffness or nan, drive, found)
+    return FrictionTest(
+        record.time,
+        record.force,
+        load,
+        lag,
+        record.stiffness or nan,
+        0.0,
+        _rounding(record.force),
+        None,
+        drive,
+        stretches(drive, loads, record.time),
+    )
+
+
+def _rounding(force: Floats) -> float:
+    """Return by how much all samples of a record may be off that noise does not average away."""
+    step = resolution(force)
+    if not step or len(force) <= ORDER:
+        return 0.0
+    noise = white_noise(force, step) ** 2 - step**2 / 12.0
+    return step / sqrt(12.0) if noise < (HIDDEN * step) ** 2 else 0.0
 
 
 def stretches(

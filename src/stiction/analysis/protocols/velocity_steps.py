@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from math import inf, isnan, nan
-from typing import Literal
+from math import isnan, log, nan
 
 import numpy as np
 
@@ -17,6 +17,8 @@ from stiction.analysis.protocols.friction_test import (
     number_text,
     say_left_out,
 )
+from stiction.analysis.protocols.inversion import Inversion, StepData, invert, unknown
+from stiction.analysis.protocols.spring_slider import Law, SpringSlider
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -25,10 +27,30 @@ from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
-Law = Literal["slip", "ageing"]
-SHOWN = 10.0  # D_c of slip that a fit looks at, at most
-FEWEST_SAMPLES = 8  # samples of a fit
-STIFF = 300.0  # k D_c/(b W) above which D_c is found to 2 %
+Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
+
+STIFF = (
+    100.0  # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
+)
+CERTAIN = 13.8  # difference of sums of squares, in variances: likelihoods differ by a thousand
+LAWS: dict[str, Law] = {
+    "RateStateAgeing": "ageing",
+    "RateStateSlip": "slip",
+    "RateStatePerrin": "perrin",
+}
+NAMES: dict[Law, str] = {
+    "ageing": "ageing law",
+    "slip": "slip law",
+    "perrin": "law of Perrin, Rice & Zheng",
+}
+NEITHER = (
+    "Neither the ageing law nor the slip law is that of all steps; give law to fit one of them."
+)
+UNDECIDED = "The points do not tell the ageing law from the slip law: the table has both."
+UNKNOWN_RIG = (
+    "The stiffness of the rig is not known: a, b and D_c are not determined. Give the record its "
+    "stiffness, also if it is large."
+)
 
 
 @dataclass(frozen=True)
@@ -45,14 +67,18 @@ class VelocityStep:
         Steady friction on both sides, and its extremum just after the jump. Friction that has not
         settled after it is NaN, and so is a - b.
     a, b : float
-        Direct effect, from the extremum: a lower bound on a rig that is not stiff; evolution
-        effect, from the fit.
+        Direct effect and evolution effect, from the fit of the whole rig; NaN if not determined.
     a_minus_b : float
         Change of steady friction over the logarithm of the ratio of speeds.
     D_c, D_c_error : float
-        Distance over which friction evolves, with its standard error, m; NaN if it is not known.
+        Distance over which friction evolves, with its standard error, m; NaN if not
+        determined.
     slip, mu, fit : ndarray
-        (m,), slip since the jump (m), friction, and the fitted curve.
+        (m,), slip since the jump (m), friction, and the fitted curve; NaN without a fit.
+    a_error, b_error : float
+        Standard errors.
+    law : {"ageing", "slip", "perrin"}
+        Whose curve is fitted.
     """
 
     time: float
@@ -69,6 +95,9 @@ class VelocityStep:
     slip: Floats
     mu: Floats
     fit: Floats
+    a_error: float = nan
+    b_error: float = nan
+    law: Law = "ageing"
 
 
 @dataclass(frozen=True)
@@ -83,36 +112,30 @@ class VelocitySteps:
         k D_c/(b W), the least of all steps: how stiff the rig is; NaN if unknown.
     left_out : tuple of str
         Which changes of the velocity are left out, and why, in sentences.
+    other : tuple of VelocityStep
+        The same steps with the fit of another law, where the points do not tell which is right.
+    fitted : tuple of str
+        Which law is fitted, and where its parameters are not determined, in sentences.
     """
 
     steps: tuple[VelocityStep, ...]
     stiffness: float
     left_out: tuple[str, ...] = ()
+    other: tuple[VelocityStep, ...] = ()
+    fitted: tuple[str, ...] = ()
 
     @property
     def section(self) -> Section:
         """The steps in words and as a table."""
-        rows = [
-            (
-                in_words(each.before, "m/s"),
-                in_words(each.after, "m/s"),
-                number_text(each.a_minus_b, "+.4f"),
-                number_text(each.a, ".4f"),
-                number_text(each.b, ".4f"),
-                in_words(each.D_c, "m"),
-                in_words(each.D_c_error, "m", 1),
-            )
-            for each in self.steps
-        ]
-        sentences = [self._a_minus_b()]
+        sentences = [self._a_minus_b(), *self.fitted]
         if self.stiffness < STIFF:
             sentences.append(
-                f"The rig is not stiff, k D_c/(b W) = {self.stiffness:.3g}: a is a lower bound, "
-                "and b and D_c are those of rig and friction together."
+                f"The rig is not stiff, k D_c/(b W) = {self.stiffness:.3g}: a, b and D_c are right "
+                "if its stiffness is."
             )
         sentences += self.left_out
-        headings = ("from", "to", "a - b", "a", "b", "D_c", "+-")
-        return Section("Velocity steps", sentences, Table(headings, rows))
+        rows = [_row(each) for each in (*self.steps, *self.other)]
+        return Section("Velocity steps", sentences, Table(HEADINGS, rows))
 
     def _a_minus_b(self) -> str:
         """Return how steady friction depends on speed, in a sentence."""
@@ -130,15 +153,43 @@ class VelocitySteps:
         return str(self.section)
 
 
+HEADINGS = ("from", "to", "a - b", "law", "a", "+-", "b", "+-", "D_c", "+-")
+
+
+def _row(step: VelocityStep) -> tuple[str, ...]:
+    """Return the row of a step in the table."""
+    return (
+        in_words(step.before, "m/s"),
+        in_words(step.after, "m/s"),
+        number_text(step.a_minus_b, "+.4f"),
+        step.law,
+        number_text(step.a, ".4f"),
+        number_text(step.a_error, ".1g"),
+        number_text(step.b, ".4f"),
+        number_text(step.b_error, ".1g"),
+        in_words(step.D_c, "m"),
+        in_words(step.D_c_error, "m", 1),
+    )
+
+
 def velocity_steps(
-    source: Trajectory | Record, program: DriveProgram | None = None, *, law: Law = "ageing"
+    source: Trajectory | Record, program: DriveProgram | None = None, *, law: Law | None = None
 ) -> VelocitySteps:
     """Return a - b, a, b and D_c from the jumps of a velocity-step test.
 
-    Steady friction is mu = mu* + (a - b) ln(V/V*). On a stiff rig friction jumps by a ln(V_2/V_1),
-    and evolves with the slip x since the jump as b ln[1 + (V_2/V_1 - 1) exp(-x/D_c)] by the ageing
-    law, as b ln(V_2/V_1) exp(-x/D_c) by the slip law (Ruina 1983, doi:10.1029/JB088iB12p10359),
-    which is fitted. The rig is stiff where k D_c/W is far larger than a and b.
+    Steady friction is mu = mu* + (a - b) ln(V/V*), which the levels before and after a jump show.
+    a, b and D_c are those of the law whose curve, on a spring of the rig's stiffness, fits best
+    to friction since the jump: a joint inversion (Reinen & Weeks 1993, doi:10.1029/93JB00780).
+    On a stiff rig friction jumps by a ln(V_2/V_1), and evolves with the slip x as
+    b ln[1 + (V_2/V_1 - 1) exp(-x/D_c)] by the ageing law, as b ln(V_2/V_1) exp(-x/D_c) by the slip
+    law (Ruina 1983, doi:10.1029/JB088iB12p10359).
+
+    The law of a run is known. To a record the ageing law and the slip law are fitted; the text says
+    which fits better, or that the points do not tell, and then the table has both.
+
+    Errors are standard errors. They include that neighbouring residuals deviate together, and where
+    a curve misses the points, how far off the parameters of a wrong law are. Parameters known to no
+    more than a fifth are NaN, "none" in the text. So are those of a rig of unknown stiffness.
 
     Only jumps from one constant speed to another under a constant load count. Ramps, harmonics and
     recorded pieces, and jumps next to them, are left out.
@@ -146,11 +197,12 @@ def velocity_steps(
     Parameters
     ----------
     source : Trajectory or Record
-        A run, or a record with its normal load, and if possible its stiffness.
+        A run, or a record with its normal load, and its stiffness, without which a - b alone is
+        determined.
     program : DriveProgram, optional
         The program of a record, see `st.protocols.velocity_steps`; that of a run is known.
-    law : {"ageing", "slip"}, optional
-        The curve to be fitted.
+    law : {"ageing", "slip", "perrin"}, optional
+        The law to be fitted; by default that of the run, or both of ageing and slip.
 
     Raises
     ------
@@ -181,14 +233,36 @@ def velocity_steps(
     if not jumps:
         missing = "the speed of the drive does not step from one constant value to another"
         raise ResultError(" ".join([f"{missing}; see st.protocols.velocity_steps.", *left_out]))
-    steps = tuple(_step(test, one, two, law) for one, two in jumps)
+    laws, said = _laws(test, law)
+    fits = {each: [_fit(test, one, two, each) for one, two in jumps] for each in laws}
+    best, sure = _better(fits) if len(laws) > 1 else (laws[0], True)
+    if isnan(test.stiffness):
+        said = [UNKNOWN_RIG]
+    elif len(laws) == 1:
+        said += _reasons(jumps, fits[best])
+    elif any(fit.misses and isnan(fit.D_c) for fit in fits[best]):
+        said = [*_reasons(jumps, fits[best])[:1], NEITHER]
+        fits = {best: [unknown(len(fit.fit)) for fit in fits[best]]}
+    else:
+        better = f"Fitted: the {NAMES[best]}; the other of ageing law and slip law fits worse."
+        said = [better if sure else UNDECIDED, *_reasons(jumps, fits[best])]
+    steps = {
+        each: tuple(_step(test, *jump, each, fit) for jump, fit in zip(jumps, found, strict=True))
+        for each, found in fits.items()
+    }
+    other = () if sure else tuple(step for each in fits if each != best for step in steps[each])
+    stiffness = _least_stiffness(test, jumps, steps[best])
+    return VelocitySteps(steps[best], stiffness, tuple(left_out), other, tuple(said))
+
+
+def _least_stiffness(test: FrictionTest, jumps: Jumps, steps: Sequence[VelocityStep]) -> float:
+    """Return the least k D_c/(b W) of all steps, NaN if it is unknown."""
     known = [
         test.stiffness * each.D_c / (two.load * abs(each.b))
         for each, (_, two) in zip(steps, jumps, strict=True)
-        if each.b
+        if not isnan(each.D_c)
     ]
-    stiffness = float(np.nanmin(known)) if np.isfinite(known).any() else nan
-    return VelocitySteps(steps, stiffness, tuple(left_out))
+    return min(known, default=nan)
 
 
 def _varying(test: FrictionTest) -> list[str]:
@@ -215,62 +289,90 @@ def _fault(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> st
     return ""
 
 
-def _step(test: FrictionTest, one: ConstantStretch, two: ConstantStretch, law: Law) -> VelocityStep:
-    way = float(np.sign(one.velocity))
-    after = test.within(two.start, two.end)
-    mu, before, steady = way * test.mu[after], way * test.steady(one), nan
-    if test.has_settled(two):
-        steady = way * test.steady(two)
-    ratio = two.velocity / one.velocity
-    up = 1.0 if ratio > 1.0 else -1.0
-    first = int((up * mu).argmax())
-    lag = way * (test.lag[after] - test.lag[after[0]])
-    slip = abs(two.velocity) * (test.time[after] - two.start) - lag
-    b, D, error, fit = _evolution(slip[first:], mu[first:], ratio, law)
-    peak, by = float(mu[first]), float(np.log(ratio))
+def _laws(test: FrictionTest, law: Law | None) -> tuple[tuple[Law, ...], list[str]]:
+    """Return the laws to be fitted, and why, in a sentence if there is one alone."""
+    own = LAWS.get(type(test.law).__name__)
+    chosen = law or own
+    if chosen is None:
+        return ("ageing", "slip"), []
+    why = "which is that of the run" if chosen == own else "as asked"
+    if own and chosen != own:
+        why = f"though the run has the {NAMES[own]}"
+    return (chosen,), [f"Fitted: the {NAMES[chosen]}, {why}."]
+
+
+def _better(fits: dict[Law, list[Inversion]]) -> tuple[Law, bool]:
+    """Return which of two laws fits better, and whether that is sure."""
+    one, two = fits
+    gain = 0.0
+    for first, second in zip(fits[one], fits[two], strict=True):
+        if not isnan(first.square) and not isnan(second.square):
+            variance = (first if first.square < second.square else second).variance
+            gain += (second.square - first.square) / variance
+    return (one if gain >= 0.0 else two), abs(gain) > CERTAIN or gain == 0.0
+
+
+def _data(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> StepData:
+    """Return a step of the drive as it is fitted."""
+    way, after = one.way, test.within(two.start, two.end)
+    rig = SpringSlider(
+        two.velocity / one.velocity,
+        test.stiffness / two.load,
+        test.damping * abs(two.velocity) / two.load,
+    )
+    travel = abs(two.velocity) * (test.time[after] - two.start)
+    return StepData(
+        rig, travel, way * test.mu[after], way * test.mu[test.late(one)], test.off / two.load
+    )
+
+
+def _fit(test: FrictionTest, one: ConstantStretch, two: ConstantStretch, law: Law) -> Inversion:
+    """Fit a law to a step."""
+    return invert(_data(test, one, two), law, one.way * test.steady(two))
+
+
+def _step(
+    test: FrictionTest, one: ConstantStretch, two: ConstantStretch, law: Law, fit: Inversion
+) -> VelocityStep:
+    """Return a step with the fit of a law."""
+    data = _data(test, one, two)
+    before, by = one.way * test.steady(one), log(data.rig.ratio)
+    steady = one.way * test.steady(two) if test.has_settled(two) else nan
+    up = 1.0 if by > 0.0 else -1.0
+    lag = test.lag[test.within(two.start, two.end)]
     return VelocityStep(
         two.start,
         abs(one.velocity),
         abs(two.velocity),
         before,
         steady,
-        peak,
-        (peak - before) / by,
-        b,
+        up * float((up * data.mu).max()),
+        fit.a,
+        fit.b,
         (steady - before) / by,
-        D,
-        error,
-        slip[first:],
-        mu[first:],
-        fit,
+        fit.D_c,
+        fit.D_c_error,
+        data.slip - one.way * (lag - lag[0]),
+        data.mu,
+        fit.fit,
+        fit.a_error,
+        fit.b_error,
+        law,
     )
 
 
-def _evolution(
-    slip: Floats, mu: Floats, ratio: float, law: Law
-) -> tuple[float, float, float, Floats]:
-    """Return b, D_c, its standard error (m), and the fitted curve."""
-    from scipy.optimize import curve_fit
-
-    def curve(x: Floats, end: float, b: float, log_D: float) -> Floats:
-        fallen = np.exp(-x / np.exp(log_D))
-        if law == "slip":
-            return np.asarray(end + b * np.log(ratio) * fallen)
-        return np.asarray(end + b * np.log1p((ratio - 1.0) * fallen))
-
-    unknown = nan, nan, nan, np.full(len(mu), nan)
-    change = mu[0] - mu[-1]
-    if len(mu) < FEWEST_SAMPLES or change == 0.0:
-        return unknown
-    reached = np.flatnonzero(np.abs(mu - mu[0]) > (1.0 - np.exp(-1.0)) * abs(change))
-    guess = slip[reached[0]] - slip[0] if len(reached) else slip[-1] - slip[0]
-    if not guess > 0.0:
-        return unknown
-    near = slip - slip[0] <= SHOWN * guess if law == "slip" else slip <= inf
-    start = (mu[-1], change / np.log(ratio), np.log(guess))
-    try:
-        found, covariance = curve_fit(curve, slip[near], mu[near], start)  # type: ignore[no-untyped-call]
-    except RuntimeError:  # no least sum of squares
-        return unknown
-    D = float(np.exp(found[2]))
-    return float(found[1]), D, D * float(np.sqrt(covariance[2, 2])), curve(slip, *found)
+def _reasons(jumps: Jumps, fits: Sequence[Inversion]) -> list[str]:
+    """Return sentences on why a, b and D_c of some steps are not determined."""
+    found = []
+    for misses, why in (
+        (True, "No curve of the law goes through the points"),
+        (False, "The points show too little of an evolution of friction"),
+    ):
+        times = [
+            in_words(two.start, "s")
+            for (_, two), fit in zip(jumps, fits, strict=True)
+            if isnan(fit.D_c) and fit.misses == misses
+        ]
+        if times:
+            found.append(f"{why}: a, b and D_c are not determined at {in_list(times)}.")
+    return found

@@ -1,0 +1,204 @@
+"""Joint inversion of velocity steps: a rig of any stiffness gives back the law that it has.
+
+Records are courses of a slider without inertia on a spring, which an independent integrator checks.
+"""
+
+from math import log, sinh
+
+import numpy as np
+import pytest
+from benchmarks.explore.draw import Draw
+from scipy.integrate import solve_ivp
+from tests.drawn import SEED
+
+import stiction as st
+from stiction.analysis.protocols.inversion import StepData, invert
+from stiction.analysis.protocols.spring_slider import SpringSlider, friction_after_a_step
+from stiction.presets.preset import on_a_line
+
+A, B, D, W, MU = 0.008, 0.012, 5e-6, 12.5e3, 0.6
+SOFT = 4.0 * (B - A) * W / D
+LAWS = ("ageing", "slip", "perrin")
+
+
+def growth(law, x):
+    """Return d(theta)/dt for v theta/D_c = x (the law of Perrin et al.: v theta/(2 D_c))."""
+    return {"ageing": 1.0 - x, "slip": -x * log(x), "perrin": 1.0 - x * x}[law]
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_friction_after_a_step_is_that_of_the_laws(law):
+    """By theta itself and the regularised law: to the tolerance of 1e-6 in logarithms, times b."""
+    for number in range(2):
+        draw = Draw(SEED, number)
+        k, ratio = draw.decades(1.5, 300.0) * (B - A) / D, draw.decades(2.0, 20.0)
+        ratio = ratio if draw.chance(0.5) else 1.0 / ratio
+        size = 2.0 if law == "perrin" else 1.0  # of theta in D_c/v while sliding is steady
+        mu = MU + (A - B) * log(ratio)  # afterwards, at V = 1
+
+        def rates(t, y, k=k, mu=mu, size=size):
+            v = sinh(y[0] / A) / sinh(mu / A) * (size * D / y[1]) ** (B / A)
+            return [k * (1.0 - v), growth(law, v * y[1] / (size * D))]
+
+        x = np.linspace(0.0, 20.0 * D, 200)
+        found = solve_ivp(
+            rates, (0.0, x[-1]), [MU, size * D * ratio], "LSODA", x, rtol=1e-10, atol=1e-13
+        )
+        curve = friction_after_a_step(SpringSlider(ratio, k, 0.0), law, A, B, D, x)
+        assert mu + curve == pytest.approx(found.y[0], abs=1e-6 * 10.0 * B)
+
+
+def test_on_a_stiff_rig_it_is_the_closed_form():
+    """The spring takes up b W/(k D_c) of the jump, 1e-5, after a slip of some 1e-5 D_c."""
+    x = np.linspace(1e-2 * D, 10.0 * D, 100)
+    for ratio in (0.1, 10.0):
+        rig = SpringSlider(ratio, 1e5 * B / D, 0.0)
+        closed = {
+            "ageing": B * np.log1p((ratio - 1.0) * np.exp(-x / D)),
+            "slip": B * log(ratio) * np.exp(-x / D),
+        }
+        for law, expected in closed.items():
+            curve = friction_after_a_step(rig, law, A, B, D, x)
+            assert curve == pytest.approx(expected, abs=1e-3 * B)
+
+
+def test_a_slip_that_runs_away_has_no_curve():
+    rig = SpringSlider(10.0, 0.1 * (B - A) / D, 0.0)
+    assert friction_after_a_step(rig, "ageing", A, B, D, np.linspace(0.0, 50.0 * D, 9)) is None
+
+
+def test_a_damper_takes_up_part_of_the_jump():
+    """Its force jumps with the spring's rate: a ln(v/V_0) = g (1 - v/V) just after the step."""
+    rig = SpringSlider(10.0, SOFT / W, 0.01)
+    first = friction_after_a_step(rig, "ageing", A, B, D, np.array([0.0, D]))[0]
+    assert first + (A - B) * log(10.0) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_errors_are_those_of_noise():
+    """Three standard errors, of three parameters: beyond them once in a hundred draws."""
+    beyond = 0
+    for number in range(4):
+        draw = Draw(SEED, number)
+        law, b = draw.among(LAWS), draw.between(0.5, 2.0) * A
+        rig = SpringSlider(draw.decades(3.0, 20.0), draw.decades(2.0, 1e3) * 0.5 * A / D, 0.0)
+        x = np.arange(0.0, 30.0 * D, 0.1 * D)
+        noise = 0.01 * b * np.random.default_rng(number).normal(size=len(x) + 100)
+        mu = MU + (A - b) * log(rig.ratio) + friction_after_a_step(rig, law, A, b, D, x)
+        data = StepData(rig, x, mu + noise[100:], MU + noise[:100], 0.0)
+        fit = invert(data, law, float(data.mu[-60:].mean()))
+        assert fit.D_c_error < 0.2 * D
+        off = [(fit.a - A) / fit.a_error, (fit.b - b) / fit.b_error, (fit.D_c - D) / fit.D_c_error]
+        beyond += int(max(map(abs, off)) > 3.0)
+    assert beyond == 0
+
+
+def soft_record(law, ratio=10.0, noise=0.0, a=A, b=B, **known):
+    """Return a record of two steps of the speed, there and back, and its program."""
+    V, length, rate = 3e-6, 60.0 * D, 20.0
+    program = st.protocols.velocity_steps([V, ratio * V, V], distance=length)
+    ends = np.cumsum([length / V, length / (ratio * V), length / V])
+    time = np.arange(0.0, ends[-1], 1.0 / rate)
+    mu = np.full(len(time), MU)
+    for start, end, by in ((ends[0], ends[1], ratio), (ends[1], ends[2], 1.0 / ratio)):
+        at = (time >= start - 1e-9) & (time < end - 1e-9)
+        x = (time[at] - start) * (ratio * V if by > 1.0 else V)
+        level = MU + (a - b) * log(ratio) if by > 1.0 else MU
+        mu[at] = level + friction_after_a_step(SpringSlider(by, SOFT / W, 0.0), law, a, b, D, x)
+    mu += noise * np.random.default_rng(SEED).normal(size=len(mu))
+    return st.Record(time=time, force=W * mu, normal_load=W, **known), program
+
+
+@pytest.mark.parametrize(("law", "other"), [("ageing", "slip"), ("slip", "ageing")])
+def test_a_soft_rig_and_a_law_that_nobody_told(law, other):
+    """The stiff curve gave b = 0.17 on such a rig, the ageing one 6 um for 10 um of the slip law.
+
+    Noise of 1e-4, 1 % of b: three standard errors.
+    """
+    found = st.analysis.velocity_steps(*soft_record(law, noise=1e-4, stiffness=SOFT))
+    assert not found.other
+    assert f"Fitted: the {law} law; the other of ageing law and slip law fits worse." in str(found)
+    for each in found.steps:
+        assert each.law == law
+        assert each.a == pytest.approx(A, abs=3.0 * each.a_error)
+        assert each.b == pytest.approx(B, abs=3.0 * each.b_error)
+        assert each.D_c == pytest.approx(D, abs=3.0 * each.D_c_error)
+        assert each.D_c_error < 0.1 * D
+        assert each.a - each.b == pytest.approx(each.a_minus_b, abs=1e-4)
+        assert np.abs(each.fit - each.mu).max() < 5e-4  # of noise of 1e-4
+    assert found.stiffness == pytest.approx(SOFT * D / (B * W), rel=0.1)
+    asked, program = soft_record(law, stiffness=SOFT)
+    wrong = st.analysis.velocity_steps(asked, program, law=other)
+    assert f"Fitted: the {other} law, as asked." in str(wrong)
+    assert np.isnan([each.D_c for each in wrong.steps]).all()
+    assert "No curve of the law goes through the points" in str(wrong)
+
+
+def test_a_small_step_under_noise_does_not_tell_the_laws():
+    """Both are shown; to first order in the step they are the same."""
+    found = st.analysis.velocity_steps(*soft_record("slip", 1.3, 1e-4, stiffness=SOFT))
+    assert "The points do not tell the ageing law from the slip law" in str(found)
+    assert {each.law for each in (*found.steps, *found.other)} == {"ageing", "slip"}
+    assert len(found.section.table.rows) == 4
+
+
+def test_of_a_third_law_neither_is_said_to_hold():
+    """The slip law gave 16 um +- 1 um for 5 um."""
+    found = st.analysis.velocity_steps(*soft_record("perrin", noise=1e-4, stiffness=SOFT))
+    assert "Neither the ageing law nor the slip law is that of all steps" in str(found)
+    assert np.isnan([each.D_c for each in found.steps]).all()
+
+
+def test_of_a_rig_of_unknown_stiffness_only_the_levels_are_known():
+    """It gave a = 0.0056 +- nothing, b = 0.031, D_c = 3.55 um, without a word."""
+    found = st.analysis.velocity_steps(*soft_record("ageing", noise=1e-4))
+    assert "The stiffness of the rig is not known: a, b and D_c are not determined." in str(found)
+    for each in found.steps:
+        assert np.isnan([each.a, each.b, each.D_c]).all()
+        assert each.a_minus_b == pytest.approx(A - B, abs=1e-4)
+
+
+def test_where_nothing_evolves_there_is_no_distance():
+    """A warning of the optimiser came through, and "D_c 500 nm +- inf"."""
+    found = st.analysis.velocity_steps(*soft_record("ageing", b=0.0, noise=1e-5, stiffness=SOFT))
+    assert np.isnan([each.D_c for each in found.steps]).all()
+    assert "The points show too little of an evolution of friction" in str(found)
+    assert "inf" not in str(found)
+
+
+def test_rounded_forces_have_errors_of_the_rounding():
+    """A step of 3e-4 of the load, a tenth of what evolves with a factor of 10."""
+    record, program = soft_record("ageing", stiffness=SOFT)
+    force = W * 3e-4 * np.round(record.force / (W * 3e-4))
+    found = st.analysis.velocity_steps(record.model_copy(update={"force": force}), program)
+    for each in (*found.steps, *found.other):
+        if not np.isnan(each.D_c) and each.law == "ageing":
+            assert each.D_c == pytest.approx(D, abs=3.0 * each.D_c_error)
+            assert each.D_c_error > 1e-3 * D
+
+
+@pytest.mark.parametrize("law", [st.laws.RateStateSlip, st.laws.RateStatePerrin])
+def test_the_law_of_a_run_is_known(law):
+    """The ageing curve was fitted to all: 6.016 um +- 8 nm for 10 um."""
+    a, b, D_c, k = 0.010, 0.015, 10e-6, 20 * 0.005 / 10e-6
+    friction = law(a, b, D_c, 0.6, 1e-6)
+    program = st.protocols.velocity_steps(["1 um/s", "10 um/s", "1 um/s"], distance="0.2 mm")
+    slider = on_a_line(mass=1e-9, k_x=k, friction=friction, drive=program, driven="spring")
+    initial = st.Initial(u_x=friction.coefficient(1e-6) / k, v_x=0.0, v_y=0.0)
+    found = st.analysis.velocity_steps(st.simulate(slider, initial=initial, sample_rate=20.0))
+    assert "which is that of the run" in str(found)
+    for each in found.steps:
+        assert each.D_c == pytest.approx(D_c, abs=3.0 * each.D_c_error)
+        assert [each.a, each.b, each.D_c] == pytest.approx([a, b, D_c], rel=0.02)
+    wrong = st.analysis.velocity_steps(
+        st.simulate(slider, initial=initial, sample_rate=20.0), law="ageing"
+    )
+    assert "Fitted: the ageing law, though the run has the" in str(wrong)
+
+
+def test_samples_without_a_pattern_have_no_law():
+    """Nor does an error come of them."""
+    random = np.random.default_rng(SEED)
+    record, program = soft_record("ageing", stiffness=SOFT)
+    force = W * MU * (1.0 + 3e-3 * random.normal(size=len(record.time)))
+    found = st.analysis.velocity_steps(record.model_copy(update={"force": force}), program)
+    assert np.isnan([each.D_c for each in found.steps]).all()
