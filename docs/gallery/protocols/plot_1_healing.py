@@ -3,7 +3,8 @@ Slide, hold, slide: healing per decade
 ======================================
 
 Friction with a state of its own grows with the logarithm of the hold. The line is the fit, with
-its standard error. `stiction presets slide-hold-slide` is a published test of this kind.
+its standard error. The peaks of a run are exact; those of a record have errors by its sampling.
+`stiction presets slide-hold-slide` is a published test of this kind.
 """
 
 import stiction as st

@@ -61,7 +61,16 @@ def plot_healing(found: Healing, ax: Axes | None = None) -> Axes:
     """
     with style():
         ax = panel(ax, 2.4)
-        ax.plot(found.hold, found.gain, "o", color=BLACK, markersize=3.0, label="each hold")
+        sure = found.resolved
+        ax.plot(
+            found.hold[sure], found.gain[sure], "o",
+            color=BLACK, markersize=3.0, label="each hold",
+        )  # fmt: skip
+        if found.peak_error is not None:
+            reach = found.hold[sure], found.gain[sure], found.peak_error[sure]
+            ax.errorbar(*reach, fmt="none", ecolor=BLACK, elinewidth=0.6)
+        if not sure.all():
+            ax.plot(found.hold[~sure], found.gain[~sure], "^", color=GREY, label="at least")
         if np.isfinite(found.per_decade):
             holds = np.array([found.hold.min(), found.hold.max()])
             line = found.at_one_second + found.per_decade * np.log10(holds)

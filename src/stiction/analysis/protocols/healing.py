@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass
-from math import isnan
+from math import hypot, isnan, nan
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
     FrictionTest,
     alike,
     friction_test,
+    in_list,
+    number_text,
     say_left_out,
 )
-from stiction.analysis.protocols.settling import line
+from stiction.analysis.protocols.peaks import RESOLVED, Peak, peaks_of_run, peaks_of_samples
+from stiction.analysis.protocols.settling import ROUNDED, line
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -22,6 +27,8 @@ from stiction.errors import ResultError
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
+
+SURE = 2.0  # standard errors: a slope that is less is none
 
 
 @dataclass(frozen=True)
@@ -36,11 +43,14 @@ class Healing:
         (n,), friction before the hold, its peak after it, and its value at the hold's end.
     per_decade, per_decade_error : float
         Slope of peak less steady friction over the decadic logarithm of the hold, and its standard
-        error; NaN with fewer than two, or three, holds.
+        error by scatter and the errors of peaks; NaN with fewer than two, or three, resolved peaks.
     at_one_second : float
         The line at a hold of 1 s.
     left_out : tuple of str
         Which holds are left out, and why, in sentences.
+    peak_error : ndarray, optional
+        (n,), standard error of each peak; NaN where the samples do not resolve it. Then `peak` is
+        the highest sample, a lower bound, and is no point of the line.
     """
 
     hold: Floats
@@ -51,6 +61,13 @@ class Healing:
     per_decade_error: float
     at_one_second: float
     left_out: tuple[str, ...] = ()
+    peak_error: Floats | None = None
+
+    @property
+    def resolved(self) -> NDArray[np.bool_]:
+        """Whether each peak is resolved, (n,)."""
+        errors = np.zeros(len(self.hold)) if self.peak_error is None else self.peak_error
+        return np.asarray(np.isfinite(errors))
 
     @property
     def gain(self) -> Floats:
@@ -60,18 +77,40 @@ class Healing:
     @property
     def section(self) -> Section:
         """The healing in words and as a table."""
-        error = f", +- {self.per_decade_error:.1g}" if self.per_decade_error > 0.0 else ""
-        said = f"Friction heals by {self.per_decade:.3g} per decade of hold time{error}."
-        if isnan(self.per_decade):
-            said = "How friction heals per decade is not known: all holds are equally long."
+        errors = np.full(len(self.hold), nan) if self.peak_error is None else self.peak_error
         rows = [
-            (in_words(t, "s"), f"{before:.4f}", f"{low:.4f}", f"{peak:.4f}", f"{peak - before:.4f}")
-            for t, before, low, peak in zip(
-                self.hold, self.steady, self.relaxed, self.peak, strict=True
+            (
+                in_words(t, "s"),
+                f"{before:.4f}",
+                f"{low:.4f}",
+                f"{'' if sure else '> '}{peak:.4f}",
+                f"{'' if sure else '> '}{peak - before:.4f}",
+                number_text(error, ".1g"),
+            )
+            for t, before, low, peak, error, sure in zip(
+                self.hold, self.steady, self.relaxed, self.peak, errors, self.resolved, strict=True
             )
         ]
-        headings = ("hold", "steady before", "at its end", "peak after", "gain")
-        return Section("Healing", [said, *self.left_out], Table(headings, rows))
+        headings = ("hold", "steady before", "at its end", "peak after", "gain", "+-")
+        return Section("Healing", [*self._sentences(), *self.left_out], Table(headings, rows))
+
+    def _sentences(self) -> list[str]:
+        """Return how friction heals, in sentences."""
+        poor = self.hold[~self.resolved]
+        fewer = f"after holds of {in_list([in_words(t, 's') for t in poor])}"
+        few = f"Fewer than {RESOLVED} samples lie in the fall from the peak {fewer}: "
+        said = [few + "it is not resolved; raise the sample rate."] if len(poor) else []
+        if isnan(self.per_decade):
+            why = "fewer than two peaks are resolved" if len(poor) else "all holds are equally long"
+            return [f"How friction heals per decade is not known: {why}.", *said]
+        error = self.per_decade_error
+        least = max(SURE * error if error > 0.0 else 0.0, ROUNDED * float(np.abs(self.peak).max()))
+        if abs(self.per_decade) < least:
+            zero = f"Healing is zero within its error, {least:.1g} per decade of hold time."
+            return [zero, *said]
+        known = f", +- {error:.1g}" if error > 0.0 else ""
+        heals = f"Friction heals by {self.per_decade:.3g} per decade of hold time{known}."
+        return [heals, *said]
 
     def __str__(self) -> str:
         """Return the section as text."""
@@ -87,6 +126,10 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
 
     Only holds at rest between two slides at the same velocity, in the same direction and under the
     same load count. The others are left out.
+
+    The peak of a run is exact, however the run is sampled. That of a record lies between samples:
+    its error is what friction loses from one to the next, and noise. Where there are fewer than
+    four samples in the fall by half, the peak is not resolved, and no point of the line.
 
     Parameters
     ----------
@@ -110,7 +153,7 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
     test = friction_test(source, program)
     ending = {each.end: each for each in test.stretches}
     starting = {each.start: each for each in test.stretches}
-    rows, faults = [], []
+    rows, slides, faults = [], [], []
     for hold in test.stretches:
         if hold.velocity or hold.start <= test.time[0] or hold.end >= test.time[-1]:
             continue
@@ -120,15 +163,38 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
         else:
             why = _fault(test, before, hold, after)
             if not why:
-                rows.append(_row(test, before, hold, after))
+                rows.append(_row(test, before, hold))
+                slides.append(after)
         faults.append((in_words(hold.start, "s"), why))
     said = say_left_out(each for each in faults if each[1])
     if not rows:
         missing = "there is no hold between two slides at the same velocity and load"
         raise ResultError(" ".join([f"{missing}; see st.protocols.slide_hold_slide.", *said]))
-    hold_times, steady, peak_values, relaxed = np.array(rows).T
-    slope, error, offset = line(np.log10(hold_times), peak_values - steady)
-    return Healing(hold_times, steady, peak_values, relaxed, slope, error, offset, said)
+    hold_times, steady, relaxed = np.array(rows).T
+    peaks, errors = np.array(_peaks(source, test, slides)).T
+    slope, error, offset = _line(hold_times, peaks - steady, errors)
+    return Healing(hold_times, steady, peaks, relaxed, slope, error, offset, said, errors)
+
+
+def _peaks(
+    source: Trajectory | Record, test: FrictionTest, slides: list[ConstantStretch]
+) -> list[Peak]:
+    """Return the peaks of slides; of a run that cannot be repeated, those of its samples."""
+    if isinstance(source, Trajectory):
+        with suppress(ResultError):
+            return peaks_of_run(source, slides)
+    return peaks_of_samples(test, slides)
+
+
+def _line(holds: Floats, gains: Floats, errors: Floats) -> tuple[float, float, float]:
+    """Return the line through resolved peaks over the decadic logarithm of the hold."""
+    known = np.isfinite(errors)
+    x, gains, errors = np.log10(holds[known]), gains[known], errors[known]
+    slope, scatter, offset = line(x, gains) if len(x) else (nan, nan, nan)
+    if isnan(scatter):
+        return slope, scatter, offset
+    away = x - x.mean()
+    return slope, hypot(scatter, float(np.linalg.norm(away * errors) / (away @ away))), offset
 
 
 def _fault(
@@ -155,10 +221,8 @@ def _fault(
 
 
 def _row(
-    test: FrictionTest, before: ConstantStretch, hold: ConstantStretch, after: ConstantStretch
-) -> tuple[float, float, float, float]:
-    """Return the duration of a hold, steady friction before it, the peak after it, its end."""
-    again, held = test.within(after.start, after.end), test.within(hold.start, hold.end)
-    peak = float((after.way * test.mu[again]).max())
-    low = float(before.way * test.mu[held[-1]])
-    return hold.end - hold.start, float(before.way * test.steady(before)), peak, low
+    test: FrictionTest, before: ConstantStretch, hold: ConstantStretch
+) -> tuple[float, float, float]:
+    """Return the duration of a hold, steady friction before it, and friction at its end."""
+    low = float(before.way * test.mu[test.within(hold.start, hold.end)[-1]])
+    return hold.end - hold.start, float(before.way * test.steady(before)), low

@@ -1,0 +1,99 @@
+"""Peaks of friction after holds: of a run exactly, of a record as well as its samples show them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from math import hypot, nan, sqrt
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.analysis.protocols.friction_test import ConstantStretch, FrictionTest
+from stiction.analysis.protocols.settling import ROUNDED
+from stiction.analysis.quadrature import panels, states_at
+from stiction.arrays import Floats
+from stiction.recording.noise import ORDER, white_noise
+from stiction.trajectory import Trajectory
+
+PER_PANEL = 4  # times in each panel of a run: a step of the solver, or an oscillation
+FINER = 32  # times between the neighbours of the highest
+RESOLVED = 4  # samples while friction falls half-way from its peak
+# Of the fall by half, over that of as many samples: at first an exponential falls 2 ln 2 times as
+# fast as on average
+STEEPEST = 1.4
+CHANCE = 2.0  # standard deviations of noise by which the largest of some samples is too large
+
+
+class Peak(NamedTuple):
+    """Friction at its peak, and its standard error; NaN where samples do not resolve it."""
+
+    value: float
+    error: float
+
+
+def peaks_of_samples(test: FrictionTest, slides: Sequence[ConstantStretch]) -> list[Peak]:
+    """Return the highest sample of each slide, and how far the peak may lie above it."""
+    return [_sampled_peak(slide.way * test.mu[test.within(*slide[:2])]) for slide in slides]
+
+
+def _sampled_peak(mu: Floats) -> Peak:
+    """Return the peak of one slide.
+
+    Between two samples it is higher than both by no more than friction then falls within a sample.
+    """
+    top = int(mu.argmax())
+    peak, level = float(mu[top]), float(mu[-max(len(mu) // 5, 1) :].mean())
+    noise = white_noise(mu) if len(mu) > ORDER else 0.0
+    fall = peak - level
+    if fall <= max(ROUNDED * abs(peak), 2.0 * CHANCE * noise):  # there is none
+        return Peak(peak, hypot(fall / sqrt(3.0), noise))
+    fallen = np.flatnonzero(mu[top:] <= peak - 0.5 * fall)
+    count = int(fallen[0]) if len(fallen) else len(mu) - top
+    if count < RESOLVED:
+        return Peak(peak, nan)
+    missed = STEEPEST * 0.5 * fall / count
+    return Peak(peak, hypot(missed / sqrt(3.0), CHANCE * noise))
+
+
+def peaks_of_run(run: Trajectory, slides: Sequence[ConstantStretch]) -> list[Peak]:
+    """Return the peak of each slide of a run, however it is sampled.
+
+    The run is repeated, with samples within each of its own steps, then around the highest of them.
+    """
+    slider = run.slider
+
+    def friction(times: Floats) -> Floats:
+        u_x, u_y = states_at(run, times)[:, :2].T
+        return np.asarray(slider.along_drive(slider.k_x * u_x, slider.k_y * u_y))
+
+    starts, lengths = panels(run, np.unique([t for slide in slides for t in slide[:2]]))
+    ends = np.append(starts, starts[-1] + lengths[-1])
+    fine = np.interp(np.arange(PER_PANEL * len(starts) + 1) / PER_PANEL, np.arange(len(ends)), ends)
+    looked = [fine[(fine >= slide.start) & (fine <= slide.end)] for slide in slides]
+    coarse = _highest(friction, looked, slides)
+    near = [
+        np.linspace(times[max(at - 1, 0)], times[min(at + 1, len(times) - 1)], FINER + 1)
+        for (at, _), times in zip(coarse, looked, strict=True)
+    ]
+    found = _highest(friction, near, slides)
+    tolerance = run.description.run.rtol
+    return [
+        # a parabola is off by a share of what finer samples add, (2/FINER)^2 of which is left
+        Peak(max(peak, before), tolerance * peak + abs(peak - before) * (4.0 / FINER) ** 2)
+        for (_, peak), (_, before) in zip(found, coarse, strict=True)
+    ]
+
+
+def _highest(
+    friction: Callable[[Floats], Floats],
+    looked: Sequence[Floats],
+    slides: Sequence[ConstantStretch],
+) -> list[tuple[int, float]]:
+    """Return which of the times in each slide has the highest friction, and that."""
+    times = np.unique(np.concatenate(looked))
+    force = friction(times)
+    found = []
+    for slide, here in zip(slides, looked, strict=True):
+        mu = slide.way * force[np.searchsorted(times, here)] / slide.load
+        found.append((int(mu.argmax()), float(mu.max())))
+    return found
