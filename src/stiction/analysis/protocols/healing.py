@@ -18,7 +18,7 @@ from stiction.analysis.protocols.friction_test import (
     number_text,
     say_left_out,
 )
-from stiction.analysis.protocols.peaks import RESOLVED, Peak, peaks_of_run, peaks_of_samples
+from stiction.analysis.protocols.peaks import Peak, peaks_of_run, peaks_of_samples
 from stiction.analysis.protocols.settling import ROUNDED, line
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
@@ -98,8 +98,8 @@ class Healing:
         """Return how friction heals, in sentences."""
         poor = self.hold[~self.resolved]
         fewer = f"after holds of {in_list([in_words(t, 's') for t in poor])}"
-        few = f"Fewer than {RESOLVED} samples lie in the fall from the peak {fewer}: "
-        said = [few + "it is not resolved; raise the sample rate."] if len(poor) else []
+        few = f"Too few samples lie around the peak {fewer}"
+        said = [f"{few}: it is not resolved. Raise the sample rate."] if len(poor) else []
         if isnan(self.per_decade):
             why = "fewer than two peaks are resolved" if len(poor) else "all holds are equally long"
             return [f"How friction heals per decade is not known: {why}.", *said]
@@ -129,7 +129,8 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
 
     The peak of a run is exact, however the run is sampled. That of a record lies between samples:
     its error is what friction loses from one to the next, and noise. Where there are fewer than
-    four samples in the fall by half, the peak is not resolved, and no point of the line.
+    four samples in the fall by half, or none shows a fall and the spring is loaded within two, the
+    peak is not resolved, and no point of the line.
 
     Parameters
     ----------

@@ -33,26 +33,48 @@ class Peak(NamedTuple):
 
 def peaks_of_samples(test: FrictionTest, slides: Sequence[ConstantStretch]) -> list[Peak]:
     """Return the highest sample of each slide, and how far the peak may lie above it."""
-    return [_sampled_peak(slide.way * test.mu[test.within(*slide[:2])]) for slide in slides]
+    found = []
+    for slide in slides:
+        at = test.within(*slide[:2])
+        found.append(_sampled_peak(slide.way * test.mu[at[0] - 1 : at[-1] + 1]))
+    return found
 
 
 def _sampled_peak(mu: Floats) -> Peak:
-    """Return the peak of one slide.
-
-    Between two samples it is higher than both by no more than friction then falls within a sample.
-    """
-    top = int(mu.argmax())
+    """Return the peak of one slide, which begins after the first sample."""
+    top = 1 + int(mu[1:].argmax())
     peak, level = float(mu[top]), float(mu[-max(len(mu) // 5, 1) :].mean())
     noise = white_noise(mu) if len(mu) > ORDER else 0.0
-    fall = peak - level
-    if fall <= max(ROUNDED * abs(peak), 2.0 * CHANCE * noise):  # there is none
-        return Peak(peak, hypot(fall / sqrt(3.0), noise))
-    fallen = np.flatnonzero(mu[top:] <= peak - 0.5 * fall)
-    count = int(fallen[0]) if len(fallen) else len(mu) - top
-    if count < RESOLVED:
-        return Peak(peak, nan)
-    missed = STEEPEST * 0.5 * fall / count
+    fall, unseen = peak - level, max(ROUNDED * abs(peak), 2.0 * CHANCE * noise)
+    if peak - level <= unseen:
+        missed = _missed_rise(mu, level - unseen)
+    else:
+        missed = _missed_fall(mu[top:], peak - 0.5 * fall, CHANCE * noise)
     return Peak(peak, hypot(missed / sqrt(3.0), CHANCE * noise))
+
+
+def _missed_rise(mu: Floats, level: float) -> float:
+    """Return how high a peak may be that no sample shows: as friction rises from one to the next.
+
+    It is unknown where friction rises within two samples: the spring may load far quicker.
+    """
+    last = int(np.flatnonzero(mu >= level)[0])
+    return float(np.diff(mu[: last + 1]).max()) if last > 2 else nan
+
+
+def _missed_fall(mu: Floats, half: float, noise: float) -> float:
+    """Return how much friction may have fallen by the highest sample, the first.
+
+    It is the fall within a sample; more, if it becomes less from each sample to the next. It is
+    unknown where few samples show the fall.
+    """
+    fallen = np.flatnonzero(mu <= half)
+    count = int(fallen[0]) if len(fallen) else len(mu)
+    if count < RESOLVED:
+        return nan
+    first, second = float(mu[0] - mu[1]), float(mu[1] - mu[2])
+    steeper = first * max(1.0, first / second) if second > 2.0 * noise else first
+    return max(STEEPEST * float(mu[0] - half) / count, steeper)
 
 
 def peaks_of_run(run: Trajectory, slides: Sequence[ConstantStretch]) -> list[Peak]:

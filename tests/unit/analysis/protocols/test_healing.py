@@ -76,7 +76,7 @@ def test_peaks_of_a_record_have_errors_or_are_not_resolved():
             continue
         assert np.isnan(found.per_decade)
         assert "fewer than two peaks are resolved" in str(found)
-        assert "raise the sample rate" in str(found)
+        assert "Raise the sample rate" in str(found)
         assert "> 0." in str(found)
 
 
@@ -100,10 +100,26 @@ def test_errors_of_sampled_peaks_cover_when_the_samples_lie():
     assert all(covered)
 
 
-def test_where_nothing_heals_that_is_said():
-    """It was -1.22e-15 per decade."""
-    time = np.arange(0.0, 1300.0, 0.1)
+def test_a_peak_between_two_samples_is_not_called_no_healing():
+    """Where the spring is loaded within two samples nothing tells whether there was a peak."""
     program = st.protocols.slide_hold_slide(1e-5, [3.0, 30.0, 300.0], slide=100.0)
-    record = st.Record(time=time, force=0.6 - 1e-15 * time, normal_load=1.0)
-    found = st.analysis.healing(record.before(700.0), program)
-    assert "Healing is zero within its error, 6e-06 per decade of hold time." in str(found)
+    time = np.arange(0.0, 700.0, 0.1)
+    held = program.rate(time)[0] == 0.0
+    steep = st.Record(time=time, force=np.where(held, 0.5, 0.6), normal_load=1.0)
+    found = st.analysis.healing(steep, program)
+    assert not found.resolved.any()
+    assert np.isnan(found.per_decade)
+
+
+def test_where_nothing_heals_that_is_said():
+    """It was -1.22e-15 per decade. The spring is loaded by 1e-3 from one sample to the next."""
+    program = st.protocols.slide_hold_slide(1e-5, [3.0, 30.0, 300.0], slide=100.0)
+    time = np.arange(0.0, 700.0, 0.1)
+    held = program.rate(time)[0] == 0.0
+    ends = np.flatnonzero(np.diff(held.astype(int)) == -1)
+    force = np.where(held, 0.59, 0.6)
+    for end in ends:
+        force[end + 1 : end + 11] = 0.59 + 1e-3 * np.arange(1, 11)
+    found = st.analysis.healing(st.Record(time=time, force=force, normal_load=1.0), program)
+    assert found.peak_error == pytest.approx(1e-3 / 3.0**0.5)
+    assert "Healing is zero within its error" in str(found)
