@@ -45,7 +45,8 @@ def plot_velocity_steps(found: VelocitySteps, ax: Axes | None = None) -> Axes:
             ax.set_xlim(0.0, 1e6 * far)
         ax.set_xlabel("slip since the step (µm)")
         ax.set_ylabel(r"friction $\mu$ (1)")
-        ax.legend(loc="best", title=f"points: data; lines: {found.steps[0].law} law")
+        fit = f"; lines: {found.steps[0].law} law" if far is not None else ""
+        ax.legend(loc="best", title=f"points: data{fit}")
     return ax
 
 

@@ -162,7 +162,7 @@ def _row(step: VelocityStep) -> tuple[str, ...]:
         in_words(step.before, "m/s"),
         in_words(step.after, "m/s"),
         number_text(step.a_minus_b, "+.4f"),
-        step.law,
+        "none" if isnan(step.D_c) else step.law,
         number_text(step.a, ".4f"),
         number_text(step.a_error, ".1g"),
         number_text(step.b, ".4f"),

@@ -152,6 +152,7 @@ def test_of_a_rig_of_unknown_stiffness_only_the_levels_are_known():
     """It gave a = 0.0056 +- nothing, b = 0.031, D_c = 3.55 um, without a word."""
     found = st.analysis.velocity_steps(*soft_record("ageing", noise=1e-4))
     assert "The stiffness of the rig is not known: a, b and D_c are not determined." in str(found)
+    assert [row[3] for row in found.section.table.rows] == ["none", "none"]
     for each in found.steps:
         assert np.isnan([each.a, each.b, each.D_c]).all()
         assert each.a_minus_b == pytest.approx(A - B, abs=1e-4)
