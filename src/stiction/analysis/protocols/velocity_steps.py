@@ -243,6 +243,8 @@ def velocity_steps(
     elif any(fit.misses and isnan(fit.D_c) for fit in fits[best]):
         said = [*_reasons(jumps, fits[best])[:1], NEITHER]
         fits = {best: [unknown(len(fit.fit)) for fit in fits[best]]}
+    elif all(isnan(fit.D_c) for found in fits.values() for fit in found):
+        said, fits = _reasons(jumps, fits[best]), {best: fits[best]}
     else:
         better = f"Fitted: the {NAMES[best]}; the other of ageing law and slip law fits worse."
         said = [better if sure else UNDECIDED, *_reasons(jumps, fits[best])]

@@ -164,6 +164,8 @@ def test_where_nothing_evolves_there_is_no_distance():
     assert np.isnan([each.D_c for each in found.steps]).all()
     assert "The points show too little of an evolution of friction" in str(found)
     assert "inf" not in str(found)
+    assert "Fitted" not in str(found)
+    assert not found.other
 
 
 def test_rounded_forces_have_errors_of_the_rounding():
