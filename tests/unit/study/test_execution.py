@@ -4,6 +4,7 @@ A process that has imported everything forks one that does the study, which is t
 as real as one started anew, but there in a hundredth of the time.
 """
 
+import asyncio
 import contextlib
 import json
 import os
@@ -242,6 +243,26 @@ def test_workers_client_and_scheduler_killed(nursery, study, undisturbed, tmp_pa
     assert nursery.end() == "done 0\n"
     assert before.items() <= marks(path).items()
     xr.testing.assert_identical(xr.open_zarr(path).load(), undisturbed)
+
+
+def test_a_scheduler_that_does_not_answer_is_lost(monkeypatch):
+    """One that was killed while it was asked for its workers was waited for for ever."""
+    from distributed import Client
+
+    from stiction.study.execution import engines
+
+    asked = asyncio.Event()
+
+    async def silence(**_: object) -> None:
+        asked.set()
+        await asyncio.Event().wait()
+
+    monkeypatch.setattr(engines, "ANSWERS", 0.1)
+    with Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as it:
+        monkeypatch.setattr(it.scheduler, "ncores", silence, raising=False)
+        with pytest.raises(st.StictionError, match="scheduler is lost"), engines.lost_and_told():
+            next(engines.handed_out(it, lambda task, _: task, [1, 2]))
+    assert asked.is_set()
 
 
 def allow(gate: Path, blocks: int) -> None:

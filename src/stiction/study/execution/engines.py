@@ -26,6 +26,7 @@ AGAIN = "the finished runs are kept, and the same command continues"
 # an interrupt in a terminal reaches all its processes; only the client should act on it
 UNINTERRUPTED = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN)"
 LOOPBACK = "127.0.0.1"
+ANSWERS = 60.0  # s: a scheduler that takes longer is lost
 DEATHS = 10  # of workers during one task, before the task is blamed
 
 
@@ -183,14 +184,15 @@ def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
     flying: Any = as_completed(loop=client.loop)  # type: ignore[no-untyped-call]
 
     def hand_out() -> None:
-        threads = sum(client.nthreads().values()) or 1  # workers come and go
+        # workers come and go; a scheduler that is killed while it is asked may never answer
+        threads = sum(client.nthreads(callback_timeout=ANSWERS).values()) or 1
         for task in islice(waiting, max(AHEAD * threads - flying.count(), 0)):
             name = f"block-{uuid4().hex}-{task}"  # shown in dask's dashboard
             flying.add(client.submit(work, task, never, pure=False, key=name))
 
     hand_out()
     for future in flying:
-        yield future.result()
+        yield future.result(timeout=ANSWERS)
         hand_out()
 
 
