@@ -164,7 +164,7 @@ def invert(data: StepData, law: Law, after: float) -> Inversion:
     minimised: Any = least_squares
     for start in _starts(problem, after):
         found = minimised(
-            problem.residuals, start, problem.slopes,
+            problem.residuals, start, lambda at: np.nan_to_num(problem.slopes(at)),
             x_scale="jac", max_nfev=20, xtol=1e-8, ftol=1e-8,
         )  # fmt: skip
         if found.cost < least:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from benchmarks.explore.draw import Draw
 from scipy.integrate import solve_ivp
+from scipy.signal import lfilter
 from tests.drawn import SEED
 
 import stiction as st
@@ -205,3 +206,25 @@ def test_samples_without_a_pattern_have_no_law():
     force = W * MU * (1.0 + 3e-3 * random.normal(size=len(record.time)))
     found = st.analysis.velocity_steps(record.model_copy(update={"force": force}), program)
     assert np.isnan([each.D_c for each in found.steps]).all()
+
+
+@pytest.mark.parametrize("number", range(36, 42))
+def test_a_fit_beside_slip_that_runs_away_ends(number):
+    """Where no derivative can be taken, least squares stopped with "infs or NaNs"."""
+    draw = Draw(78, number)
+    law, a = draw.among(LAWS), draw.decades(0.004, 0.02)
+    b, D_c = a * draw.between(0.1, 2.2), draw.decades(1e-6, 3e-5)
+    k = max(b - a, 0.05 * b) / D_c * draw.decades(1.5, 1e3)
+    ratio, far = draw.decades(2, 30) ** draw.among([1, -1]), draw.between(8, 60)
+    per, noise = draw.decades(0.5, 60), draw.decades(1e-5, 1e-3)
+    slip, rig = np.arange(0.0, D_c * far, D_c / per), SpringSlider(ratio, k, 0.0)
+    curve = friction_after_a_step(rig, law, a, b, D_c, slip)
+    assert curve is not None
+    random = np.random.default_rng([78, number])
+    off = [
+        lfilter([noise * 0.6], [1.0, -0.8], random.normal(size=count + 200))[200:]
+        for count in (len(slip), max(int(10 * per), 5))
+    ]
+    mu = MU + (a - b) * log(ratio) + curve + off[0]
+    found = invert(StepData(rig, slip, mu, MU + off[1], 0.0), law, mu[int(0.8 * len(mu)) :].mean())
+    assert np.isnan(found.D_c) or abs(found.D_c / D_c - 1.0) < 1.0
