@@ -257,7 +257,7 @@ class Slider(Apparatus):
 
     @property
     def motion(self) -> Drive:
-        """The drive, typed: a program that keeps to one velocity is that velocity."""
+        """The drive, typed; a program that keeps to one velocity is that velocity."""
         drive: Drive = self.drive
         return drive.simplest() if isinstance(drive, DriveProgram) else drive
 
