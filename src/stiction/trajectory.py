@@ -16,6 +16,8 @@ from stiction.friction import states
 from stiction.names import draw, picture
 from stiction.result.file import ENDS, age, read_tables, write_result
 from stiction.result.table import (
+    FASTER,
+    FASTEST,
     VARIABLES,
     Column,
     ColumnTable,
@@ -23,6 +25,7 @@ from stiction.result.table import (
     as_dataset,
     as_table,
     cf_attributes,
+    fastest_slip,
     largest,
     stick_table,
 )
@@ -111,10 +114,11 @@ class Trajectory:
     def _facts(self) -> Table:
         """Return the numbers that one looks for first."""
         at, peak = largest(self.samples["spring_x"])
+        fastest, shown = fastest_slip(self.samples)
         rows = [
             ("largest k_x u_x", in_words(peak, "N")),
             ("at", in_words(float(self.samples["time"][at]), "s")),
-            ("largest slip speed", in_words(float(np.nanmax(self.samples["slip_speed"])), "m/s")),
+            (FASTEST if shown else FASTER, in_words(fastest, "m/s")),
             ("stick intervals", str(self.statistics.stick_count)),
             ("time at rest", in_words(self.statistics.time_stuck, "s")),
         ]

@@ -15,7 +15,14 @@ from stiction.errors import STATUSES
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import ellipse
 from stiction.friction.law import limit_coefficient
-from stiction.result.table import ColumnTable, fastest_slip, largest, sample_table
+from stiction.result.table import (
+    FASTER,
+    FASTEST,
+    ColumnTable,
+    fastest_slip,
+    largest,
+    sample_table,
+)
 from stiction.simulation import automatic_times, solve
 from stiction.solver.integrate import Solution
 from stiction.system.description import Description
@@ -31,7 +38,6 @@ IN_SLIP = 48  # samples in a slip between two rests
 FINE = 4_001  # samples under the microscope
 DIGITS = 6  # of a number on the page
 WAY = ("time", "X", "Y", "slip_speed")
-AT_LEAST = "largest slip speed, at least"  # where it lies between samples
 Window = tuple[float, float]
 Check = Callable[[], None]  # raises if nobody waits for the answer any more
 Arrays = dict[str, np.ndarray]
@@ -219,7 +225,7 @@ def facts(
     listed: list[tuple[str, float, str]] = [
         ("largest k_x u_x", peak, "N"),
         ("  at", float(reached[counted][at]), "s"),
-        ("largest slip speed" if shown else AT_LEAST, fastest, "m/s"),
+        (FASTEST if shown else FASTER, fastest, "m/s"),
         ("u_x at the end", float(table["u_x"][-1]), "m"),
         ("u_y at the end", float(table["u_y"][-1]), "m"),
         ("stick intervals", float(counts.sticks), "1"),

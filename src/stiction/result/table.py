@@ -44,6 +44,8 @@ VARIABLES = {
     "sticking": ("1", "whether the slip is zero"),
 }
 SHOWN = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
+FASTEST = "largest slip speed"
+FASTER = f"{FASTEST}, at least"  # where it lies between samples
 STICKS = {
     "stick_start": ("s", "start of a stick interval"),
     "stick_end": ("s", "end of a stick interval"),
