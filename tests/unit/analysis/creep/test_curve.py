@@ -367,3 +367,21 @@ def test_the_slip_before_a_stick_phase_is_no_creep():
     found = between_rests(record, position, np.zeros(0), 5.0 - edges, (1.0, 5.0))
     assert len(found.velocity) == len(edges) - 1 > 10
     assert np.abs(found.velocity).max() < 1e-12
+
+
+@pytest.mark.parametrize(("exponent", "known"), [(3.0, True), (7.0, False)])
+def test_an_exponent_at_the_end_of_its_range_is_none(exponent, known):
+    """The creep of a fault "diverged with the exponent 5.000 ± 0.000": that is where fits end."""
+    end = np.linspace(0.2, 5.0, 40)
+    tau = 1.0 - (end + 0.05) / 10.0
+    velocity = 1e-5 * tau * ((1.0 - tau) * (1.0 + tau)) ** -exponent
+    columns = {"begin": end + 0.1, "end": end, "velocity": velocity, "force": 0.0 * end}
+    columns["velocity_error"] = 0.01 * velocity
+    curve = xr.Dataset({name: ("bin", values) for name, values in columns.items()})
+    if known:
+        found = st.analysis.fit_divergence(curve, 10.0, lag=0.0)
+        # a bin of 0.1 s, at 0.25 s before slip, has another mean than middle: by (0.1/0.25)^2/2
+        assert found.exponent == pytest.approx(exponent, rel=0.08)
+    else:
+        with pytest.raises(st.ResultError, match="does not have the shape"):
+            st.analysis.fit_divergence(curve, 10.0, lag=0.0)
