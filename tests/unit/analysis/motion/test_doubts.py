@@ -610,7 +610,7 @@ def test_slip_speeds_between_samples_are_not_those_of_samples(law):
     """
     if law == "set-valued":
         slider, lasts, true = st.presets.nakano_popov_2020(), 10.0, 26.29e-3
-        rates = (10.0, 30.0, 100.0, 300.0, 1e3)
+        rates = (10.0, 100.0, 1e3)
     else:
         slider = on_a_line(
             mass=2e6, k_x=5e7, normal_load=5e7, drive=st.ConstantVelocity("35 mm/yr"),
@@ -618,7 +618,7 @@ def test_slip_speeds_between_samples_are_not_those_of_samples(law):
                 mu_star=0.6, a=0.010, b=0.015, D_c="1 mm", V_star="1 um/s"
             ),
         )  # fmt: skip
-        lasts, rates = 1.2e9, (1e-5, 1e-4, 5e-4)
+        lasts, rates = 1.2e9, (1e-5, 1e-4)
     for rate in rates:
         run = st.simulate(slider, lasts, sample_rate=rate)
         found = st.analyse(run)
