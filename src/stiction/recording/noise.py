@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import comb, sqrt
+from math import comb, inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,9 @@ REPEATED = 4  # samples for each of them, on average
 LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
+
+
+SEEMING = 20.0  # standard deviations: what moves by less may be at rest
 
 
 class NoiseLevel(NamedTuple):
@@ -101,3 +104,8 @@ def _merge(codes: Floats) -> Floats:
     """Return sorted values without those that differ from the one before by rounding alone."""
     apart = np.diff(codes, prepend=-np.inf) > 1e-9 * float(np.ptp(codes))
     return codes[apart]
+
+
+def seeming_motion(position: Floats) -> float:
+    """Return how far a displacement may seem to move at rest, m; infinite for a few samples."""
+    return SEEMING * white_noise(position) if len(position) > ORDER else inf

@@ -181,6 +181,12 @@ def apparent_friction(slider: Slider, values: Mapping[Any, Any] | ColumnTable) -
         return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
 
 
+def mean_speeds(time: np.ndarray, *position: np.ndarray) -> np.ndarray:
+    """Return the mean speed from each sample to the next, (n - 1,), m/s; 0 at one instant."""
+    way, passed = np.linalg.norm(np.diff(position), axis=0), np.diff(time)
+    return np.asarray(np.divide(way, passed, out=np.zeros_like(way), where=passed > 0.0))
+
+
 def fastest_slip(samples: Mapping[Any, Any] | ColumnTable) -> tuple[float, bool]:
     """Return the largest slip speed that samples tell of, m/s, and whether they show the largest.
 
@@ -191,9 +197,8 @@ def fastest_slip(samples: Mapping[Any, Any] | ColumnTable) -> tuple[float, bool]
     shown = float(np.fmax.reduce(speed, initial=0.0))
     if len(time) < 2:
         return shown, True
-    way = np.hypot(np.diff(samples["X"]), np.diff(samples["Y"]))
-    passed = np.diff(time)
-    between = float(np.fmax.reduce(way[passed > 0.0] / passed[passed > 0.0], initial=0.0))
+    means = mean_speeds(time, samples["X"], samples["Y"])
+    between = float(np.fmax.reduce(means, initial=0.0))
     return max(shown, between), between <= SHOWN * shown
 
 

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from math import inf
 from typing import Any
 from warnings import catch_warnings, simplefilter
 
 from stiction.friction.law import static_coefficient
+from stiction.friction.user.derivative import derivative
 from stiction.testing.common import ROUNDING, attempt, fault_of, first, run_compiled
-
-EPS = 2.2e-16
-REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
 
 
 def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
@@ -62,29 +59,6 @@ def continuous(law: Any, speeds: Sequence[float]) -> Iterator[str]:
                 f"integral of slope there is {total:.6g}: it jumps; smooth the jump over a speed"
             )
     yield from first(found)
-
-
-def derivative(function: Callable[[float], float], v: float) -> tuple[float, float]:
-    """Return the derivative by differences, and an error bound.
-
-    The differences are central, one-sided at v = 0. The bound adds rounding and truncation, which
-    halving the step reveals; of several steps the most accurate counts.
-    """
-    best = (0.0, inf)
-    for reach in REACHES:
-        h = reach * v or 1e-2 * reach * reach
-        coarse, fine = _difference(function, v, h), _difference(function, v, 0.5 * h)
-        rounding = 16.0 * EPS * (abs(function(v)) + abs(v * fine)) / h
-        error = (2.0 if v > 0.0 else 4.0) * abs(fine - coarse) + rounding
-        if error < best[1]:
-            best = fine, error
-    return best
-
-
-def _difference(function: Callable[[float], float], v: float, h: float) -> float:
-    if v == 0.0:
-        return (4.0 * function(h) - 3.0 * function(0.0) - function(2.0 * h)) / (2.0 * h)
-    return (function(v + h) - function(v - h)) / ((v + h) - (v - h))
 
 
 def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:

@@ -11,6 +11,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.peak_refinement import Vertices, fit_pieces
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, Indices, xr
+from stiction.result.table import SHOWN, mean_speeds
 
 # name: (unit, long name), as CF attributes
 COLUMNS = {
@@ -37,7 +38,6 @@ UNSEEN = 0.25  # of a period without a sample: the cycle is not known
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
-SHOWN = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
 _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
 TIMES = ("start", "peak_time", "trough_time")  # instants, whose mean is meaningless
 
@@ -225,7 +225,7 @@ def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floa
     found = np.maximum.reduceat(speed, np.minimum(ends, len(speed) - 1))[::2]
     if record.sticks is None or record.position is None:
         return np.asarray(found)
-    between = np.abs(np.diff(record.position)) / np.diff(record.time)
+    between = mean_speeds(record.time, record.position)
     means = np.maximum.reduceat(between, np.minimum(ends, len(between) - 1))[::2]
     return np.where(means <= SHOWN * found, found, np.nan)
 

@@ -20,7 +20,7 @@ from stiction.analysis.signals.reversals import taken_out
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
-from stiction.recording.noise import ORDER, white_noise
+from stiction.recording.noise import seeming_motion
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -29,7 +29,6 @@ ROUNDED = 1e-9  # of a drive's travel: no way there and back
 FEWEST_SAMPLES = 20  # samples of a loop: an ellipse through them has 1.6 % less area
 A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
 MOST = 1e6  # such times between two jumps
-NOISE = 20.0  # standard deviations: a smaller way of a measured drive is none
 VARIES = 0.01  # of the load: where it varies by more, a force over it is no coefficient
 
 
@@ -185,9 +184,8 @@ def _test(source: Trajectory | Record, program: DriveProgram | None) -> tuple[Fr
     """Return the test, and the way of its drive: by the program before the measured one."""
     if program is None and isinstance(source, Record) and source.drive_position is not None:
         X = source.drive_position
-        noise = NOISE * white_noise(X) if len(X) > ORDER else 0.0
         test = friction_test(source, DriveProgram())  # whose stretches a loop does not ask for
-        return test, _Way(test.time, X, X, noise=noise)
+        return test, _Way(test.time, X, X, noise=seeming_motion(X))
     test = friction_test(source, program)
     time = _times(test)
     if not len(time):  # the record ends before the drive begins

@@ -12,15 +12,16 @@ stiffness it begins with steady sliding at V_0: psi = -y = ln(V/V_0).
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from contextlib import suppress
 from math import exp, expm1, log
+from types import SimpleNamespace
 from typing import Any, Literal, NamedTuple
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.friction.laws.rate_and_state.common import Ageing, Slipping, Squaring
 
 Law = Literal["slip", "ageing", "perrin"]
 
@@ -30,26 +31,8 @@ FASTEST = 30.0  # logarithm of the slip speed over V at which a slip has run awa
 YOUNGEST = -100.0  # logarithm of the state, in a trial step of one: none is so young
 
 
-def _ageing(y: float, psi: float) -> float:
-    """Return psi': theta' = 1 - v theta/D_c."""
-    return exp(-psi) - exp(y)
-
-
-def _slip(y: float, psi: float) -> float:
-    """Return psi': theta' = -(v theta/D_c) ln(v theta/D_c)."""
-    return -exp(y) * (y + psi)
-
-
-def _perrin(y: float, psi: float) -> float:
-    """Return psi': theta' = 1 - (v theta/2D_c)^2."""
-    return 0.5 * (exp(-psi) - exp(2.0 * y + psi))
-
-
-EVOLUTIONS: dict[Law, Callable[[float, float], float]] = {
-    "ageing": _ageing,
-    "slip": _slip,
-    "perrin": _perrin,
-}
+EVOLUTIONS: dict[Law, Any] = {"ageing": Ageing, "slip": Slipping, "perrin": Squaring}
+AT_V = SimpleNamespace(V_star=1.0)  # of a law in these units, whose log_theta is psi
 
 
 class SpringSlider(NamedTuple):
@@ -103,14 +86,15 @@ def _course(
     """Return y and psi, (n, 2), at times from 0 on; None where the slip runs away."""
     from scipy.integrate import ODEintWarning, odeint
 
-    evolution, left = EVOLUTIONS[law], MOST
+    evolution, left = EVOLUTIONS[law].evolution, MOST
 
     def rate(state: Floats, _: float) -> tuple[float, float]:
         nonlocal left
         y, psi, left = float(state[0]), max(float(state[1]), YOUNGEST), left - 1
         if y > FASTEST or left < 0:
             raise ArithmeticError
-        v, change = exp(y), evolution(y, psi)
+        v = exp(y)
+        change = evolution(AT_V, psi, v, 1.0)
         return (kappa * (1.0 - v) - b * change) / (a + rig.damping * v), change
 
     start = _first(rig, a), log(rig.ratio)

@@ -29,9 +29,8 @@ from stiction.trajectory import Trajectory
 
 Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
 
-STIFF = (
-    100.0  # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
-)
+# k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
+STIFF = 100.0
 CERTAIN = 13.8  # difference of sums of squares, in variances: likelihoods differ by a thousand
 LAWS: dict[str, Law] = {
     "RateStateAgeing": "ageing",

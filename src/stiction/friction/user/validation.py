@@ -10,7 +10,7 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import lru_cache
+from functools import lru_cache, partial
 from inspect import isfunction
 from math import inf, isfinite, nan
 from types import FrameType, ModuleType
@@ -18,6 +18,7 @@ from typing import Any
 
 from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.law import has_state
+from stiction.friction.user.derivative import derivative
 from stiction.friction.user.source import member
 from stiction.text.validation import unknown_name
 
@@ -35,9 +36,7 @@ ENDING = "bound each loop: for _ in range(50)"
 RESERVED = {"law", "source"}  # keys of [friction] that are not parameters
 PROBED = (0.0, 1e-3)  # m/s
 SLOPES = (1.3e-6, 1.7e-4, 1.1e-2, 0.23)  # m/s: at such numbers no law has a kink
-NEAR = 0.01  # of a slip speed: the distance of a difference
 WRONG = 0.01  # of two slopes: by so much they may differ beside the difference's error
-ROUNDING = 1e-14  # of a coefficient, of which it may be the sum of some terms
 
 
 class NoEnd(BaseException):
@@ -208,7 +207,7 @@ def _wrong(law: Any) -> tuple[str, str] | None:
             return f"coefficient(law, {v:g})", what
     for v in SLOPES:
         given = _value(law.slope, v)
-        wanted, error = _difference(law, v)
+        wanted, error = derivative(partial(_value, law.coefficient), v)
         if abs(given - wanted) > error + WRONG * (abs(given) + abs(wanted)):
             what = (
                 f"is {given:.4g} s/m, but there its coefficient changes by {wanted:.4g} s/m; let "
@@ -216,19 +215,6 @@ def _wrong(law: Any) -> tuple[str, str] | None:
             )
             return f"slope(law, {v:g})", what
     return None
-
-
-def _difference(law: Any, v: float) -> tuple[float, float]:
-    """Return the slope of a law by differences, and their error, both in s/m.
-
-    Half the distance shows the error of a central difference; rounding adds to it.
-    """
-    reach = NEAR * v
-    coarse, fine = (
-        (_value(law.coefficient, v + h) - _value(law.coefficient, v - h)) / (2.0 * h)
-        for h in (reach, 0.5 * reach)
-    )
-    return fine, 4.0 * abs(coarse - fine) + ROUNDING * _value(law.coefficient, v) / reach
 
 
 def _value(method: Callable[[float], Any], v: float) -> float:

@@ -14,7 +14,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats
-from stiction.recording.noise import ORDER, white_noise
+from stiction.recording.noise import seeming_motion
 
 PARTS = 400  # means of a record: a longer one is not resolved by its samples but by these
 UNLOADED = 0.05  # of the largest mean: a force that stays below is that of no load
@@ -27,7 +27,6 @@ BRIEF = 2  # means: in so few a record may end while the drive turns
 GUARD = 0.5  # of the sliding, at most, is left out before a fall
 # Of the reach of the drive: so near its end it turns, or dwells. Of a sine it is 2 % of the stroke
 TURNS = 1e-3
-NOISE = 20.0  # standard deviations: a smaller reach of the drive is no motion
 
 
 class Sliding(NamedTuple):
@@ -64,7 +63,7 @@ def sliding(record: Record) -> Sliding:
 def _moving(record: Record) -> tuple[int, int]:
     """Return the samples between which the drive is known to move, without those at its ends."""
     at = record.drive_position
-    if at is None or len(at) <= ORDER or not np.ptp(at) > NOISE * white_noise(at):
+    if at is None or not np.ptp(at) > seeming_motion(at):
         return 0, len(record)
     from_end = np.minimum(at - at.min(), at.max() - at)
     moves = np.flatnonzero(from_end > TURNS * np.ptp(at))

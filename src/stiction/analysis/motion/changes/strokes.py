@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
-from stiction.recording.noise import ORDER, white_noise
+from stiction.recording.noise import seeming_motion
 from stiction.recording.strokes import strokes as strokes_of
 
 # The lesser of both levels over the larger; share of time between half of either, 0.23 for a sine
@@ -18,7 +18,6 @@ BALANCED, BETWEEN, EITHER = 0.3, 0.15, 0.1
 # may differ, and the rate over stiffness times drive velocity where the mass sticks meanwhile
 AS_SLOW, ALMOST, AT_MOST = 1.25, 0.75, 1.15
 QUICKER = 3.0  # times: then the one passage is a slip and the other a loading
-NOISE = 20.0  # standard deviations: a smaller reach of the drive is no motion
 
 
 def strokes(record: Record) -> tuple[float, float] | None:
@@ -29,7 +28,7 @@ def strokes(record: Record) -> tuple[float, float] | None:
 def _by_displacement(record: Record) -> tuple[float, float] | None:
     """Return the median force of the strokes forth and back of a drive that was recorded."""
     at = record.drive_position
-    if at is None or len(at) <= ORDER or not np.ptp(at) > NOISE * white_noise(at):
+    if at is None or not np.ptp(at) > seeming_motion(at):
         return None
     found = strokes_of(at)
     ways = [[record.force[each.samples] for each in found if each.way == way] for way in (1, -1)]

@@ -11,6 +11,7 @@ from stiction.analysis.motion.metadata import FEW
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.arrays import xr
+from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
@@ -110,7 +111,7 @@ def doubt_slips_between_samples(record: Record, cycles: xr.Dataset) -> Iterator[
     unseen = int(np.count_nonzero(np.isnan(cycles["peak_slip_speed"].values)))
     if record.position is None or not unseen:
         return
-    least = np.abs(np.diff(record.position)) / np.diff(record.time)
+    least = mean_speeds(record.time, record.position)
     yield (
         f"In {unseen} of {cycles.sizes['cycle']} slips the largest slip speed lies between two "
         f"samples, and is {in_words(float(least.max()), 'm/s')} at least: run a slip by itself, "
