@@ -17,6 +17,7 @@ REPEATED = 4  # samples for each of them, on average
 LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
+HIDDEN = 1 / 3  # of a step of rounding: noise that does not average it away
 
 
 SEEMING = 20.0  # standard deviations: what moves by less may be at rest
@@ -32,10 +33,8 @@ class NoiseLevel(NamedTuple):
 def noise_level(values: Floats) -> NoiseLevel:
     """Estimate noise and quantisation of equally spaced samples.
 
-    See `white_noise`. A quantisation of step q adds q^2/12 to the
-    variance (B. Widrow & I. Kollar, Quantization Noise, Cambridge 2008, chapter 4). Noise below a
-    third of a step is not resolved and comes out as 0. Noise that a filter has taken away
-    near half the sample rate is not seen either.
+    See `white_noise` and `resolved_noise`. Noise that a filter has taken away near half the sample
+    rate is not seen.
 
     Examples
     --------
@@ -48,10 +47,17 @@ def noise_level(values: Floats) -> NoiseLevel:
     if len(values) < FEWEST_SAMPLES:
         return NoiseLevel(0.0, 0.0)
     step = lattice(values)
-    total = white_noise(values, step)
-    left = total**2 - step**2 / 12.0
-    resolved = left > (step / 3.0) ** 2
-    return NoiseLevel(left**0.5 if resolved else 0.0, step)
+    return NoiseLevel(resolved_noise(values, step), step)
+
+
+def resolved_noise(values: Floats, step: float) -> float:
+    """Return the standard deviation of white noise on multiples of a step; 0 if it is hidden.
+
+    A quantisation of step q adds q^2/12 to the variance (B. Widrow & I. Kollar, Quantization Noise,
+    Cambridge 2008, chapter 4). Noise below a third of a step is not resolved.
+    """
+    left = white_noise(values, step) ** 2 - step**2 / 12.0
+    return sqrt(left) if left > (HIDDEN * step) ** 2 else 0.0
 
 
 def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> float:

@@ -23,14 +23,13 @@ from stiction.drive import (
 )
 from stiction.errors import ResultError
 from stiction.friction import Law
-from stiction.recording.noise import ORDER, white_noise
+from stiction.recording.noise import ORDER, resolved_noise
 from stiction.system.tensors import damping_tensor
 from stiction.trajectory import Trajectory
 
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
-HIDDEN = 1 / 3  # of a step of rounding: noise that does not average it away
 LISTED = 3  # times that a sentence lists
 
 
@@ -238,8 +237,7 @@ def _rounding(force: Floats) -> float:
     step = resolution(force)
     if not step or len(force) <= ORDER:
         return 0.0
-    noise = white_noise(force, step) ** 2 - step**2 / 12.0
-    return step / sqrt(12.0) if noise < (HIDDEN * step) ** 2 else 0.0
+    return 0.0 if resolved_noise(force, step) else step / sqrt(12.0)
 
 
 def stretches(

@@ -40,6 +40,8 @@ class StepData(NamedTuple):
 
     Attributes
     ----------
+    time : float
+        s.
     rig : SpringSlider
         What is known of it.
     slip : ndarray
@@ -48,14 +50,18 @@ class StepData(NamedTuple):
         (n,), spring force over load.
     before : ndarray
         (l,), the same in steady sliding before the step.
+    after : float
+        Where it is steady after the step, or its mean in the end of the data.
     noise : float
         What all samples may be off by together: rounding, or the tolerance of a run.
     """
 
+    time: float
     rig: SpringSlider
     slip: Floats
     mu: Floats
     before: Floats
+    after: float
     noise: float
 
     @property
@@ -151,18 +157,15 @@ def unknown(samples: int) -> Inversion:
     return Inversion(nan, nan, nan, nan, nan, nan, nan, nan, False, np.full(samples, nan))
 
 
-def invert(data: StepData, law: Law, after: float) -> Inversion:
-    """Fit a law to a step after which friction is steady at `after`, or so at the end of the data.
-
-    What the data do not determine is NaN.
-    """
+def invert(data: StepData, law: Law) -> Inversion:
+    """Fit a law to a step; what the data do not determine is NaN."""
     from scipy.optimize import least_squares
 
     if len(data.mu) < FEWEST or not np.isfinite(data.rig.stiffness):
         return unknown(len(data.mu))
     problem, best, least = _problem_of(data, law), None, inf
     minimised: Any = least_squares
-    for start in _starts(problem, after):
+    for start in _starts(problem):
         found = minimised(
             problem.residuals, start, lambda at: np.nan_to_num(problem.slopes(at)),
             x_scale="jac", max_nfev=20, xtol=1e-8, ftol=1e-8,
@@ -187,13 +190,13 @@ def _problem_of(data: StepData, law: Law) -> _Problem:
     return _Problem(data, law, means[0], np.concatenate([[data.level], means[1]]), weight)
 
 
-def _starts(problem: _Problem, after: float) -> list[Floats]:
+def _starts(problem: _Problem) -> list[Floats]:
     """Return parameters near those that are sought, the best first; none if none is near."""
     data, mu = problem.data, problem.mu[1:]
     by, up = log(data.rig.ratio), 1.0 if data.rig.ratio > 1.0 else -1.0
     peak = int((up * mu).argmax())
-    change = (after - data.level) / by
-    passed = np.abs(mu[peak:] - mu[peak]) > (1.0 - exp(-1.0)) * abs(mu[peak] - after)
+    change = (data.after - data.level) / by
+    passed = np.abs(mu[peak:] - mu[peak]) > (1.0 - exp(-1.0)) * abs(mu[peak] - data.after)
     far = problem.slip[peak + int(passed.argmax())] if passed.any() else problem.slip[-1]
     guess = float(far - problem.slip[peak]) or float(problem.slip[-1]) / len(mu)
     least = max((mu[peak] - data.level) / by, 0.1 * abs(change))

@@ -17,7 +17,8 @@ from stiction.analysis.protocols.friction_test import (
     number_text,
     say_left_out,
 )
-from stiction.analysis.protocols.inversion import Inversion, StepData, invert, unknown
+from stiction.analysis.protocols.inversion import Inversion, StepData
+from stiction.analysis.protocols.law_choice import FittedLaw, choose
 from stiction.analysis.protocols.spring_slider import Law, SpringSlider
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
@@ -31,25 +32,6 @@ Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
 
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0
-CERTAIN = 13.8  # difference of sums of squares, in variances: likelihoods differ by a thousand
-LAWS: dict[str, Law] = {
-    "RateStateAgeing": "ageing",
-    "RateStateSlip": "slip",
-    "RateStatePerrin": "perrin",
-}
-NAMES: dict[Law, str] = {
-    "ageing": "ageing law",
-    "slip": "slip law",
-    "perrin": "law of Perrin, Rice & Zheng",
-}
-NEITHER = (
-    "Neither the ageing law nor the slip law is that of all steps; give law to fit one of them."
-)
-UNDECIDED = "The points do not tell the ageing law from the slip law: the table has both."
-UNKNOWN_RIG = (
-    "The stiffness of the rig is not known: a, b and D_c are not determined. Give the record its "
-    "stiffness, also if it is large."
-)
 
 
 @dataclass(frozen=True)
@@ -232,28 +214,12 @@ def velocity_steps(
     if not jumps:
         missing = "the speed of the drive does not step from one constant value to another"
         raise ResultError(" ".join([f"{missing}; see st.protocols.velocity_steps.", *left_out]))
-    laws, said = _laws(test, law)
-    fits = {each: [_fit(test, one, two, each) for one, two in jumps] for each in laws}
-    best, sure = _better(fits) if len(laws) > 1 else (laws[0], True)
-    if isnan(test.stiffness):
-        said = [UNKNOWN_RIG]
-    elif len(laws) == 1:
-        said += _reasons(jumps, fits[best])
-    elif any(fit.misses and isnan(fit.D_c) for fit in fits[best]):
-        said = [*_reasons(jumps, fits[best])[:1], NEITHER]
-        fits = {best: [unknown(len(fit.fit)) for fit in fits[best]]}
-    elif all(isnan(fit.D_c) for found in fits.values() for fit in found):
-        said, fits = _reasons(jumps, fits[best]), {best: fits[best]}
-    else:
-        better = f"Fitted: the {NAMES[best]}; the other of ageing law and slip law fits worse."
-        said = [better if sure else UNDECIDED, *_reasons(jumps, fits[best])]
-    steps = {
-        each: tuple(_step(test, *jump, each, fit) for jump, fit in zip(jumps, found, strict=True))
-        for each, found in fits.items()
-    }
-    other = () if sure else tuple(step for each in fits if each != best for step in steps[each])
-    stiffness = _least_stiffness(test, jumps, steps[best])
-    return VelocitySteps(steps[best], stiffness, tuple(left_out), other, tuple(said))
+    data = [step_data(test, *jump) for jump in jumps]
+    choice = choose(test, data, law)
+    steps = _steps(test, jumps, data, choice.best)
+    other = () if choice.other is None else _steps(test, jumps, data, choice.other)
+    stiffness = _least_stiffness(test, jumps, steps)
+    return VelocitySteps(steps, stiffness, tuple(left_out), other, tuple(choice.said))
 
 
 def _least_stiffness(test: FrictionTest, jumps: Jumps, steps: Sequence[VelocityStep]) -> float:
@@ -290,55 +256,44 @@ def _fault(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> st
     return ""
 
 
-def _laws(test: FrictionTest, law: Law | None) -> tuple[tuple[Law, ...], list[str]]:
-    """Return the laws to be fitted, and why, in a sentence if there is one alone."""
-    own = LAWS.get(type(test.law).__name__)
-    chosen = law or own
-    if chosen is None:
-        return ("ageing", "slip"), []
-    why = "which is that of the run" if chosen == own else "as asked"
-    if own and chosen != own:
-        why = f"though the run has the {NAMES[own]}"
-    return (chosen,), [f"Fitted: the {NAMES[chosen]}, {why}."]
-
-
-def _better(fits: dict[Law, list[Inversion]]) -> tuple[Law, bool]:
-    """Return which of two laws fits better, and whether that is sure."""
-    one, two = fits
-    gain = 0.0
-    for first, second in zip(fits[one], fits[two], strict=True):
-        if not isnan(first.square) and not isnan(second.square):
-            variance = (first if first.square < second.square else second).variance
-            gain += (second.square - first.square) / variance
-    return (one if gain >= 0.0 else two), abs(gain) > CERTAIN or gain == 0.0
-
-
-def _data(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> StepData:
-    """Return a step of the drive as it is fitted."""
+def step_data(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> StepData:
+    """Return a step of the drive, from one stretch to the next, as it is fitted."""
     way, after = one.way, test.within(two.start, two.end)
     rig = SpringSlider(
         two.velocity / one.velocity,
         test.stiffness / two.load,
         test.damping * abs(two.velocity) / two.load,
     )
-    travel = abs(two.velocity) * (test.time[after] - two.start)
     return StepData(
-        rig, travel, way * test.mu[after], way * test.mu[test.late(one)], test.off / two.load
+        two.start,
+        rig,
+        abs(two.velocity) * (test.time[after] - two.start),
+        way * test.mu[after],
+        way * test.mu[test.late(one)],
+        way * test.steady(two),
+        test.off / two.load,
     )
 
 
-def _fit(test: FrictionTest, one: ConstantStretch, two: ConstantStretch, law: Law) -> Inversion:
-    """Fit a law to a step."""
-    return invert(_data(test, one, two), law, one.way * test.steady(two))
+def _steps(
+    test: FrictionTest, jumps: Jumps, data: Sequence[StepData], fitted: FittedLaw
+) -> tuple[VelocityStep, ...]:
+    """Return all steps with the fit of a law."""
+    each = zip(jumps, data, fitted.steps, strict=True)
+    return tuple(_step(test, *jump, step, fitted.law, fit) for jump, step, fit in each)
 
 
 def _step(
-    test: FrictionTest, one: ConstantStretch, two: ConstantStretch, law: Law, fit: Inversion
+    test: FrictionTest,
+    one: ConstantStretch,
+    two: ConstantStretch,
+    data: StepData,
+    law: Law,
+    fit: Inversion,
 ) -> VelocityStep:
     """Return a step with the fit of a law."""
-    data = _data(test, one, two)
     before, by = one.way * test.steady(one), log(data.rig.ratio)
-    steady = one.way * test.steady(two) if test.has_settled(two) else nan
+    steady = data.after if test.has_settled(two) else nan
     up = 1.0 if by > 0.0 else -1.0
     lag = test.lag[test.within(two.start, two.end)]
     return VelocityStep(
@@ -360,20 +315,3 @@ def _step(
         fit.b_error,
         law,
     )
-
-
-def _reasons(jumps: Jumps, fits: Sequence[Inversion]) -> list[str]:
-    """Return sentences on why a, b and D_c of some steps are not determined."""
-    found = []
-    for misses, why in (
-        (True, "No curve of the law goes through the points"),
-        (False, "The points show too little of an evolution of friction"),
-    ):
-        times = [
-            in_words(two.start, "s")
-            for (_, two), fit in zip(jumps, fits, strict=True)
-            if isnan(fit.D_c) and fit.misses == misses
-        ]
-        if times:
-            found.append(f"{why}: a, b and D_c are not determined at {in_list(times)}.")
-    return found

@@ -85,8 +85,8 @@ def test_errors_are_those_of_noise():
         x = np.arange(0.0, 30.0 * D, 0.1 * D)
         noise = 0.01 * b * np.random.default_rng(number).normal(size=len(x) + 100)
         mu = MU + (A - b) * log(rig.ratio) + friction_after_a_step(rig, law, A, b, D, x)
-        data = StepData(rig, x, mu + noise[100:], MU + noise[:100], 0.0)
-        fit = invert(data, law, float(data.mu[-60:].mean()))
+        y = mu + noise[100:]
+        fit = invert(StepData(0.0, rig, x, y, MU + noise[:100], float(y[-60:].mean()), 0.0), law)
         assert fit.D_c_error < 0.2 * D
         off = [(fit.a - A) / fit.a_error, (fit.b - b) / fit.b_error, (fit.D_c - D) / fit.D_c_error]
         beyond += int(max(map(abs, off)) > 3.0)
@@ -226,5 +226,6 @@ def test_a_fit_beside_slip_that_runs_away_ends(number):
         for count in (len(slip), max(int(10 * per), 5))
     ]
     mu = MU + (a - b) * log(ratio) + curve + off[0]
-    found = invert(StepData(rig, slip, mu, MU + off[1], 0.0), law, mu[int(0.8 * len(mu)) :].mean())
+    after = mu[int(0.8 * len(mu)) :].mean()
+    found = invert(StepData(0.0, rig, slip, mu, MU + off[1], after, 0.0), law)
     assert np.isnan(found.D_c) or abs(found.D_c / D_c - 1.0) < 1.0
