@@ -25,7 +25,7 @@ from benchmarks.explore.deviation import (
 )
 from benchmarks.explore.systems.general import general_system
 from benchmarks.explore.systems.seismic import seismic_system
-from benchmarks.explore.systems.set_valued import system
+from benchmarks.explore.systems.set_valued import System, system
 from benchmarks.explore.systems.slow import slow_system
 from benchmarks.explore.systems.unsteady import unsteady_system
 from benchmarks.explore.systems.with_state import state_system
@@ -71,9 +71,13 @@ class Seen(NamedTuple):
 
 
 def look(seed: int, number: int, longer: float = 1.0, kind: str = "set-valued") -> Seen:
-    """Run one system in all modes, and as it would be if it were a little other."""
+    """Look at one system that is drawn at random, for `longer` times its duration."""
     drawn = DRAWN[kind](seed, number)
-    drawn = drawn._replace(duration=longer * drawn.duration)
+    return look_at(drawn._replace(duration=longer * drawn.duration), number)
+
+
+def look_at(drawn: System, number: int = 0) -> Seen:
+    """Run a system in all modes, and as it would be if it were a little other."""
     slider, rtol = drawn.slider, drawn.rtol
     finer = max(FINER * rtol, FINEST)
     sharp, reference = forces(drawn, finer)

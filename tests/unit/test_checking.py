@@ -15,7 +15,7 @@ import stiction as st
 from stiction import cli
 from stiction.result.file import DamageError
 
-SEED, DAMAGES = 1, 50  # of a result, and as many of a store
+SEED, DAMAGES = 1, 32  # of a result, and as many of a store
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
 STUDY = st.Study(
     base=BASE,

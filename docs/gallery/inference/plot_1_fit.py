@@ -33,7 +33,7 @@ truth = rig.slider.replace(phi="2.5 deg")
 motion = move(truth, np.arange(0.0, 13.0, 0.01), Jitter(0.005, 0.5), draw, cycle=1.4)
 force = truth.k_x * motion.rows[:, 0] + 0.004 * draw.standard_normal(len(motion.time))
 record = st.Record(time=motion.time, force=force, drive_velocity="0.5 mm/s", normal_load="4 N")
-fit = st.fit(record, rig, simulations=512)  # 4000 by default
+fit = st.fit(record, rig, simulations=400, library="libraries")  # 4000 by default
 st.plotting.plot_posterior(fit)
 st.plotting.plot_corner(fit)
 st.plotting.plot_ranks(fit)

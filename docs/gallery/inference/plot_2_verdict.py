@@ -6,8 +6,6 @@ A record whose truth is known, laid over simulations of its rig by the fitted pa
 odds of four mechanisms that could have made it: here the friction vector rotates.
 """
 
-from tempfile import mkdtemp
-
 import numpy as np
 
 import stiction as st
@@ -34,7 +32,7 @@ truth = rig.slider.replace(phi="2.5 deg")
 motion = move(truth, np.arange(0.0, 13.0, 0.01), Jitter(0.005, 0.5), draw, cycle=1.4)
 force = truth.k_x * motion.rows[:, 0] + 0.004 * draw.standard_normal(len(motion.time))
 record = st.Record(time=motion.time, force=force, drive_velocity="0.5 mm/s", normal_load="4 N")
-store = mkdtemp()  # what is simulated for the one serves the other
-found = st.audit(rig, record=record, simulations=384, library=store)  # 4000 by default
+store = "libraries"  # what was simulated for a fit of this record serves its audit
+found = st.audit(rig, record=record, simulations=400, library=store)  # 4000 by default
 st.plotting.plot_predictive(found.measured)
-st.plotting.plot_mechanism(st.mechanism(record, rig, simulations=96, library=store))
+st.plotting.plot_mechanism(found.measured.odds)

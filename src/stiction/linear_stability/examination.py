@@ -98,7 +98,12 @@ class Stability:
 
     def tables(self) -> list[Section]:
         """Return the modes and the critical values as sentences and tables."""
-        return [modes_section(self.sliding), critical_section(self.slider, self.criticals)]
+        return [*self._sections]
+
+    @cached_property
+    def _sections(self) -> tuple[Section, ...]:
+        """All sections; a critical stiffness takes as long to find as a critical value."""
+        return modes_section(self.sliding), critical_section(self.slider, self.criticals)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the modes over one parameter, or the boundary in the plane of two.

@@ -22,6 +22,7 @@ from stiction.system.slider import Slider
 from stiction.text.units import Quantity
 
 POINTS = 65  # in the first scan of a range
+STEEPER = 100.0  # times as steep between two points as around them may a growth rate be
 
 
 class Critical(NamedTuple):
@@ -155,8 +156,11 @@ def sign_changes(
 
     grid = [float(at) for at in np.linspace(0.0, 1.0, points)]
     known = {at: function(at) for at in grid}
-    for before, at, after in zip(grid, grid[1:], grid[2:], strict=False):
-        known |= dip(function, before, at, after, known)
+    values = np.array([known[at] for at in grid])
+    for i in range(1, points - 1):
+        steps = np.abs(np.diff(values[max(i - 2, 0) : i + 3]))
+        if abs(values[i]) < STEEPER * steps.max():
+            known |= dip(function, grid[i - 1], grid[i], grid[i + 1], known)
     signs = [(at, known[at]) for at in sorted(known) if known[at] != 0.0]
     found = [
         float(brentq(function, a, b, xtol=1e-15, rtol=1e-14))  # type: ignore[no-untyped-call]

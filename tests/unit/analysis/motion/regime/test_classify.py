@@ -329,7 +329,7 @@ def test_a_ratio_that_is_only_rounding_is_nothing() -> None:
 @pytest.mark.parametrize("make", [hum_over_loading, random_times])
 def test_hum_is_no_motion(make: Callable[[np.random.Generator], Labelled]) -> None:
     """Over a first loading that then slides; and over stick-slip, sampled at random times."""
-    found = [judge(make, 3, number) for number in range(25)]
+    found = [judge(make, 3, number) for number in range(15)]
     assert all(each.right and each.counted for each in found)
 
 
