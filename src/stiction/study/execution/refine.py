@@ -21,7 +21,7 @@ from stiction.storage.files import place, workshop
 from stiction.study.execution.engines import Engine
 from stiction.study.execution.sweep import Tally, sweep
 from stiction.study.plan.axes import Values
-from stiction.study.plan.coordinates import number
+from stiction.study.plan.coordinates import ascending, number
 from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.kept import UNKNOWN, flag_attributes
 from stiction.study.store.seal import seal
@@ -53,16 +53,19 @@ class Intervals(NamedTuple):
 
 
 def changes(study: Study, data: xr.Dataset, along: str, apart: Sequence[str] | None) -> Intervals:
-    """Return neighbouring runs of different kind on a study's grid; failed runs are skipped."""
-    dims = study.layout.dims
+    """Return neighbouring runs of different kind on a study's grid; failed runs are skipped.
+
+    Neighbours along the axis have neighbouring values, in whatever order the study has them.
+    """
+    dims, order = study.layout.dims, ascending(study.coordinates, along)
     axis = dims.index(along)
-    found = np.moveaxis(kinds(data), axis, -1)
+    found = np.moveaxis(kinds(data), axis, -1)[..., order]
     sides = side(found, apart)
     differ = (sides[..., 1:] != sides[..., :-1]) & (found[..., 1:] != "") & (found[..., :-1] != "")
     places = np.argwhere(differ)
 
     def end(step: int) -> dict[str, Floats]:
-        index = np.insert(places[:, :-1], axis, places[:, -1] + step, axis=1)
+        index = np.insert(places[:, :-1], axis, order[places[:, -1] + step], axis=1)
         axes = study.coordinates.items()
         return {name: each.values[index[:, dims.index(each.dim)]] for name, each in axes}
 

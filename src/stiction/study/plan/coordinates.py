@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, Indices
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.study.plan.axes import Axis, Range
 from stiction.study.variables.measures import MEASURES
@@ -55,6 +55,16 @@ def number(value: Any, unit: str) -> float:
         return to_si(value, Kind("an angle", "rad", "1 deg"))  # says what to write instead
     kind = "an angle" if unit == "deg" else "such a quantity"
     return to_si(value, Kind(kind, unit, f"1 {unit}".rstrip()))
+
+
+def ascending(known: Mapping[str, Coordinate], dim: str) -> Indices:
+    """Return the order in which the values along a dimension ascend: those of `path_along` it."""
+    return np.argsort(known[path_along(known, dim)].values, kind="stable")
+
+
+def path_along(known: Mapping[str, Coordinate], dim: str) -> str:
+    """Return the parameter after which a dimension is named, or else the first along it."""
+    return dim if dim in known else next(path for path in known if known[path].dim == dim)
 
 
 def values_at(

@@ -13,7 +13,7 @@ from stiction import theory
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import StictionError
-from stiction.study.plan.coordinates import values_at, vary
+from stiction.study.plan.coordinates import ascending, values_at, vary
 from stiction.study.plan.study import Study
 from stiction.system.slider import Slider
 
@@ -69,8 +69,10 @@ def plane(study: Study, x: str, y: str, at: Mapping[str, int]) -> Plane:
 
 
 def along(study: Study, dim: str) -> dict[str, Floats]:
-    """Return the values of each axis along a dimension, with interpolated values added."""
-    axes = {path: each.values for path, each in study.coordinates.items() if each.dim == dim}
+    """Return the values of each axis along a dimension, in order, with interpolated ones."""
+    known = study.coordinates
+    order = ascending(known, dim)
+    axes = {path: each.values[order] for path, each in known.items() if each.dim == dim}
     count = len(next(iter(axes.values())))
     parts = -(-FINE // max(count - 1, 1)) if count > 1 else 1
     places = np.linspace(0.0, count - 1, (count - 1) * parts + 1)

@@ -27,7 +27,7 @@ from stiction.plotting.page.parameter import Scale, in_unit, parameter_symbol
 from stiction.plotting.page.save import picture
 from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
-from stiction.study.plan.coordinates import values_at
+from stiction.study.plan.coordinates import ascending, path_along, values_at
 from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, plane
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
@@ -162,11 +162,11 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
     >>> done = st.sweep(study, "phi.zarr")
     >>> axes = st.plotting.plot_map(st.map("phi.zarr"))
     """
-    view = found.view
+    view = in_order(found.view)
     draw = {1: _curves, 2: _maps}[len(found.dims)]
     names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
     if len(found.dims) == 1 and len({*names} - {"run.duration"}) > 1:
-        draw = _points
+        draw, view = _points, found.view
     with style():
         panels = draw(view, found.measures, axes)
         if view.at:
@@ -184,12 +184,19 @@ def cut(view: View) -> str:
 def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
     """Return a side of a map, with the study's values or others in the same unit."""
     known = view.study.coordinates
-    path = dim if dim in known else next(p for p, each in known.items() if each.dim == dim)
-    own, unit = known[path].values, known[path].unit
+    path = path_along(known, dim)
+    own, unit = known[path].values[ascending(known, dim)], known[path].unit
     log = len(own) > 2 and bool((own > 0.0).all()) and unevenness(np.log(own)) < unevenness(own)
     factor, shown = (1.0, "deg") if unit == "deg" else in_unit(np.median(np.abs(own)), unit)
     scale = Scale(parameter_symbol(path), factor, shown)
     return Side(scale, scale.in_unit(own if values is None else values), log)
+
+
+def in_order(view: View) -> View:
+    """Return a view whose runs lie in the order of their values, in which a study need not be."""
+    known = view.study.coordinates
+    order = {dim: ascending(known, str(dim)) for dim in view.data["status"].dims}
+    return view._replace(data=view.data.isel(order))
 
 
 def unevenness(values: np.ndarray) -> float:
