@@ -23,7 +23,7 @@ from stiction.friction.equivalent import like, traits
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.page.words import wrap_words
 from stiction.plotting.run.comparison import LAST, MANY, legend_text, plot_comparison
-from stiction.plotting.run.curves import curves_of
+from stiction.plotting.run.curves import BROAD, NARROW, RunCurve, curves_of, draw_curve
 from stiction.result.table import as_table
 from stiction.simulation import automatic_times
 
@@ -224,6 +224,21 @@ def test_a_comparison_shows_the_force_of_the_load_cell() -> None:
     drawn = max(np.abs(line.get_ydata()).max() for line in ax["force"].lines)
     forces = [each.data["mu"].values * 10.0 for each in found.values()]
     assert drawn == pytest.approx(max(np.abs(each).max() for each in forces), rel=1e-12)
+
+
+@pytest.mark.parametrize("cycles", range(30, 100, 5))
+def test_equal_swings_look_alike_whatever_the_width_of_the_line(cycles: int) -> None:
+    """The broad line of the first law was a mean with a band where the others' were swings."""
+    time = np.linspace(0.0, 1.0, 5001)
+    bands = []
+    for width in (NARROW, BROAD):
+        look = {"color": "black", "linestyle": "solid", "linewidth": width, "zorder": 2.0}
+        ax = Figure(figsize=(4.0, 2.0)).add_subplot()
+        curve = RunCurve("", None, look, None)  # type: ignore[arg-type]
+        draw_curve(ax, curve, time, np.sin(2.0 * np.pi * cycles * time))
+        bands.append(len(ax.collections))
+        assert ax.lines[0].get_linewidth() == width
+    assert bands[0] == bands[1]
 
 
 def test_the_name_of_the_described_law_means_that_law_once(described: st.Description) -> None:

@@ -153,7 +153,7 @@ def test_save_and_load_refuse(run, tmp_path):
     with pytest.raises(st.ResultError, match="lacks psi"):
         st.load(tmp_path / "half.nc")
     run.data.to_netcdf(tmp_path / "no-sticks.nc", engine="h5netcdf")
-    with pytest.raises(st.ResultError, match="lacks stick_start, stick_end"):
+    with pytest.raises(st.ResultError, match=r"lacks stick_start, stick_end, .* run\.save\("):
         st.load(tmp_path / "no-sticks.nc")
 
 

@@ -137,6 +137,8 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
     lacking += ["its description"] if "description" not in about else []
     if lacking:
         what = f"it lacks {', '.join(lacking)}"
+        if lacking == [*ENDS]:
+            what += ", as what run.data.to_netcdf(...) writes; run.save(...) writes a whole result"
         raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(data)}")
     wrong = [*_wrong(data, "time", ["time", *VARIABLES]), *_wrong(sticks, "stick", STICKS)]
     wrong += [f"{name} is not text" for name in TEXTS if not isinstance(about.get(name), str)]

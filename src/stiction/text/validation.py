@@ -10,6 +10,7 @@ from math import isinf
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, cast, get_args, get_type_hints
 
+import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
@@ -70,7 +71,7 @@ class Described(BaseModel, metaclass=_Presented):
         """Compare the fields; the library would compare what was derived from them, too."""
         names = type(self).model_fields
         return type(self) is type(other) and all(
-            getattr(self, name) == getattr(other, name) for name in names
+            _equal(getattr(self, name), getattr(other, name)) for name in names
         )
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
@@ -97,6 +98,13 @@ class Described(BaseModel, metaclass=_Presented):
     def __str__(self) -> str:
         """Return the same as `repr`; the library would give angles without units."""
         return repr(self)
+
+
+def _equal(one: object, other: object) -> bool:
+    """Return whether two fields are equal; arrays are if all of their values are."""
+    if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
+        return np.array_equal(one, other, equal_nan=True)  # type: ignore[arg-type]
+    return bool(one == other)
 
 
 def _own_names(cls: Any, names: Iterable[str]) -> list[str]:

@@ -125,3 +125,12 @@ def test_a_record_made_again_of_its_own_fields_is_the_same() -> None:
     assert again.force.tolist() == record.force.tolist() == [0.4, 0.7000000000000001]
     assert again.time.tolist() == record.time.tolist() == [0.0, 1e-3]
     assert again.zero == 0.0  # known, and taken off
+
+
+def test_records_are_equal_if_all_their_values_are():
+    time = np.arange(20.0)
+    one = st.Record(time=time, force=time)
+    assert one == st.Record(time=time.copy(), force=time.copy())
+    assert one != st.Record(time=time, force=time + 1.0)
+    assert one != st.Record(time=time, force=time, position=time)
+    assert one != st.Record(time=time, force=time, stiffness=1.0)

@@ -22,7 +22,7 @@ def study_of(angles, speeds):
     return st.Study(base=BASE, axes=axes, measures=["peak_force", "regime"])
 
 
-def shuffled(values, seed):
+def shuffle(values, seed):
     return np.random.default_rng(seed).permutation(values).tolist()
 
 
@@ -31,7 +31,7 @@ def found(request, tmp_path_factory):
     path = tmp_path_factory.mktemp("order") / "a.zarr"
     orders = [ANGLES, SPEEDS]
     if request.param is not None:
-        orders = [shuffled(each, request.param) for each in orders]
+        orders = [shuffle(each, request.param) for each in orders]
     st.sweep(study_of(*orders), path)
     return st.map(path, "peak_force")
 
@@ -68,7 +68,7 @@ def test_changes_lie_between_neighbouring_values(seed):
     random = np.random.default_rng(seed)
     kinds = random.integers(-1, len(KINDS), (4, 4))
     intervals = []
-    for angles in (ANGLES, shuffled(ANGLES, seed)):
+    for angles in (ANGLES, shuffle(ANGLES, seed)):
         places = [ANGLES.index(each) for each in angles]
         data = xr.Dataset({"regime": (("phi", "drive.velocity"), kinds[places])})
         its = changes(study_of(angles, SPEEDS), data, "phi", None)

@@ -27,6 +27,7 @@ from stiction.trajectory import Trajectory
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)
 DASHES: tuple[Any, ...] = ("solid", (0, (5, 1.5)), (0, (7, 1.2, 1.2, 1.2)), (0, (1.4, 1.1)))
 
+NARROW, BROAD = 0.9, 1.5  # pt, lines: the first is broad, below the others
 UNITS = {"force": "N", "X": "m"}
 
 
@@ -62,7 +63,7 @@ def curves_of(runs: Mapping[str, Trajectory]) -> list[RunCurve]:
             {
                 "color": COLOURS[at % len(COLOURS)],
                 "linestyle": DASHES[at % len(DASHES)],
-                "linewidth": 0.9 if at else 1.5,
+                "linewidth": NARROW if at else BROAD,
                 "zorder": 2.0 + 0.01 * at,
             },
             average_slip(run),
@@ -98,9 +99,12 @@ def draw_over_time(ax: Axes, curves: Sequence[RunCurve], variable: str, symbol: 
 
 
 def draw_curve(ax: Axes, curve: RunCurve, time: Floats, values: Floats) -> None:
-    """Draw values of a run over time in its style; swings too fast for the panel are a band."""
-    line = draw_line(ax, time, values, curve.color, curve.look["linewidth"])
-    line.set(linestyle=curve.look["linestyle"], zorder=curve.look["zorder"])
+    """Draw values of a run over time in its style; swings too fast for the panel are a band.
+
+    Too fast for the narrow lines, whatever the width of this one: equal motions look alike.
+    """
+    line = draw_line(ax, time, values, curve.color, NARROW)
+    line.set(**{name: curve.look[name] for name in ("linestyle", "linewidth", "zorder")})
 
 
 def fit_time(ax: Axes, curves: Sequence[RunCurve]) -> None:
