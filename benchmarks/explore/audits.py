@@ -22,7 +22,7 @@ from benchmarks.explore.systems.set_valued import LAWS as PLAIN
 from benchmarks.explore.systems.set_valued import named_law
 from stiction.auditing import Audit
 from stiction.auditing.page import page
-from stiction.auditing.simulated_test import OSCILLATES, SLIDES
+from stiction.auditing.simulated_test import OSCILLATES, SLIDES, outcome
 from stiction.auditing.words.stick import VIBRATES
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.unit_text import registry
@@ -168,6 +168,29 @@ def advice_works(found: Audit) -> bool:
     return stable and none == bool(found.advices and not works)
 
 
+def tried_is_a_change(found: Audit) -> bool:
+    """What is said to be tried differs from what is."""
+    return all(each.then != each.now for each in found.advices if each.tried)
+
+
+def sliding_has_no_cycles(found: Audit) -> bool:
+    """Where it comes to slide steadily, nothing is told of cycles and of slips before that."""
+    words = str(found).replace("mean over cycles", "")
+    told = any(each in words for each in ("each slip", "of each cycle", "in each cycle"))
+    return not (told and found.observation.comes_to == SLIDES)
+
+
+def dies_out_once(found: Audit) -> bool:
+    """A second motion is no small disturbance that dies out: it comes to rest, or falls more."""
+    seen = found.observation
+    if not found.bistable:
+        return True
+    longer = st.simulate(
+        found.slider, 4.0 * seen.run.samples["time"][-1], sample_rate=seen.record.sample_rate / 4.0
+    )
+    return outcome(longer, seen.growth) == OSCILLATES
+
+
 def theory_without_doubt(found: Audit) -> bool:
     """A time that theory states without a mark is about what the simulation shows."""
     for name, theory, shown in numbers(found):
@@ -191,6 +214,9 @@ RULES: tuple[Callable[[Audit], bool], ...] = (
     numbers_in_words,
     vibration_is_no_creep,
     advice_works,
+    tried_is_a_change,
+    sliding_has_no_cycles,
+    dies_out_once,
     theory_without_doubt,
     reads_well,
 )

@@ -107,6 +107,8 @@ def advise_one(slider: Slider, path: str, stable: bool, work: int, progress: Pro
         now = read(slider, path)
         advice = Remedy(path, found.unit, now, found, *NOT_TRIED)
         ways = [nearest(found, now, beyond) for beyond in BEYOND]
+        if ways[0] == now:  # on the boundary at zero, of which no share leads away
+            ways = list(further(slider, path))
     for number, then in enumerate(ways):
         if not isfinite(then) or then == advice.then:  # nowhere, or the middle again
             break

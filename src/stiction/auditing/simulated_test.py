@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import isfinite, nan
+from math import exp, isfinite, nan
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -16,9 +16,9 @@ from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
-from stiction.analysis.motion.rest import stuck_share
+from stiction.analysis.motion.rest import STILL, stuck_share
 from stiction.analysis.record import Record, record_of
-from stiction.arrays import xr
+from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.auditing.progress import Progress, silent
 from stiction.linear_stability import Linearisation
@@ -32,7 +32,7 @@ LOAD_UPS = 4.0  # to wait for a force that approaches the friction limit only sl
 DECAYS = 8.0  # e-folds of a disturbance to wait for, down to a thousandth
 LONGEST_WAIT = 2000.0  # longest wait for that, in swings on the soft spring
 COARSE = 40.0  # samples in each swing on the soft spring
-ALMOST = 0.99  # of the drive's speed: the mass slides
+ALMOST = 0.99  # of the largest force: the mass is loaded
 MOST_SAMPLES = 200_000
 MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: 2 s without states
 LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
@@ -45,11 +45,12 @@ SMALL = "an oscillation too small for the load cell to tell"
 SLIDES, OSCILLATES, UNSETTLED = "slides", "oscillates", "unsettled"
 CALM = 0.02  # of the drive's speed: a smaller deviation is steady sliding
 DECAYED, KEPT = 0.5, 0.8  # of a deviation, a quarter of the run later: dies out, lasts
+AS_FAST = 0.5  # of the rate at which small disturbances decay: it does so, too
 LOADING = 0.5  # of the drive's speed: a mass that stays slower has not slipped
 
 
 class Shares(NamedTuple):
-    """Shares of time at rest, creeping more slowly than the drive, and slipping."""
+    """Shares of time at rest, in creep (see `STILL`), and in slip faster than the drive."""
 
     rest: float
     creep: float
@@ -65,6 +66,7 @@ class SimulatedTest:
     """
 
     run: Trajectory
+    growth: float = nan  # 1/s, of a small disturbance of steady sliding
 
     @cached_property
     def record(self) -> Record:
@@ -78,8 +80,9 @@ class SimulatedTest:
 
     @cached_property
     def table(self) -> CycleTable:
-        """The cycles."""
-        return self.swings.lasting
+        """The cycles; none of a motion that dies out."""
+        lasting = self.swings.lasting
+        return lasting.part(slice(0)) if self.comes_to == SLIDES else lasting
 
     @cached_property
     def cycles(self) -> xr.Dataset:
@@ -94,7 +97,7 @@ class SimulatedTest:
     @cached_property
     def shares(self) -> Shares:
         """Shares of time at rest, in creep and in slip."""
-        return shares(self.run, self.table)
+        return shares(self.run, self.record.force, self.table)
 
     @cached_property
     def comes_to(self) -> str:
@@ -102,7 +105,7 @@ class SimulatedTest:
 
         It slides, oscillates, is stuck, or is still changing when the test ends ("unsettled").
         """
-        return outcome(self.run)
+        return outcome(self.run, self.growth)
 
     @property
     def motion(self) -> str:
@@ -182,7 +185,7 @@ def simulate_test(
         max_steps=most_steps,
         progress=progress,
     )
-    return SimulatedTest(run)
+    return SimulatedTest(run, growth)
 
 
 def from_sliding(
@@ -199,11 +202,12 @@ def from_sliding(
     )
 
 
-def outcome(run: Trajectory) -> str:
+def outcome(run: Trajectory, growth: float = nan) -> str:
     """Return the final state of a run, from the deviation from the drive's speed at the end.
 
     The last quarters of the run count. A mass at rest deviates by the full speed; larger deviations
-    in a slip are cut to that.
+    in the slips of a mass that comes to rest are cut to that. What dies out as a small disturbance
+    does, by its `growth` rate (1/s), lasts no longer than that, however slowly it does.
     """
     times, speed = run.samples["time"], run.samples["V_X"] / run.slider.motion.rate(0.0)[0]
     late = times - times[0] >= 0.5 * (times[-1] - times[0])
@@ -213,11 +217,15 @@ def outcome(run: Trajectory) -> str:
         return UNSETTLED
     if speed[late].max() < LOADING:
         return STUCK
-    deviation = np.minimum(np.abs(speed - 1.0), 1.0)
+    deviation = np.abs(speed - 1.0)
+    if speed[late].min() <= 0.0:
+        deviation = np.minimum(deviation, 1.0)
     before, now = float(deviation[third].max()), float(deviation[last].max())
     if now < CALM or now <= DECAYED * before:
         return SLIDES
-    return OSCILLATES if now >= KEPT * before else UNSETTLED
+    quarter = 0.25 * float(times[-1] - times[0])
+    dies_out = growth < 0.0 and now <= before * exp(AS_FAST * growth * quarter)
+    return OSCILLATES if now >= KEPT * before and not dies_out else UNSETTLED
 
 
 def coarse_rate(prediction: Prediction) -> float:
@@ -225,19 +233,22 @@ def coarse_rate(prediction: Prediction) -> float:
     return COARSE * prediction.f_x
 
 
-def shares(run: Trajectory, cycles: CycleTable) -> Shares:
-    """Return the shares of time in whole cycles, or in the loading if there are none."""
+def shares(run: Trajectory, force: Floats, cycles: CycleTable) -> Shares:
+    """Return the shares of time in whole cycles, or in the loading if there are none.
+
+    The loading ends where the force comes close to its largest value.
+    """
     times, (drive, _) = run.samples["time"], run.slider.motion.rate(0.0)
     speed = run.samples["V_X"] / drive
-    slower = np.flatnonzero(speed <= ALMOST)  # a transverse swing exceeds the drive's speed before
-    begin, end = times[0], times[min(slower[-1] + 1, len(times) - 1)] if len(slower) else times[0]
+    begin, end = times[0], times[int(np.argmax(force >= ALMOST * force.max()))]
     if len(cycles):
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
     if not end > begin:  # started sliding
         return Shares(0.0, 0.0, 1.0)
-    slip = float((speed[(times >= begin) & (times <= end)] > 1.0).mean())
+    then = speed[(times >= begin) & (times <= end)]
     rest = stuck_share(begin, end, run.stick_intervals)
-    return Shares(rest, max(0.0, 1.0 - slip - rest), slip)
+    still = float((then < STILL).mean())
+    return Shares(float(rest), max(0.0, still - float(rest)), float((then > 1.0).mean()))
 
 
 def slip_time(seen: SimulatedTest) -> float:

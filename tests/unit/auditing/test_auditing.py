@@ -19,11 +19,13 @@ from stiction.auditing.advice import advise, advise_one, nearest
 from stiction.auditing.assumptions import suppositions
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict
+from stiction.auditing.progress import silent
 from stiction.auditing.report import Audit, sections
 from stiction.auditing.report import audit as examine
 from stiction.auditing.simulated_test import (
     OSCILLATES,
     SLIDES,
+    UNSETTLED,
     SimulatedTest,
     coarse_rate,
     creep_before_slip,
@@ -113,11 +115,14 @@ def test_critical_misalignment_of_the_paper_s_case(found):
     )
 
 
-def test_shares_of_a_cycle_add_up_and_rest_is_that_of_the_sticks(found):
+def test_rest_is_that_of_the_sticks_and_creep_is_slower_than_a_tenth_of_the_drive(found):
     seen = found.observation
     rest, creep, slip = seen.shares
-    assert rest + creep + slip == pytest.approx(1.0, abs=1e-12)
     begin, end = float(seen.cycles["start"][0]), float(seen.cycles["trough_time"][-1])
+    times, speed = (seen.run.samples[name] for name in ("time", "V_X"))
+    then = speed[(begin <= times) & (times <= end)] / 1e-3
+    assert rest + creep == pytest.approx((then < 0.1).mean(), abs=1e-12)
+    assert slip == pytest.approx((then > 1.0).mean(), abs=1e-12)
     inside = [stick for stick in seen.run.stick_intervals if begin <= stick[0] and stick[1] <= end]
     assert rest == pytest.approx(np.diff(inside, axis=1).sum() / (end - begin), abs=1e-5)
 
@@ -485,13 +490,14 @@ def test_what_vibrates_does_not_creep():
 
 
 def test_creep_shorter_than_a_transverse_period_shows_no_oscillation():
-    """12 ms of creep in each cycle beside a transverse period of 36 ms."""
-    found = short(NEARLY_ISOTROPIC)
+    """5 ms of creep in each cycle beside a transverse period of 18 ms."""
+    rig = {"phi": "4 deg", "k_y": "60 kN/m", "drive": st.ConstantVelocity("10 mm/s")}
+    found = short(NEARLY_ISOTROPIC.replace(**rig))
     seen = found.observation
     assert seen.shares.creep > 0.05
-    assert seen.shares.creep * seen.mean("period") < sqrt(0.5 / 15e3) * 2.0 * pi
+    assert seen.shares.creep * seen.mean("period") < sqrt(0.5 / 60e3) * 2.0 * pi
     text = " ".join(transverse(found))
-    assert "this mass creeps for 12" in text
+    assert "this mass creeps for 5" in text
     assert "During creep" not in text
 
 
@@ -519,16 +525,55 @@ def test_a_transverse_oscillation_is_said_to_die_out_where_it_does(friction, c_y
     assert ("dies out" in text) != late
 
 
-def test_the_time_until_it_slides_ends_when_it_goes_on_sliding():
+def test_the_loading_ends_where_the_force_is_largest():
     """A transverse swing moves it faster than the drive for moments, long before."""
     seen = short(TURNED_A_LOT).observation
     run = st.simulate(TURNED_A_LOT, 3.0, sample_rate=2e4)
-    times, speed = run.samples["time"], run.samples["V_X"] / 1e-3
-    mean = np.convolve(speed, np.full(40, 1 / 40), "same")[:-40]  # two periods
-    until = times[np.flatnonzero(mean <= 0.99)[-1]]
+    times, force = run.samples["time"], record_of(run).force
+    until = times[np.argmax(force >= 0.99 * force.max())]
     rest = np.diff(np.clip(run.stick_intervals, 0.0, until), axis=1).sum() / until
     assert seen.shares.rest == pytest.approx(rest, rel=0.02)  # samples of 0.1 ms, in 1.9 s
     assert seen.shares.slip > 0.0
+
+
+RUBBER = st.Slider(
+    mass="50 g", k_x=300, k_y=900, phi="20 deg", normal_load="5 N", friction=st.Coulomb(mu_0=0.8),
+    drive=st.ConstantVelocity("2 mm/s"),
+)  # fmt: skip
+
+
+def test_what_dies_out_has_no_cycles_of_stick_and_slip():
+    """It rings for minutes after the only stick: "62 um before each slip", the report said."""
+    found = short(RUBBER)
+    assert found.observation.comes_to == SLIDES
+    assert not len(found.observation.table)
+    text = str(found)
+    for wrong in ("each slip", "of each cycle", "cycles", "When the mass slips"):
+        assert wrong not in text, wrong
+
+
+@pytest.mark.parametrize("phi", [2.0, 3.0, 4.0])
+def test_what_dies_out_slowly_is_no_second_motion(phi):
+    """By a factor of e in 500 to 3000 s, as small disturbances do; the test takes 184 s."""
+    slider = RUBBER.replace(phi=f"{phi} deg")
+    growth = st.linear_stability.growth_rate(slider)
+    seen = simulate_test(slider, predict(slider), growth, sample_rate=500.0)
+    run = seen.run
+    assert -1.0 / growth > 500.0
+    assert seen.comes_to == UNSETTLED
+    assert simulated_test.outcome(run) == OSCILLATES  # if nothing is known of small disturbances
+    assert simulated_test.outcome(run, 1e-3) == OSCILLATES
+
+
+def test_a_remedy_that_is_not_tried_is_not_said_to_be_none():
+    """At phi = 0 and c_x = 0, on the boundary, "tried: 0 N s/m: no remedy"."""
+    slider = st.Slider(
+        mass="150 g", k_x="1.2 kN/m", k_y="1.2 MN/m", phi="0 deg", normal_load="8 N",
+        friction=st.Coulomb(mu_0=0.45, mu_static=0.6), drive=st.ConstantVelocity("1 mm/s"),
+    )  # fmt: skip
+    tried = advise_one(slider, "c_x", False, 1_000_000, silent)
+    assert tried.works
+    assert tried.then > 0.0
 
 
 @pytest.mark.parametrize("cell", [None, "0 deg", "-20 deg"])

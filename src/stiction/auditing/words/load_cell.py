@@ -138,7 +138,8 @@ def _largest(seen: SimulatedTest) -> list[str]:
             "cell, which measures only the part along it; that is largest at another moment of the "
             "slip, in which friction turns and the inertia of the mass takes part.",
         ]
-    return [off, f"When the mass slips, friction stands {_part(seen, friction)}"]
+    when = "begins to slide" if seen.comes_to == SLIDES else "slips"
+    return [off, f"When the mass {when}, friction stands {_part(seen, friction)}"]
 
 
 def _part(seen: SimulatedTest, friction: FrictionBeside) -> str:

@@ -14,19 +14,20 @@ if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
+NEVER = 1e-3  # of the time: a smaller share is a matter of samples
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 
 
 def stick(found: Audit) -> list[str]:
     """Return how much of the apparent stick is creep."""
     seen, s = found.observation, found.slider
-    whole = "of each cycle" if len(seen.table) else "of the time until it slides"
+    whole = "of each cycle" if len(seen.table) else "of the loading"
     vibrates, state = seen.motion in VIBRATES, has_state(s.law)
     slowly = "creeps" if s.misalignment or state else "slides slowly"
     slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)
-    how = " and ".join(f"{verb} for {percent(share)}" for verb, share in slow if share)
+    how = " and ".join(f"{verb} for {percent(share)}" for verb, share in slow if share > NEVER)
     lines = [
-        f"For {percent(seen.shares.rest + seen.shares.creep)} {whole} the mass is slower than the "
+        f"For {percent(1.0 - seen.shares.slip)} {whole} the mass is slower than the "
         f"drive, and the load cell shows a rising force{'' if vibrates else f': the mass {how}'}. "
         + (
             f"For {percent(seen.shares.slip)} it is faster than the drive."
