@@ -136,7 +136,7 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR) and count:
         reduced = 0.5 * (peak / load_at_peak + trough / load_at_trough)
         kinetic = _over(0.5 * (peak + trough), reduced, load, rounding)
-    elif comes_to_rest(record.slip_speed):
+    elif comes_to_rest(record.slip_speed) and kind != STUCK:
         missing["kinetic"] = "the mass comes to rest"
     elif "turns" in regime.evidence:
         missing["kinetic"] = "it is not determined whether the mass slides"

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats, Indices
+from stiction.text.quantity_text import MEASURABLE
 
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share
@@ -100,6 +101,29 @@ def comes_to_rest(speed: Floats | None) -> bool:
     if speed is None or not len(speed):
         return False
     return bool(speed[-max(len(speed) // LAST, 1) :].max() <= AT_REST * speed.max())
+
+
+def rests_throughout(time: Floats, speed: Floats | None, sticks: Floats | None) -> bool:
+    """Return whether a mass is known to rest from beginning to end, also between samples.
+
+    With internal states friction never sticks: there a mass rests that moves by no measurable
+    distance.
+
+    Parameters
+    ----------
+    time : ndarray
+        (n,), s.
+    speed, sticks : ndarray or None
+        (n,), slip speed, m/s, and (k, 2), s: all intervals of sticking, in order.
+    """
+    if speed is None or sticks is None or not len(time):
+        return False
+    if speed.max() * (time[-1] - time[0]) >= MEASURABLE:
+        return False
+    if not len(sticks):
+        return True
+    within = sticks[0, 0] <= time[0] and time[-1] <= sticks[-1, 1]
+    return bool(within and (sticks[1:, 0] <= sticks[:-1, 1]).all())
 
 
 def stuck_until(time: ArrayLike, sticks: ArrayLike) -> Floats:

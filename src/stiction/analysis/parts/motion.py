@@ -175,12 +175,19 @@ def _describe_course(found: Analysis) -> str:
     plain = {
         STEADY: f"{_slides(found.regime.evidence, at)}{_besides(found)}",
         SETTLING: f"{_settles(found, at)}{_besides(found)}",
-        STUCK: "The mass does not slip, it rests or creeps: the force only rises."
-        if found.regime.runner_up != STEADY
-        else "The force only rises: either the mass sticks, or it slides and the force drifts.",
+        STUCK: _sticks(found),
         IRREGULAR: "The mass vibrates irregularly.",
     }
     return plain.get(found.regime.kind, "This record does not show what the mass does.")
+
+
+def _sticks(found: Analysis) -> str:
+    """Describe a mass that does not slip, as far as its record shows it."""
+    if "rests" in found.regime.evidence:
+        return "The mass rests from beginning to end: friction holds it."
+    if found.regime.runner_up == STEADY:
+        return "The force only rises: either the mass sticks, or it slides and the force drifts."
+    return "The mass does not slip, it rests or creeps: the force only rises."
 
 
 def _swinging(found: Analysis) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import first_loading
 from stiction.analysis.motion.regime.kinds import STUCK
-from stiction.analysis.motion.rest import stick_shares, still_shares
+from stiction.analysis.motion.rest import rests_throughout, stick_shares, still_shares
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
@@ -119,6 +119,11 @@ class ObservedRun:
         along = self.description.slider.along_drive(self.column(2), self.column(3))
         return np.asarray(self.way * along)
 
+    @cached_property
+    def slip_speed(self) -> Floats:
+        """Slip speed, m/s."""
+        return np.asarray(np.hypot(self.column(2), self.column(3)))
+
     @property
     def positions(self) -> Floats:
         """Position X of the mass along the drive (m): Eq. (6) of Nakano & Popov."""
@@ -181,7 +186,7 @@ class ObservedRun:
     @cached_property
     def regime(self) -> str:
         """The kind of motion, one of `stiction.study.variables.fast_regime.KINDS`."""
-        if self.solution.counts.steps == 0:  # friction held all the time
+        if rests_throughout(self.time, self.slip_speed, self.solution.sticks):
             return STUCK
         slider = self.description.slider
         drive = slider.k_x * abs(self.nominal * slider.direction[0])
@@ -196,7 +201,7 @@ class ObservedRun:
     def rests(self, cycles: SwingShapes) -> Floats:
         """Return for which share of each cycle the mass rests or creeps, in one piece."""
         V = abs(self.nominal)
-        slip = np.hypot(self.column(2), self.column(3))
+        slip = self.slip_speed
         peak = cycles.start + cycles.rise_share * cycles.period
         return still_shares(self.time, slip / V if V else slip, cycles.start, peak, cycles.period)
 

@@ -18,10 +18,11 @@ from stiction.analysis.motion.regime.kinds import (
     IRREGULAR,
     SETTLING,
     STEADY,
+    STUCK,
     TRANSITIONAL,
     UNDETERMINED,
 )
-from stiction.analysis.motion.rest import comes_to_rest
+from stiction.analysis.motion.rest import comes_to_rest, rests_throughout
 from stiction.analysis.motion.vibration import COUPLED, OWN
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import even_grid
@@ -61,6 +62,8 @@ def regime_of(record: Record, found: Swings) -> Regime:
     """Classify the motion in a record with known swings: see `classify`."""
     if len(record) < PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    if rests_throughout(record.time, record.slip_speed, record.sticks):
+        return Regime(STUCK, 1.0, {"rests": record.duration})
     if record.slip_speed is None:
         if np.ptp(record.force) == 0.0:
             return Regime(UNDETERMINED, 0.0, {"unchanging": float(record.force[0])})

@@ -83,6 +83,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
         "that is until {}, where the drive turns or stops, or the spring begins to be unloaded",
         _seconds,
     ),
+    "rests": ("friction holds it from beginning to end, for {}", _seconds),
     "change": ("the force changes by {} from beginning to end", _force),
     "span": ("it spans {}, averaged over a 32nd of the time", _force),
     "scatter": ("it scatters by {} about that", _force),
@@ -132,7 +133,8 @@ class Regime(NamedTuple):
         less or not at all), "transverse oscillation" (of a run, quicker than the mass can swing on
         the spring along x alone), "irregular vibration" (swings of changing period that stand out),
         "settling" (a transient that decays), "steady sliding" (no swings stand apart from the
-        noise: what is smaller is not seen), "stuck" (it loads and never slips) or "undetermined".
+        noise: what is smaller is not seen), "stuck" (it loads and never slips, or rests) or
+        "undetermined".
     confidence : float
         0 to 1. With cycles, the likelihood that another one has the kind's shape, from their
         scatter, or from the number of those with another shape. Thus it is higher for cycles

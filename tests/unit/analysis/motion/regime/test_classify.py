@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from math import pi
+from typing import Any
 
 import numpy as np
 import pytest
@@ -696,3 +697,23 @@ def test_two_vibrations_that_beat_are_not_irregular(second: float, height: float
     found = st.analysis.classify(st.Record(time=time, force=force))
     assert found.kind == "harmonic vibration"
     assert found.evidence["beat"] == pytest.approx(abs(second - 1.0), rel=0.02)
+
+
+@pytest.mark.parametrize("load", ["0 mm", "1 mm"])
+@pytest.mark.parametrize(
+    "law",
+    [
+        st.Coulomb(mu_0=0.2),
+        st.laws.RateStateAgeing(mu_star=0.6, a=0.008, b=0.014, D_c="10 um", V_star="1 um/s"),
+    ],
+)
+def test_a_mass_that_never_moves_is_stuck(slider: st.Slider, load: str, law: Any) -> None:
+    """It was "sliding steadily (confidence 1.00)": its force does not rise."""
+    still = slider.replace(drive=st.ConstantVelocity(0.0), friction=law)
+    initial = st.Initial(u_x=load)
+    found = st.analyse(st.simulate(still, "1 s", initial=initial, sample_rate="200 Hz"))
+    assert found.regime.kind == "stuck"
+    assert "The mass rests from beginning to end" in str(found)
+    assert found.friction.missing["kinetic"] == "the mass does not slide"
+    observed = observe_run(st.Description(still, initial, st.Settings(duration="1 s")), None)
+    assert observed.regime == "stuck"
