@@ -8,9 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stiction.analysis.signals.robust import median
+from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.robust import median, part_means, part_starts
+from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats
 from stiction.drive.recorded.resolution import NORMAL_MEDIAN
+from stiction.recording.noise import white_noise
 
 ORDERED = -0.9  # rank correlation of size and number: each smaller than the last, but for noise
 # Swings in such order, how many, and what is left of the first: by chance once in a thousand
@@ -32,6 +35,9 @@ PARTS = 4 * QUARTER
 # A lone fall: its share of the record's time at most, and its height in standard deviations of the
 # noise, whose range over a million samples is 10
 BRIEF, STANDS_OUT = 1 / 16, 15.0
+# Means in which a final fall is sought, and standard deviations of one by which it stands out: the
+# largest of many exceeds the last by so much once in a thousand records, were there no loading
+FINE, SURE = 400, 6.0
 
 
 def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
@@ -115,6 +121,21 @@ def lone_fall(time: Floats, force: Floats) -> tuple[float, float] | None:
     quick = float(time[end] - time[begin]) < BRIEF * float(time[-1] - time[0])
     alone = height > max(STANDS_OUT * noise, 2.0 * others)
     return (float(time[begin]), height) if quick and alone else None
+
+
+def final_fall(time: Floats, force: Floats) -> tuple[float, float] | None:
+    """Return begin (s) and height (N) of the fall with which a record of a loading ends.
+
+    None if it does not stand out of the noise, or if the force has fallen as far before.
+    """
+    means = part_means(without_spikes(force), FINE)
+    size = len(force) / len(means)
+    noise = max(white_noise(force, order=2) / size**0.5, resolution(force))
+    below, top = np.maximum.accumulate(means) - means, int(np.argmax(means))
+    height = float(below[-1])
+    if height <= max(SURE * noise, float(below[: top + 1].max())):
+        return None
+    return float(time[part_starts(len(force), FINE)[top]]), height
 
 
 def _largest_fall(force: Floats) -> tuple[int, int, float]:

@@ -178,7 +178,20 @@ def _describe_course(found: Analysis) -> str:
         STUCK: _sticks(found),
         IRREGULAR: "The mass vibrates irregularly.",
     }
-    return plain.get(found.regime.kind, "This record does not show what the mass does.")
+    return plain.get(found.regime.kind, _begins_to_slip(found))
+
+
+def _begins_to_slip(found: Analysis) -> str:
+    """Describe a loading that ends in a fall of the force; else say that nothing is known."""
+    begin = found.regime.evidence.get("ends_falling_from")
+    if begin is None:
+        return "This record does not show what the mass does."
+    fall = in_words(found.regime.evidence["ends_falling_by"], "N")
+    turns = "" if isinstance(found.source, Trajectory) else ", or the drive turns back"
+    return (
+        f"The force rises until {in_words(begin, 's')}, then falls by {fall} or more until the "
+        f"record ends: the mass begins to slip{turns}."
+    )
 
 
 def _sticks(found: Analysis) -> str:

@@ -11,6 +11,7 @@ from stiction.analysis.motion.regime.kinds import (
     STICK_SLIP,
     TRANSITIONAL,
     TRANSVERSE,
+    UNDETERMINED,
 )
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -94,6 +95,8 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     ),
     "falls_at": ("it falls quickly once, at {}", _seconds),
     "falls_by": ("by {}", _force),
+    "ends_falling_from": ("from {} to the end it falls", _seconds),
+    "ends_falling_by": ("by {} or more", _force),
     "late_share": ("in the last quarter of the time it spans {} of this", percent),
     "one_way": ("{} of all its ups and downs is this change", percent),
     "rate_kept": ("at the end it changes at {} of the rate of the beginning", percent),
@@ -180,7 +183,12 @@ class Regime(NamedTuple):
 
     @property
     def surely(self) -> str:
-        """The kind, its confidence, and how long the mass rests, in words."""
+        """The kind, its confidence, and how long the mass rests, in words.
+
+        What is undetermined has no confidence in words: that in its cycles is none in a kind.
+        """
+        if self.kind == UNDETERMINED:
+            return f"{self.kind}, perhaps {self.runner_up}" if self.runner_up else self.kind
         other = f"; else {self.runner_up}" if self.runner_up and self.confidence < CERTAIN else ""
         rests = f", {self.rests}" if self.rests else ""
         return f"{self.kind} (confidence {self.confidence:.2f}{other}){rests}"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.analysis.motion.course import UNLOADED, course, lone_fall
+from stiction.analysis.motion.course import UNLOADED, course, final_fall, lone_fall
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.regime.band import (
@@ -37,6 +37,7 @@ LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it sti
 # the mass sticks and slips more slowly than the record shows. Measured steady sliding: 3.7
 SMOOTH, VARIES = 5.0, 0.05
 LONE_FALL = ("falls_at", "falls_by")  # evidence
+FINAL_FALL = ("ends_falling_from", "ends_falling_by")
 SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
 # Of the scatter about the course: swings that stand out in the spectrum may be stick-slip if they
 # are as high, which is 3 % of the variance
@@ -90,6 +91,8 @@ def by_course(record: Record, found: Swings) -> Regime:
         if vibrates > 0.5:
             return Regime(UNDETERMINED, 0.0, evidence | {"few_periods": few.frequency})
         return _steady(record, found, least, sure * (1.0 - vibrates), evidence)
+    if fall := final_fall(record.time, record.force):
+        return Regime(UNDETERMINED, 0.0, evidence | dict(zip(FINAL_FALL, fall, strict=True)))
     kept = way.late_rate / way.early_rate
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept

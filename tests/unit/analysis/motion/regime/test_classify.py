@@ -30,7 +30,7 @@ from tests.drawn import inside
 from tests.measured import bare, read_measured
 
 import stiction as st
-from stiction.analysis.motion.course import dies_out
+from stiction.analysis.motion.course import dies_out, final_fall
 from stiction.analysis.motion.regime.band import highest_hump
 from stiction.analysis.motion.rest import rest_share
 from stiction.plotting.analysis.overview import figures
@@ -717,3 +717,30 @@ def test_a_mass_that_never_moves_is_stuck(slider: st.Slider, load: str, law: Any
     assert found.friction.missing["kinetic"] == "the mass does not slide"
     observed = observe_run(st.Description(still, initial, st.Settings(duration="1 s")), None)
     assert observed.regime == "stuck"
+
+
+@pytest.mark.parametrize("end", [2.04, 2.05, 2.07, 2.09])
+@pytest.mark.parametrize("noise", [0.0, 1e-3])
+def test_a_slip_that_ends_the_record_is_not_denied(
+    paper_run: st.Trajectory, end: float, noise: float
+) -> None:
+    """The force has fallen by 8 to 820 mN; its means over a 32nd of the time only rise."""
+    whole = st.analysis.record_of(paper_run)
+    part = whole.time < end
+    hidden = noise * np.random.default_rng(1).standard_normal(len(whole))[part]
+    record = st.Record(time=whole.time[part], force=whole.force[part] + hidden)
+    found = st.analyse(record)
+    assert found.regime.kind == "undetermined"
+    assert "the mass begins to slip" in str(found)
+    assert (found.friction.break_away is None) == (end < 2.05)
+
+
+@pytest.mark.parametrize("number", range(20))
+def test_noise_on_a_loading_is_no_fall(number: int) -> None:
+    """White, or digitised; by chance one record in a thousand ends so."""
+    random = np.random.default_rng([3, number])
+    time = np.arange(4000) * 1e-3
+    force = time + 10.0 ** random.uniform(-4, -1) * random.standard_normal(4000)
+    step = 10.0 ** random.uniform(-4, -2)
+    for values in (force, step * np.rint(force / step), step * np.rint(time / step)):
+        assert final_fall(time, values) is None
