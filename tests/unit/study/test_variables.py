@@ -98,6 +98,31 @@ def test_the_first_slip_is_found_whichever_spring_is_softer(number):
     assert seen.shown == pytest.approx(seen.theory, rel=first_slip.OFF)
 
 
+@pytest.mark.parametrize(("begin", "slips"), [(1.0, 2.5321), (2.0, 2.5), (2.04, 2.0321)])
+def test_the_first_slip_is_found_where_the_drive_holds(begin, slips):
+    """At 2.04 s it is on its way; at 2.0 s the mass creeps, slower than the drive.
+
+    It begins where V_X last is V before it is 3 V, in 20 kHz samples, where X is 31 to 40 um.
+    """
+    program = st.protocols
+    pieces = [
+        program.Constant(duration=begin),
+        program.Hold("0.5 s"),
+        program.Constant(duration="1 s"),
+    ]
+    slider = PAPER.replace(drive=program.DriveProgram(velocity="1 mm/s", program=pieces))
+    run = run_in_study(slider, begin + 1.6)
+    step = float(run.time[1] - run.time[0])
+    assert value("first_slip_time", run) == pytest.approx(slips, abs=step)
+    assert value("creep_distance", run) == pytest.approx(35e-6, abs=6e-6)
+
+
+@pytest.mark.parametrize("number", [21, 36, 40])
+def test_the_first_slip_is_found_where_any_drive_holds(number):
+    seen = first_slip.look(first_slip.system(1, number), first_slip.hold(1, number))
+    assert seen.shown == pytest.approx(seen.found, rel=first_slip.OFF)
+
+
 @pytest.mark.parametrize("multiscale", [False, True])
 def test_the_mode_of_the_solver_does_not_matter(paper, multiscale):
     """To 1e-6, the tolerance, of the largest value."""

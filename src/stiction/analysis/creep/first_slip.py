@@ -42,7 +42,7 @@ class FirstLoading(NamedTuple):
     end: int
 
 
-def first_loading(slider: Slider, elongation: Floats, drive: Floats) -> FirstLoading:
+def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Floats) -> FirstLoading:
     """Find the start of the first slip.
 
     In a slip the mass gains on the drive, and the spring's elongation along the drive falls: by
@@ -53,22 +53,47 @@ def first_loading(slider: Slider, elongation: Floats, drive: Floats) -> FirstLoa
     first stick, on their stiffness along the force; else it creeps while friction turns, and slips
     on the softer spring.
 
+    A slip goes on while the drive holds, and may begin there. It gains then on a drive that keeps
+    its largest speed, as every slip does: a mass that relaxes in a hold is slower.
+
     Parameters
     ----------
     slider : Slider
         The system.
+    time : ndarray
+        (n,), s.
     elongation : ndarray
         (n,), elongation of the spring along X, u_x cos(phi) + u_y sin(phi), m.
     drive : ndarray
         (n,), velocity of the drive along X, m/s.
     """
-    lag = np.concatenate([[0.0], np.cumsum(np.sign(drive[1:]) * np.diff(elongation))])
-    least = np.abs(drive).max() * _least_gain(slider)
-    gained = np.flatnonzero(np.maximum.accumulate(lag) - lag > least)
+    fastest = np.abs(drive).max()
+    least = fastest * _least_gain(slider)
+    way, holds = _way(drive[1:]), drive[1:] == 0.0
+    loaded = way * np.diff(elongation)
+    behind = _sum(loaded + np.where(holds, fastest * np.diff(time), 0.0))
+    gained = np.flatnonzero(np.maximum.accumulate(behind) - behind > least)
     if len(gained):
-        slip = int(np.argmax(lag[: gained[0]]))
+        slip = int(np.argmax(behind[: gained[0]]))
         return FirstLoading(slip, slip)
+    lag = _sum(np.where(holds, 0.0, loaded))
     return FirstLoading(-1, int(np.argmax(lag >= lag.max() - least)))
+
+
+def _sum(steps: Floats) -> Floats:
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _way(drive: Floats) -> Floats:
+    """Return the sign of a drive's velocity; while it holds, that of its last motion before.
+
+    Before its first motion, that of this one.
+    """
+    moves = np.flatnonzero(drive)
+    if not len(moves):
+        return np.zeros(len(drive))
+    last = np.searchsorted(moves, np.arange(len(drive)), side="right") - 1
+    return np.asarray(np.sign(drive[moves[np.maximum(last, 0)]]))
 
 
 def slips_at_once(slider: Slider) -> bool:
@@ -112,7 +137,7 @@ def _least_gain(slider: Slider) -> float:
 def _first_loading(run: Trajectory) -> FirstLoading:
     samples = run.samples
     elongation = run.slider.along_drive(samples["u_x"], samples["u_y"])
-    return first_loading(run.slider, elongation, samples["drive_X"])
+    return first_loading(run.slider, samples["time"], elongation, samples["drive_X"])
 
 
 def first_slip_time(run: Trajectory) -> float:

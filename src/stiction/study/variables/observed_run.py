@@ -144,7 +144,8 @@ class ObservedRun:
         """Start of the first slip (s), and the distance of the mass until then (m)."""
         slider = self.description.slider
         drive = np.broadcast_to(self.drive, self.time.shape)
-        at = first_loading(slider, slider.along_drive(self.column(0), self.column(1)), drive).slip
+        elongation = slider.along_drive(self.column(0), self.column(1))
+        at = first_loading(slider, self.time, elongation, drive).slip
         if at < 0:
             return nan, nan
         positions = self.positions
