@@ -167,6 +167,7 @@ class Record(Described):
     _sticks: Floats | None = PrivateAttr(None)
     _own_period: float | None = PrivateAttr(None)
     _drive_travel: Floats | None = PrivateAttr(None)
+    _slider: Slider | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -283,6 +284,14 @@ class Record(Described):
         if self._drive_travel is None:
             return None
         return np.asarray(np.interp(self.time, *self._drive_travel))
+
+    def steady_until(self, time: float) -> float:
+        """Return until when drive and load are known to go on as at a time, s: at most the end.
+
+        Those of a measured record are supposed to.
+        """
+        end = float(self.time[-1])
+        return end if self._slider is None else min(end, self._slider.steady_until(time))
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -441,6 +450,7 @@ def record_of(run: Trajectory) -> Record:
         load=None if slider.load is None else load,
     )
     record._sticks = run.stick_intervals
+    record._slider = slider
     record._own_period = 1.0 / slider.natural_frequency_x
     if not isinstance(slider.motion, ConstantVelocity):
         d_X, d_Y = slider.motion.travel(time[0], time - time[0])

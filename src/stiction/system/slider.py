@@ -16,7 +16,10 @@ from stiction.drive import (
     Drive,
     DriveProgram,
     LoadProgram,
+    ahead,
+    drive_stretches,
     load_at,
+    load_stretches,
     read_drive,
     read_load,
 )
@@ -340,6 +343,15 @@ class Slider(Apparatus):
     def weight(self, t: Any) -> Any:
         """Return the normal load at time `t` (float or array, s), in N."""
         return load_at(self.normal_load, self.load, t)
+
+    def steady_until(self, t: float) -> float:
+        """Return when the piece of the drive's or the load's program at time `t` (s) ends, in s.
+
+        That of the one that ends first; infinity if neither has another piece.
+        """
+        drive = ahead(drive_stretches(self.motion), t)
+        load = ahead(load_stretches(self.normal_load, self.load), t)
+        return min(drive[0], load[0])
 
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""

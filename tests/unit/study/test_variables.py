@@ -177,7 +177,7 @@ def test_turning_points_of_a_known_signal():
     """A sine's extrema are found to within the error of a parabola, (omega dt)^4/..., 1e-5."""
     t = np.arange(0.0, 1.0, 1.0 / 320.0)
     signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
-    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0)
+    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0, len(t))
     exact = (np.pi / 2 - 0.3 + np.pi * np.arange(20)) / (2.0 * np.pi * 10.0)
     np.testing.assert_allclose(found.turn_time, exact, atol=1e-4)
     np.testing.assert_allclose(np.abs(found.turn_value), 1.0, atol=3e-4)
@@ -263,3 +263,26 @@ def test_a_single_cycle_after_the_loading_is_no_transverse_oscillation():
     assert len(run.cycles.drop) == 1
     found = st.analysis.classify(st.simulate(slider, "2 s", sample_rate="5 kHz"))
     assert run.regime == found.kind == "stick-slip"
+
+
+def test_cycles_before_a_hold_are_no_transient():
+    """They were: the motion was over "by itself", as no swing followed for long."""
+    program = st.protocols
+    steps = [program.Constant(duration="1 s"), program.Step("-1 mm/s", "4 s"), program.Hold("3 s")]
+    slider = PAPER.replace(drive=program.DriveProgram(velocity="0 mm/s", program=steps))
+    run = run_in_study(slider, "8 s")
+    seen = st.simulate(slider, "8 s", sample_rate="1 kHz")
+    cycles = st.analysis.find_cycles(seen)
+    assert run.regime == st.analysis.classify(seen).kind == "stick-slip"
+    assert value("cycles", run) == cycles.sizes["cycle"] == 2
+    assert value("period", run) == pytest.approx(float(cycles["period"].mean()), rel=1e-3)
+
+
+def test_a_ripple_before_a_hold_is_no_cycle():
+    """In the hold the force spans nothing, and each swing across the drive was a cycle."""
+    program = st.protocols
+    steps = [program.Constant(duration="1 s"), program.Hold("3 s")]
+    slider = PAPER.replace(drive=program.DriveProgram(velocity="1 mm/s", program=steps))
+    run = run_in_study(slider, "4 s")
+    assert run.regime == "settling"
+    assert value("cycles", run) == 0

@@ -51,7 +51,7 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     drop, period : array
         (n,) for each swing, in any unit, and in that of `rest`.
     rest : float
-        Time from the last of them to the end of the record.
+        Time from the last of them until the drive or the load changes, or the record ends.
     """
     size = np.asarray(drop, dtype=np.float64)
     quiet = len(size) > 0 and rest > QUIET * float(np.max(period))
@@ -63,6 +63,19 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     if len(size) < enough:
         return _decays_steadily(size)
     return order(size) <= ORDERED and bool(size[-1] < left * size[0])
+
+
+def is_over(period: Floats, rest: float) -> bool:
+    """Return whether it is quiet for long after some swings, so that without noise none follows.
+
+    Parameters
+    ----------
+    period : ndarray
+        (n,) of each swing, in the unit of `rest`.
+    rest : float
+        Time from the last of them until the drive or the load changes, or the record ends.
+    """
+    return len(period) > 0 and bool(rest > QUIET * period.max())
 
 
 def _decays_steadily(size: Floats) -> bool:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
-from stiction.analysis.motion.course import built_up, dies_out
+from stiction.analysis.motion.course import built_up, dies_out, is_over
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
     is_beside,
@@ -117,6 +117,8 @@ class Swings(NamedTuple):
         From crest to trough of a slower wave that carries the cycles, N; 0 if there is none.
     ringing : Ringing or None
         What dies out within the record beside the cycles, as after a knock; `force` is without it.
+    over : bool
+        Whether the record is that of a run, which has no noise, and no swing follows for long.
     """
 
     table: CycleTable
@@ -128,6 +130,7 @@ class Swings(NamedTuple):
     lines: tuple[Line, ...] = ()
     wave: float = 0.0
     ringing: Ringing | None = None
+    over: bool = False
 
     @property
     def lasting(self) -> CycleTable:
@@ -237,9 +240,13 @@ def _swings(record: Record, wave: Floats | None = None) -> Swings:
         there = np.interp(corners.time, record.time, wave)
         corners = corners._replace(value=np.asarray(corners.value + there))
     table = tabulate(record, corners, dips, points.least)
-    rest = record.time[-1] - table["trough_time"][-1] if len(table) else 0.0
-    dying = dies_out(table["drop"], table["period"], rest)
-    return Swings(table, dying, len(points.index), points.noise, points.clearness, record.force)
+    over = dying = False
+    if len(table):
+        rest = record.steady_until(table["start"][-1]) - table["trough_time"][-1]
+        over = record.sticks is not None and is_over(table["period"], rest)
+        dying = over or dies_out(table["drop"], table["period"], rest)
+    found = Swings(table, dying, len(points.index), points.noise, points.clearness, record.force)
+    return found._replace(over=over)
 
 
 def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]:

@@ -240,9 +240,14 @@ def _settles(found: Analysis, at: str) -> str:
     evidence = found.regime.evidence
     if comes_to_rest(found.record.slip_speed):
         return "The motion dies down, and the mass comes to rest."
-    if found.friction.break_away is not None and "swings" not in evidence:
+    swings = bool({"swings", "over"} & set(evidence))
+    if found.friction.break_away is not None and not swings:
         return f"The mass breaks away once, and comes to slide steadily{at}."
-    if "swings" in evidence or "fading" in evidence or evidence.get("change", 0.0) >= 0.0:
+    if (
+        {"swings", "over"} & set(evidence)
+        or "fading" in evidence
+        or evidence.get("change", 0.0) >= 0.0
+    ):
         what = "force settles" if "late_share" in evidence else "vibration dies down"
         return f"The {what}, and the mass comes to slide steadily{at}."
     if found.record.slip_speed is not None:

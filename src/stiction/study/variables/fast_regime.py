@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.course import QUARTER, QUIET, built_up, dies_out
+from stiction.analysis.motion.course import QUARTER, built_up, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.vibration import irregularity
@@ -88,8 +88,8 @@ def swings(found: Features) -> SwingShapes:
 def kind_of(
     found: Features,
     cycles: SwingShapes,
-    start: float,
-    end: float,
+    duration: float,
+    until: float,
     drive: float,
     oscillation: float,
     across: float,
@@ -105,8 +105,8 @@ def kind_of(
         Features of the samples.
     cycles : SwingShapes
         The complete swings that are cycles.
-    start, end : float
-        Start and end of the run, s.
+    duration, until : float
+        Of the run, s; and when drive or load change after the last swing, or else the end.
     drive : float
         Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
     oscillation : float
@@ -118,11 +118,11 @@ def kind_of(
     still, sticks : callable
         Return for which share of each of some swings the mass rests or creeps, and sticks.
     """
-    lasting = cycles_among(cycles, end)
+    lasting = cycles_among(cycles, until)
     if len(lasting.drop) >= FEWEST_CYCLES:
         return by_shape(lasting, own, still, sticks)
-    dying = die_out(cycles, end)
-    kind = kinds.SETTLING if dying else by_course(found, start, end, drive)
+    dying = die_out(cycles, until)
+    kind = kinds.SETTLING if dying else by_course(found, duration, drive)
     if kind not in (kinds.SETTLING, kinds.STEADY) or oscillation <= OSCILLATES:
         return kind
     # what dies out sets the stiffer spring in motion, too
@@ -130,23 +130,18 @@ def kind_of(
     return kind if swing > across else kinds.TRANSVERSE
 
 
-def cycles_among(found: SwingShapes, end: float) -> SwingShapes:
+def cycles_among(found: SwingShapes, until: float) -> SwingShapes:
     """Return the swings that are cycles by the rules of `stiction.analysis.find_cycles`."""
-    none = is_over(found, end) or die_out(found, end)
+    none = is_over(found.period, until - found.end) or die_out(found, until)
     return found.some(slice(0, 0) if none else built_up(found.drop))
 
 
-def is_over(found: SwingShapes, end: float) -> bool:
-    """Return whether the run goes on for long after its last swing."""
-    return len(found.drop) > 0 and end - found.end > QUIET * float(found.period.max())
-
-
-def die_out(cycles: SwingShapes, end: float) -> bool:
-    """Return whether swings die out until `end`: a transient, not cycles."""
+def die_out(cycles: SwingShapes, until: float) -> bool:
+    """Return whether swings die out until a time (s): a transient, not cycles."""
     drop = cycles.drop
     # first a cheap necessary condition
     dying = len(drop) > 0 and bool(drop[-1] < 0.5 * drop.max())
-    return dying and dies_out(drop, cycles.period, end - cycles.end)
+    return dying and dies_out(drop, cycles.period, until - cycles.end)
 
 
 def by_shape(cycles: SwingShapes, own: float, still: Shares, sticks: Shares) -> str:
@@ -167,11 +162,11 @@ def irregular(cycles: SwingShapes) -> bool:
     return irregularity(cycles.period, cycles.drop) > 0.5
 
 
-def by_course(found: Features, start: float, end: float, drive: float) -> str:
+def by_course(found: Features, duration: float, drive: float) -> str:
     """Return the kind of a force without cycles, by the rules of `analysis.motion.regime`."""
     f = found.means.tolist()
     span, change = max(f) - min(f), f[-1] - f[0]
-    quarter = QUARTER * (end - start) / PARTS
+    quarter = QUARTER * duration / PARTS
     early, late = (f[QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - QUARTER]) / quarter
     if span > 0.0 and max(f[-QUARTER:]) - min(f[-QUARTER:]) <= force_course.SETTLED * span:
         return kinds.SETTLING

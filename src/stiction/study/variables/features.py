@@ -55,6 +55,7 @@ def features(
     velocity: np.ndarray,
     reversal: float,
     least: float,
+    driven: int,
 ) -> Features:
     """Return the features of evenly spaced samples.
 
@@ -63,9 +64,12 @@ def features(
     time, force, rate, velocity : ndarray
         (n,), s, N, N/s, m/s; positive along the drive.
     reversal : float
-        Smallest reversal of the force that counts, as a share of its span in the last quarter.
+        Smallest reversal of the force that counts, as a share of its span in the last quarter of
+        the driven samples.
     least : float
         The same as a share of the largest force: smaller ones are errors of the solver.
+    driven : int
+        Number of samples until the drive stops for good.
     """
     n = len(time)
     low, high, fastest = force[0], force[0], velocity[0]
@@ -81,7 +85,10 @@ def features(
         begin, end = part * n // PARTS, max((part + 1) * n // PARTS, part * n // PARTS + 1)
         for i in range(begin, end):
             means[part] += force[min(i, n - 1)] / (end - begin)
-    height = max(reversal * (late_high - late_low), least * max(high, -low))
+    end_low, end_high = force[driven - 1], force[driven - 1]
+    for i in range(3 * driven // 4, driven):
+        end_low, end_high = min(end_low, force[i]), max(end_high, force[i])
+    height = max(reversal * (end_high - end_low), least * max(high, -low))
     index = zigzag(force, height)
     turn_time, turn_value = np.empty(len(index)), np.empty(len(index))
     trough = len(index) > 0 and force[index[0]] < force[0]

@@ -30,9 +30,10 @@ PER_COUPLED_PERIOD = 16  # of the mass moving only along the drive
 LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of a run
 # The fast oscillation is measured over its last periods.
 FAST_PERIODS, PER_FAST_PERIOD = 32, 16
-# Smallest reversal of the force that counts, as a share of its span in the last quarter: ten times
-# the fast oscillation of the paper's system, and small enough to see swings die out. It is at least
-# the solver's tolerance for the largest force.
+# Smallest reversal of the force that counts, as a share of its span in the last quarter of the time
+# until the drive stops for good; afterwards friction holds the force. It is ten times the fast
+# oscillation of the paper's system, and small enough to see swings die out. It is at least the
+# solver's tolerance for the largest force.
 REVERSAL = 1e-3
 
 
@@ -136,7 +137,11 @@ class ObservedRun:
     def features(self) -> Features:
         """Features of the evenly spaced samples."""
         least = self.description.run.rtol
-        found: Features = features(self.time, self.force, self.rate, self.velocity, REVERSAL, least)
+        moves = np.flatnonzero(np.broadcast_to(self.drive, self.time.shape))
+        driven = int(moves[-1]) + 1 if len(moves) else len(self.time)
+        found: Features = features(
+            self.time, self.force, self.rate, self.velocity, REVERSAL, least, driven
+        )
         return found
 
     @cached_property
@@ -157,9 +162,17 @@ class ObservedRun:
         return swings(self.features)
 
     @cached_property
+    def until(self) -> float:
+        """When drive or load change after the last swing, or in it, s; else the end."""
+        if not len(self.swings.period):
+            return self.end
+        last = float(self.swings.start[-1])
+        return min(self.end, self.description.slider.steady_until(last))
+
+    @cached_property
     def cycles(self) -> SwingShapes:
         """The swings that are cycles."""
-        return cycles_among(self.swings, self.end)
+        return cycles_among(self.swings, self.until)
 
     @cached_property
     def transverse_oscillation(self) -> float:
@@ -195,8 +208,8 @@ class ObservedRun:
         across = min(slider.k_x, slider.k_y) * self.rate_across
         shares = self.rests, self.sticks
         return kind_of(
-            self.features, self.swings, self.start, self.end, drive, oscillation, across, own,
-            *shares,
+            self.features, self.swings, self.end - self.start, self.until, drive, oscillation,
+            across, own, *shares,
         )  # fmt: skip
 
     def rests(self, cycles: SwingShapes) -> Floats:

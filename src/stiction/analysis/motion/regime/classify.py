@@ -7,7 +7,7 @@ import numpy as np
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.sliding import UNLOADED, sliding
 from stiction.analysis.motion.changes.strokes import strokes
-from stiction.analysis.motion.course import PARTS
+from stiction.analysis.motion.course import BELOW, PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
@@ -80,7 +80,8 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if found.dying or _is_over(record, found):
         drop = found.table["drop"]
         sure = (len(drop) + 1) / (len(drop) + 3)
-        return Regime(SETTLING, sure, {"swings": len(drop), "last_over_first": drop[-1] / drop[0]})
+        name = "over" if found.over and drop[-1] > BELOW * drop.max() else "swings"
+        return Regime(SETTLING, sure, {name: len(drop), "last_over_first": drop[-1] / drop[0]})
     if len(found.table):
         period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))

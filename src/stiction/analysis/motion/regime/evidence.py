@@ -76,6 +76,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "changed_at": ("at {} the cycles change", _seconds),
     "mains": ("it swings at {} as the mains do: it may be hum over another motion", _frequency),
     "swings": ("{} swings, each smaller than the last but for noise", _whole),
+    "over": ("{} swings, and none for long after", _whole),
     "last_over_first": ("the last force drop is {} times the first", _three_digits),
     "turns": ("{} peaks and troughs make no complete cycle", _whole),
     "levels": ("it stays at {} levels, one after the other", _whole),
