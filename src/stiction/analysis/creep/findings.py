@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import degrees
+from math import degrees, inf
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -86,9 +86,10 @@ def find_creep(
             loading = by_force.F_0 / stiffness / V
             divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
         return CreepFound(curves, mean, divergence, by_force, missing)
+    across = run.slider.k_y if run is not None else record.stiffness_across
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
     divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
-    by_creep = attempt(missing, "misalignment", lambda: _misalignment(mean, V, stiffness))
+    by_creep = attempt(missing, "misalignment", lambda: _misalignment(mean, V, stiffness, across))
     return CreepFound(curves, mean, divergence, by_creep, missing)
 
 
@@ -159,11 +160,13 @@ def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
     return found
 
 
-def _misalignment(mean: xr.Dataset, V: float, stiffness: float) -> Misalignment:
+def _misalignment(
+    mean: xr.Dataset, V: float, stiffness: float, across: float | None
+) -> Misalignment:
     """Return the implied misalignment, if it exceeds its uncertainty."""
     if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
         raise ResultError("not determined: the mass mostly rests where Eq. (7) predicts creep")
-    found = fit_misalignment(mean, V, stiffness)
+    found = fit_misalignment(mean, V, stiffness, stiffness_across=across or inf)
     if found.misfit > MISSED or found.scatter > SCATTER:
         by = percent(found.misfit) if found.misfit > MISSED else "more than its uncertainty"
         raise ResultError(

@@ -145,6 +145,11 @@ def first_slip_time(run: Trajectory) -> float:
     return float(run.samples["time"][_first_loading(run).slip])
 
 
+def slips(run: Trajectory) -> bool:
+    """Return whether a run has a first slip: see `first_loading`."""
+    return _first_loading(run).slip >= 0
+
+
 def creep_end(run: Trajectory) -> float:
     """Return the end of the initial creep (s), with or without a slip: see `FirstLoading`."""
     return float(run.samples["time"][_first_loading(run).end])

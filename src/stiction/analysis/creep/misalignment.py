@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.creep.divergence import fit_parameters, used_bins
 from stiction.arrays import Floats, xr
+from stiction.errors import ResultError
 
 START = 0.02  # rad, of phi, and of the weakening
 WEAKENINGS = (-0.3, 1.0)  # from strengthening to half the friction at the drive's speed
 ASSUMED = 0.1  # standard error of the weakening: its order is all that is known before
 TURNS = 6  # of the iteration for theta: the weakening is small, so each gains a digit or two
+NEAR_ZERO = 1e-3, 1e-6  # rad, of theta: while it is sought, and as found
+RESTS, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
 SURE = 2.0  # standard errors by which an angle must differ from zero
 
 
@@ -49,6 +53,7 @@ def fit_misalignment(
     drive_velocity: float,
     stiffness: float,
     stretch: tuple[float, float] = (0.05, 1.0),
+    stiffness_across: float = inf,
 ) -> Misalignment:
     """Fit the misalignment of Eq. (7) to a creep curve.
 
@@ -57,6 +62,10 @@ def fit_misalignment(
     F_0: near slip the force is so close to F_0 that an error of a per mille in F_0 shows. They also
     determine how far friction weakens with the slip speed |s| = V sin(phi)/sin(theta) of the creep,
     as F_0/(1 + weakening |s|/V): taken as constant, it makes angles above 5 deg 1 to 2 % too small.
+
+    Eq. (7) supposes a spring across that is far stiffer, k_x/k_y << tan^2(phi). With
+    `stiffness_across` the creep is that of both springs, and bins before its begin, where the mass
+    still rests, are left out.
 
     Parameters
     ----------
@@ -67,6 +76,8 @@ def fit_misalignment(
     stretch : tuple of float
         Range of the time to slip of the bins used, as shares of the loading time l_x/V; nearer
         to slip the inertia matters, which Eq. (7) neglects.
+    stiffness_across : float, optional
+        k_y, N/m.
 
     Returns
     -------
@@ -94,47 +105,93 @@ def fit_misalignment(
     peak = float(np.fmax.reduce(curve["force"].values, initial=0.0))
     loading_time = peak / stiffness / drive_velocity
     used = used_bins(curve, stretch[0] * loading_time, stretch[1] * loading_time)
+    ratio = stiffness / stiffness_across
+    if ratio > 0.0:
+        used = _after_rest(used, drive_velocity)
+    begin = max(1.02 * peak, float(used[-1].max()) + 1e-3 * peak)
+    start = Misalignment(START, 0.0, begin, 0.0, weakening=START)
+    found = _fit(used, peak, drive_velocity, 0.0, start)
+    if ratio == 0.0:
+        return found
+    fits = [_fit(used, peak, drive_velocity, ratio, each) for each in (start, found)]
+    return min(fits, key=lambda fit: fit.scatter)
+
+
+def _fit(
+    used: list[Floats], peak: float, drive_velocity: float, ratio: float, start: Misalignment
+) -> Misalignment:
+    """Return the best fit that is reached from a first one, with springs of a ratio k_x/k_y."""
     _, _, velocity, error, force = used
     largest = float(force.max())
 
     def creep(force: Floats, phi: float, excess: float, weakening: float) -> Floats:
-        return drive_velocity * creep_velocity(force / (largest + excess), phi, weakening)
+        return drive_velocity * creep_velocity(force / (largest + excess), phi, weakening, ratio)
 
-    start = (START, max(1.02 * peak - largest, 1e-3 * peak), START)
-    bounds = ((-1.5, 1e-6 * peak, WEAKENINGS[0]), (1.5, 10.0 * peak, WEAKENINGS[1]))
+    # below zero Eq. (7) creeps against the drive; with two springs it has its mirror image above
+    low = (-1.5 if ratio == 0.0 else 0.0, 1e-6 * peak, WEAKENINGS[0])
+    high = (1.5, 10.0 * peak, WEAKENINGS[1])
+    begin = np.clip((start.phi, start.F_0 - largest, start.weakening), low, high)
     found, errors = fit_parameters(
         lambda at, *known: np.append(creep(at, *known), known[2]),
         force,
         np.append(velocity, 0.0),
         np.append(error, ASSUMED),
-        start,
-        bounds,
+        tuple(begin.tolist()),
+        (low, high),
     )
-    phi, excess, weakening = found
     theory = creep(force, *found)
     off = np.abs(velocity - theory)
     size = np.maximum(np.maximum(np.abs(velocity), np.abs(theory)), 1e-300)
-    misfit = float(np.median(np.maximum(off - SURE * error, 0.0) / size))
     return Misalignment(
-        phi,
+        found[0],
         errors[0],
-        largest + excess,
+        largest + found[1],
         errors[1],
-        misfit=misfit,
+        misfit=float(np.median(np.maximum(off - SURE * error, 0.0) / size)),
         scatter=float(np.sqrt(np.mean((off / error) ** 2))),
-        weakening=weakening,
+        weakening=found[2],
     )
 
 
-def creep_velocity(share: Floats, phi: float, weakening: float) -> Floats:
-    """Return the velocity of Eq. (7) over that of the drive, at shares F/F_0 of the force.
+def _after_rest(used: list[Floats], drive_velocity: float) -> list[Floats]:
+    """Return the bins, far from slip to near, of which none rests any more: creep begins in one."""
+    begin, velocity = used[0], np.abs(used[2])
+    rests = begin[velocity < RESTS * drive_velocity]
+    if not len(rests):
+        return used
+    later = begin < rests.min()
+    later &= begin < begin[later].max(initial=0.0)
+    if later.sum() < FEWEST:
+        raise ResultError(
+            f"not determined: the mass creeps in only {later.sum()} bins of the curve, and rests "
+            "before"
+        )
+    return [column[later] for column in used]
 
-    Friction is F_0/(1 + weakening |s|/V) with |s| = V sin(phi)/sin(theta), as in `creep_distance`;
-    near theta = 0, which only a trial of the fit reaches, sines are kept from zero.
+
+def creep_velocity(share: Floats, phi: float, weakening: float, ratio: float = 0.0) -> Floats:
+    """Return the velocity of slow creep over that of the drive, at shares F/F_0 of the force.
+
+    The force on both springs is F_0 (cos(theta), sin(theta)), and the slip is along it:
+
+        F_0/k_x theta' = -V sin(theta - phi)/(sin^2(theta) + r cos^2(theta)), r = k_x/k_y,
+        |s| = V [cos(theta - phi) - (1 - r) sin(theta - phi) sin(theta) cos(theta)
+                 /(sin^2(theta) + r cos^2(theta))], X' = |s| cos(theta - phi).
+
+    With r = 0 this is Eq. (7), |s| = V sin(phi)/sin(theta). Friction is F_0/(1 + weakening |s|/V),
+    as in `creep_distance`; near theta = 0, which only a trial of the fit reaches, sines are kept
+    from zero.
     """
     theta = np.arccos(np.clip(share, -1.0, 1.0))
     for _ in range(TURNS):
-        slip = np.sin(abs(phi)) / np.maximum(np.sin(theta), 1e-3)
+        slip = np.abs(_slip_speed(np.maximum(theta, NEAR_ZERO[0]), phi, ratio))
         theta = np.arccos(np.clip(share * (1.0 + weakening * slip), -1.0, 1.0))
-    sine = np.maximum(np.sin(theta), 1e-6)
-    return np.asarray(np.sin(phi) * np.cos(theta - phi) / sine)
+    theta = np.maximum(theta, NEAR_ZERO[1])
+    return np.asarray(np.cos(theta - phi) * _slip_speed(theta, phi, ratio))
+
+
+def _slip_speed(theta: Floats, phi: float, ratio: float) -> Floats:
+    """Return the slip speed of slow creep over V; below zero against the force."""
+    sine, cosine = np.sin(theta), np.cos(theta)
+    turned = (1.0 - ratio) * sine * cosine / (sine**2 + ratio * cosine**2)
+    return np.asarray(np.cos(theta - phi) - np.sin(theta - phi) * turned)

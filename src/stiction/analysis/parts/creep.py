@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.analysis.creep.findings import RESTS, drive_speed
+from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import SLIGHT, number
 from stiction.analysis.signals.robust import without_outliers
@@ -74,15 +75,33 @@ def section(found: Analysis) -> Section:
         )
     if phi is not None:
         lines.append(
-            "By Eq. (7) it implies a misalignment of "
+            f"By Eq. (7){_of_both(found)} it implies a misalignment of "
             f"{with_error(phi.phi, phi.phi_error, 'rad')}{_true(found)}, and "
-            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}.{_below_peak(found, phi)}"
+            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}.{_supposed(found)}"
+            f"{_below_peak(found, phi)}"
         )
     fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
     lines += [
         f"{what}: {found.missing[fit]}." for fit, what in fits.items() if fit in found.missing
     ]
     return Section("Creep", lines)
+
+
+def _knows_both(found: Analysis) -> bool:
+    """Return whether the fit of creep has the stiffness of both springs."""
+    known = found.record.position is not None and found.record.stiffness_across is not None
+    return known or isinstance(found.source, Trajectory)
+
+
+def _of_both(found: Analysis) -> str:
+    return ", with both springs," if _knows_both(found) else ""
+
+
+def _supposed(found: Analysis) -> str:
+    """Return what Eq. (7) supposes of a spring that is not known."""
+    if _knows_both(found):
+        return ""
+    return " This supposes a spring across the force that is far stiffer, k_x/k_y ≪ tan² φ."
 
 
 def _true(found: Analysis) -> str:
@@ -97,9 +116,13 @@ def _end(found: Analysis) -> str:
     last = np.inf if found.curves is None else float(found.curves["slip_time"][-1])
     if found.curves is not None and last >= found.record.time[-1]:
         return "the end"
-    if not found.cycles.sizes["cycle"] and found.friction.break_away is None:
-        return "the spring is loaded"  # it comes to slide without a slip
-    return "slip"
+    if found.curves is not None and found.curves.sizes["phase"] > 1:
+        return "slip"
+    if isinstance(found.source, Trajectory):
+        slides = not slips(found.source)
+    else:
+        slides = not found.cycles.sizes["cycle"] and found.friction.break_away is None
+    return "the spring is loaded" if slides else "slip"  # it comes to slide without a slip
 
 
 def _phases(far: int, near: int, number: int) -> str:

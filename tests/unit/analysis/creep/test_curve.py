@@ -12,6 +12,7 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.creep.curve import between_rests, bin_edges
 from stiction.analysis.creep.findings import MISSED
+from stiction.analysis.creep.misalignment import creep_velocity
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.page.canvas import figure_of
@@ -385,3 +386,38 @@ def test_an_exponent_at_the_end_of_its_range_is_none(exponent, known):
     else:
         with pytest.raises(st.ResultError, match="does not have the shape"):
             st.analysis.fit_divergence(curve, 10.0, lag=0.0)
+
+
+@pytest.mark.parametrize("degrees", [20, 30])
+def test_the_implied_angle_holds_where_the_spring_across_is_hardly_stiffer(degrees):
+    """Eq. (7) alone gave 36 and 43 deg, with errors of 2 and 3 deg, and F_0 = 4.6 N."""
+    rubber = st.Slider(
+        mass="50 g",
+        k_x="300 N/m",
+        k_y="900 N/m",
+        phi=f"{degrees} deg",
+        normal_load="5 N",
+        friction=st.Coulomb(mu_0=0.8),
+        drive=st.ConstantVelocity("2 mm/s"),
+    )
+    found = st.analyse(st.simulate(rubber, "20 s", sample_rate="500 Hz"))
+    low, high = np.degrees(found.misalignment.interval)
+    assert low < degrees < high
+    assert np.degrees(found.misalignment.phi) == pytest.approx(degrees, rel=0.02)
+    assert pytest.approx(4.0, rel=0.01) == found.misalignment.F_0
+    text = str(found)
+    assert "By Eq. (7), with both springs, it implies" in text
+    assert "before the spring is loaded it rests" in text  # there is no slip
+
+
+def test_the_creep_of_two_springs_is_that_of_eq_7_where_one_is_far_stiffer():
+    share, phi = np.linspace(0.0, 0.99, 30), radians(3)
+    theta = np.arccos(share)
+    eq_7 = np.sin(phi) * np.cos(theta - phi) / np.sin(theta)
+    assert creep_velocity(share, phi, 0.0) == pytest.approx(eq_7, rel=1e-12)
+    # the first correction is r cot^2 theta of the elongation's part of the speed
+    off = 1e-6 / np.tan(theta) ** 2
+    assert creep_velocity(share, phi, 0.0, 1e-6) == pytest.approx(eq_7, abs=2.0 * off.max() + 2e-6)
+    # along the force from the start, as the first stick leaves it: both springs load at their rates
+    first = np.cos(np.arctan(np.tan(phi) / 0.5))
+    assert 0.0 < float(creep_velocity(np.array([first]), phi, 0.0, 0.5)[0]) < 1.0
