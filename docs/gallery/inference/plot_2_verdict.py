@@ -35,4 +35,4 @@ record = st.Record(time=motion.time, force=force, drive_velocity="0.5 mm/s", nor
 store = "libraries"  # what was simulated for a fit of this record serves its audit
 found = st.audit(rig, record=record, simulations=400, library=store)  # 4000 by default
 st.plotting.plot_predictive(found.measured)
-st.plotting.plot_mechanism(found.measured.odds)
+st.plotting.plot_mechanism(st.mechanism(record, rig, simulations=100, library=store))

@@ -11,7 +11,15 @@ from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
 from stiction.inference.calibration import study
-from stiction.inference.library import SIMULATIONS, Library, Plan, build, plan, refuse_too_few
+from stiction.inference.library import (
+    LONGEST_CYCLE,
+    SIMULATIONS,
+    Library,
+    Plan,
+    build,
+    plan,
+    refuse_too_few,
+)
 from stiction.inference.observation import Conditions, Observation, Source, observe_all
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior, Rig
@@ -120,7 +128,11 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
     ResultError
         If too few of its simulations have cycles.
     """
-    refuse_too_few("simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS)
+    refuse_too_few(
+        "simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS,
+        f" no longer than {LONGEST_CYCLE:g} times the record's",
+        "the priors, and stiffness and velocity, which decide how long a cycle lasts",
+    )  # fmt: skip
     observed = np.concatenate([each.features for each in seen])
     place = None if folder is None else folder / f"learned-{library.wanted}.npz"
     learned = study(library.features, library.scores, place)

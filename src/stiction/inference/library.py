@@ -265,8 +265,13 @@ def dummy(conditions: Conditions) -> dict[str, Floats]:
     return dict.fromkeys(conditions.noise, saw + 0.01)
 
 
-def refuse_too_few(what: str, usable: int, simulated: int, fewest: int) -> None:
+def refuse_too_few(
+    what: str, usable: int, simulated: int, fewest: int, which: str = "", check: str = "the priors"
+) -> None:
     """Refuse to learn from too few simulations with cycles; say how many would do.
+
+    `which` tells what is asked of the cycles, `check` what decides about them. Where fewer than a
+    tenth of the simulations that are needed are usable, more of them would not help.
 
     Raises
     ------
@@ -277,10 +282,10 @@ def refuse_too_few(what: str, usable: int, simulated: int, fewest: int) -> None:
         return
     enough = SAFE * fewest * simulated / max(usable, 1)
     number = ceil(enough / 100.0) * 100
-    more = f", or simulate {number} (-n {number}, in Python simulations={number})" if usable else ""
+    more = f", or simulate {number} (-n {number}, in Python simulations={number})"
     raise ResultError(
-        f"only {usable} of {simulated} {what} have cycles of stick and slip, {fewest} are needed: "
-        f"check the priors{more}"
+        f"only {usable} of {simulated} {what} have cycles of stick and slip{which}, {fewest} are "
+        f"needed: check {check}{more if 10 * usable > fewest else ''}"
     )
 
 

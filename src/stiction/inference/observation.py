@@ -38,6 +38,7 @@ MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 DIGITS = 4  # of the sampling interval: times of many records differ by rounding
 TREND = 0.01  # probability below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
+QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 
 
@@ -193,6 +194,11 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
             f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
             "record for longer, or slower"
         )
+    if channels["force"].mean() <= 0.0 and has_quick_rises(found):
+        raise ResultError(
+            f"the force of {name} falls slowly and rises fast: it is recorded with the other sign, "
+            'in all likelihood; fit it with force=-force, or its file with --force="-1 N"'
+        )
     cycle = near(float(np.mean(found.after - found.before)) * step)
     block = max(round(cycle / step / PER_CYCLE), 1)
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
@@ -215,6 +221,12 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     )  # fmt: skip
     seen = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, seen, thin["force"], found)
+
+
+def has_quick_rises(cycles: Cycles) -> bool:
+    """Return whether the force of most cycles rises in less than a quarter of their time."""
+    shares = (cycles.peak - cycles.before) / (cycles.after - cycles.before)
+    return float(np.median(shares)) < QUICKLY
 
 
 def observe_all(records: Source | Sequence[Source], slider: Slider) -> list[Observation]:

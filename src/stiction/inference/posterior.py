@@ -34,6 +34,10 @@ STATE_DRIFT = (
     "A zero of the load cell that drifts can be stated, as a record without contact shows it, in "
     'the file beside the record, under [sensors.force]: zero_drift = "0 +- 5 mN/min".'
 )
+ALONG_X = (
+    "The force is taken as that of the spring along x, k_x u_x. A load cell along the drive reads "
+    'k_y u_y sin φ as well: if yours does, state cell_angle = "0 deg" in [slider].'
+)
 OWN_UNITS = {"jitter": "", "gain": "", "zero": "N", "zero_drift": "N/s"}
 MEANINGS = {
     "jitter": "spread of friction from cycle to cycle",
@@ -132,8 +136,8 @@ class Fit:
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        said = ", ".join(f"{x.name} {words(x)}" for x in self.estimates if x.identified)
-        return f"<Fit: {said or 'nothing is identified'}>"
+        said = ", ".join(f"{x.name} {words(x)}" for x in self.known) or "nothing is identified"
+        return f"<Fit: {said}{'; in doubt, see print(fit)' if self.doubts else ''}>"
 
     def __getitem__(self, name: str) -> Estimate:
         """Return the estimate of a parameter by its name: ``fit["phi"]``."""
@@ -145,12 +149,11 @@ class Fit:
 
     def tables(self) -> list[Section]:
         """Return the report: what is known, and what the records do not say."""
-        known = [x for x in self.estimates if x.identified]
         sentences = self.doubts
         sentences += [
             f"{x.name} is {in_words(x.median, x.unit)}, 95 % interval {in_words(x.low, x.unit)} to "
             f"{in_words(x.high, x.unit)}."
-            for x in known
+            for x in self.known
         ]
         if self.unidentified:
             sentences.append(
@@ -161,14 +164,23 @@ class Fit:
             sentences.append(
                 "The sign of phi is not in these channels; that of its prior is taken."
             )
+        if "phi" in self.plan.priors and self.plan.slider.cell_angle is None:
+            sentences.append(ALONG_X)
         sentences.append(f"Compared with {self.simulations} simulated records.")
         sentences.append(
             "Experimental: the coverage is how many of such 95 % intervals hold the truth of "
             "simulated records left out, which says nothing of what the simulations leave out."
         )
-        rows = [row(x, x.name in self.unidentified) for x in self.estimates]
+        remarks = dict.fromkeys(self.unidentified, "not identifiable")
+        remarks |= dict.fromkeys(self.beyond, "beyond its prior")
+        rows = [row(x, remarks.get(x.name, "")) for x in self.estimates]
         headings = ("parameter", "posterior", "95 %", "prior", "95 %", "width", "coverage")
         return [Section("Fit", sentences, Table(headings, rows))]
+
+    @property
+    def known(self) -> list[Estimate]:
+        """The parameters of which the records say clearly more than the prior, and within it."""
+        return [x for x in self.estimates if x.identified and x.name not in self.beyond]
 
     @property
     def beyond(self) -> list[str]:
@@ -191,7 +203,8 @@ class Fit:
                 "The records are not like those of the rig as described, whatever the uncertain "
                 f"values are: {percent(self.farther)} of the simulated records lie as far from the "
                 f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
-                "explained: is it this rig's record, are drive and load as stated?"
+                "explained: is it this rig's record, are drive and load as stated, does the load "
+                "cell lie along the axis that the rig states?"
             )
         if self.beyond:
             names = ", ".join(self.beyond)
@@ -283,9 +296,9 @@ def words(x: Estimate) -> str:
     return f"{in_words(x.median, x.unit)} ({in_words(x.low, x.unit)} to {in_words(x.high, x.unit)})"
 
 
-def row(x: Estimate, unidentified: bool) -> tuple[str, ...]:
-    """Return a row of the report."""
-    after = "not identifiable" if unidentified else in_words(x.median, x.unit)
+def row(x: Estimate, remark: str) -> tuple[str, ...]:
+    """Return a row of the report; a remark stands in place of the value, if there is one."""
+    after = remark or in_words(x.median, x.unit)
     between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
     before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
     shares = percent(x.narrower), percent(x.coverage)

@@ -104,9 +104,40 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     moved = record.model_copy(update={"force": record.force + 1.2})
     wrong = st.fit(moved, rig, simulations=SIMULATIONS, library=libraries)
     assert wrong.beyond == ["friction.mu_0", "friction.mu_inf"]
-    assert "beyond which the records point: friction.mu_0" in wrong.tables()[0].sentences[0]
+    part = wrong.tables()[0]
+    assert "beyond which the records point: friction.mu_0" in part.sentences[0]
+    # nothing is said of their values
+    assert not any(each.startswith("friction.mu") for each in part.sentences)
+    assert {row[1] for row in part.table.rows if row[0].startswith("mu")} == {"beyond its prior"}
+    assert "mu_0" not in repr(wrong)
+    assert "in doubt" in repr(wrong)
+    assert "in doubt" not in repr(found)
     unlike = replace(found, farther=0.02).tables()[0].sentences
     assert unlike[0].startswith("The records are not like those of the rig as described")
+
+
+def test_a_force_of_the_other_sign_is_refused(rig, record, libraries):
+    """It was fitted: "phi is 0.82 deg, 95 % interval 0.62 to 1.1"."""
+    other = record.model_copy(update={"force": -record.force})
+    with pytest.raises(ResultError, match=r"with the other sign, in all likelihood; fit it with"):
+        st.fit(other, rig, simulations=SIMULATIONS, library=libraries)
+
+
+def test_the_axis_of_the_load_cell_is_told_where_it_is_supposed(found):
+    """Forces along the drive that were taken for k_x u_x: 2 of 8 intervals held phi, not 8."""
+    told = "A load cell along the drive reads k_y u_y sin φ as well"
+    assert told in str(found.tables()[0])
+    slider = found.plan.slider.replace(cell_angle="0 deg")
+    along = replace(found, plan=found.plan._replace(slider=slider))
+    assert told not in str(along.tables()[0])
+
+
+def test_too_few_cycles_of_the_record_s_length_say_so(rig, record, tmp_path):
+    """A record in fast cycles, and priors whose cycles last 30 times longer: "0 of 600"."""
+    soft = rig._replace(slider=rig.slider.replace(drive=st.ConstantVelocity("0.01 mm/s")))
+    fast = record.model_copy(update={"drive_velocity": None, "time": record.time / 5.0})
+    with pytest.raises(ResultError, match=r"no longer than 4 times the record's, 300 .* velocity"):
+        st.fit(fast, soft, simulations=32, library=tmp_path)
 
 
 def test_a_record_with_lost_samples_is_taken_and_one_with_large_gaps_is_not(rig, record, libraries):

@@ -62,6 +62,16 @@ def test_the_store_keeps_the_order_that_was_asked_for(found):
     np.testing.assert_array_equal(found.data["phi"], found.view.study.coordinates["phi"].values)
 
 
+def test_an_axis_along_one_that_lies_along_another_is_refused():
+    """Twelve runs became 144, of which the angle of all in a column was not that of its name."""
+    axes = {
+        "phi": st.Sobol("1 deg", "3 deg", 4),
+        "normal_load": st.Random("5 N", "10 N", 4, along="phi"),
+    }
+    with pytest.raises(st.DescriptionError, match=r"normal_load.along: is 'phi', which lies along"):
+        st.Study(base=BASE, axes=axes, measures=["regime"])
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_changes_lie_between_neighbouring_values(seed):
     """Of random kinds: the intervals are those of the study whose values ascend."""

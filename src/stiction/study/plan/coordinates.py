@@ -138,6 +138,12 @@ def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) ->
             yield Fault(
                 f"{path}.along", f"cannot be {echo(axis.along)}; write a name such as 'sample'"
             )
+        other = axes.get(axis.along or "")
+        if axis.along != path and other is not None and other.along not in (None, axis.along):
+            yield Fault(
+                f"{path}.along",
+                f"is {echo(axis.along)}, which lies along {echo(other.along)} itself; write that",
+            )
         try:
             its = unit(base, path)
         except DescriptionError as error:
