@@ -168,6 +168,7 @@ class Record(Described):
     _own_period: float | None = PrivateAttr(None)
     _drive_travel: Floats | None = PrivateAttr(None)
     _slider: Slider | None = PrivateAttr(None)
+    _rate_across: Floats | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -284,6 +285,16 @@ class Record(Described):
         if self._drive_travel is None:
             return None
         return np.asarray(np.interp(self.time, *self._drive_travel))
+
+    @property
+    def slider(self) -> Slider | None:
+        """The system, where the record is that of a run."""
+        return self._slider
+
+    @property
+    def rate_across(self) -> Floats | None:
+        """Velocity of the mass along the stiffer axis, (n,), m/s, of a run."""
+        return self._rate_across
 
     def steady_until(self, time: float) -> float:
         """Return until when drive and load are known to go on as at a time, s: at most the end.
@@ -433,9 +444,10 @@ def record_of(run: Trajectory) -> Record:
     x, y, way, along = cell.x, cell.y, cell.way, cell.velocity
     share = _share(x, y, slider)
     stiffness = slider.along_drive(x * slider.k_x, y * slider.k_y) / share if share else 0.0
-    names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load")
+    stiffer = "v_y" if slider.k_y >= slider.k_x else "v_x"
+    names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", stiffer)
     columns = np.stack([samples[name] for name in names])
-    time, f_x, f_y, X, slip_speed, load = columns[:, np.isfinite(columns).all(axis=0)]
+    time, f_x, f_y, X, slip_speed, load, rate = columns[:, np.isfinite(columns).all(axis=0)]
     if not len(time):
         raise ResultError("no sample of the run is a number; simulate it again")
     record = Record(
@@ -450,7 +462,7 @@ def record_of(run: Trajectory) -> Record:
         load=None if slider.load is None else load,
     )
     record._sticks = run.stick_intervals
-    record._slider = slider
+    record._slider, record._rate_across = slider, rate
     record._own_period = 1.0 / slider.natural_frequency_x
     if not isinstance(slider.motion, ConstantVelocity):
         d_X, d_Y = slider.motion.travel(time[0], time - time[0])

@@ -286,3 +286,19 @@ def test_a_ripple_before_a_hold_is_no_cycle():
     run = run_in_study(slider, "4 s")
     assert run.regime == "settling"
     assert value("cycles", run) == 0
+
+
+# 3, 9 and 15 have few swings before a hold, which an analysis does not find
+@pytest.mark.parametrize("number", [*range(0, 24, 2), 1, 5, 7, 21, 23])
+def test_a_study_and_an_analysis_call_a_run_the_same(number):
+    """Where the drive holds, or the transverse motion goes on, they had two names."""
+    random = np.random.default_rng([17, number])
+    stiffer, phi = 10.0 ** random.uniform(0.0, 2.0), random.uniform(0.0, 60.0)
+    V, program = 10.0 ** random.uniform(-2.5, 0.0), st.protocols
+    moves = [program.Constant(duration=0.6), program.Hold(0.8)]
+    held = program.DriveProgram(velocity=V, program=moves)
+    slider = PAPER.replace(
+        k_y=1e3 * stiffer, phi=f"{phi} deg", drive=held if number % 2 else st.ConstantVelocity(V)
+    )
+    run = run_in_study(slider, "1.4 s")
+    assert run.regime == st.analysis.classify(st.simulate(slider, "1.4 s")).kind

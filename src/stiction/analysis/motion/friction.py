@@ -140,7 +140,7 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         missing["kinetic"] = "the mass comes to rest"
     elif "turns" in regime.evidence:
         missing["kinetic"] = "it is not determined whether the mass slides"
-    elif kind in (STEADY, SETTLING) or (kind == UNDETERMINED and slid):
+    elif kind in (STEADY, SETTLING, TRANSVERSE) or (kind == UNDETERMINED and slid):
         kinetic = _sliding(record, slides, kind, relative)
     else:
         unknown = kind == UNDETERMINED

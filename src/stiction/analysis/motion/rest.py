@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats, Indices
+from stiction.drive import Drive
 from stiction.text.quantity_text import MEASURABLE
 
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
@@ -101,6 +102,11 @@ def comes_to_rest(speed: Floats | None) -> bool:
     if speed is None or not len(speed):
         return False
     return bool(speed[-max(len(speed) // LAST, 1) :].max() <= AT_REST * speed.max())
+
+
+def stops_with_drive(drive: Drive, end: float, speed: Floats | None) -> bool:
+    """Return whether a mass is known to rest at the end (s) of a run whose drive has stopped."""
+    return not any(drive.rate(end)) and comes_to_rest(speed)
 
 
 def rests_throughout(time: Floats, speed: Floats | None, sticks: Floats | None) -> bool:

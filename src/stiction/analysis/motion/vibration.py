@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import hypot, log, sqrt
+from math import hypot, log, pi, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -25,6 +26,33 @@ SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of e
 # That span of irregular vibrations, and of harmonic ones, measured among them, whose swings differ
 # by noise or slowly: the typical one, and the standard deviation of its logarithm
 IRREGULAR_SPREAD, HARMONIC_SPREAD = (1.05, 0.1), (0.17, 0.8)
+
+OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
+FAST_PERIODS = 32  # of the fast oscillation at the end, over which it is measured
+
+
+class FastOscillation(NamedTuple):
+    """The fast oscillation at the end of a run.
+
+    Parameters
+    ----------
+    amplitude : float
+        Of the rate along the stiffer axis, over the drive's velocity along it: at most 1 unless
+        the slip reverses (Nakano & Popov, below Eq. (9)).
+    rate : float
+        That amplitude times the lesser stiffness, N/s.
+    """
+
+    amplitude: float
+    rate: float
+
+    def goes_on(self, drop: float = 0.0, period: float = 1.0) -> bool:
+        """Return whether it goes on by itself.
+
+        A last swing of a force, of a drop (N) in a period (s), which dies out, sets the stiffer
+        spring in motion, too.
+        """
+        return self.amplitude > OSCILLATES and pi * drop / period <= self.rate
 
 
 def drop_spread(drop: Floats) -> float:

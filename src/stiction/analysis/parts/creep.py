@@ -77,7 +77,7 @@ def section(found: Analysis) -> Section:
         lines.append(
             f"By Eq. (7){_of_both(found)} it implies a misalignment of "
             f"{with_error(phi.phi, phi.phi_error, 'rad')}{_true(found)}, and "
-            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}.{_supposed(found)}"
+            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}.{_assumption(found)}"
             f"{_below_peak(found, phi)}"
         )
     fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
@@ -97,7 +97,7 @@ def _of_both(found: Analysis) -> str:
     return ", with both springs," if _knows_both(found) else ""
 
 
-def _supposed(found: Analysis) -> str:
+def _assumption(found: Analysis) -> str:
     """Return what Eq. (7) supposes of a spring that is not known."""
     if _knows_both(found):
         return ""

@@ -176,6 +176,7 @@ def _describe_course(found: Analysis) -> str:
         STEADY: f"{_slides(found.regime.evidence, at)}{_besides(found)}",
         SETTLING: f"{_settles(found, at)}{_besides(found)}",
         STUCK: _sticks(found),
+        TRANSVERSE: f"The slow motion settles{at}; the mass oscillates across the drive.",
         IRREGULAR: "The mass vibrates irregularly.",
     }
     return plain.get(found.regime.kind, _begins_to_slip(found))

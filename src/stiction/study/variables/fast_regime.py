@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
-from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ import numpy as np
 from stiction.analysis.motion.course import QUARTER, built_up, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
-from stiction.analysis.motion.vibration import irregularity
+from stiction.analysis.motion.vibration import FastOscillation, irregularity
 from stiction.arrays import Floats
 from stiction.study.variables.features import PARTS, Features
 
@@ -38,7 +37,6 @@ FORMERLY = {
     "song": kinds.TRANSVERSE,
 }
 FEWEST_CYCLES = 1  # cycles needed for a kind, as for an analysis of one run
-OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
 
 
 class SwingShapes(NamedTuple):
@@ -91,11 +89,11 @@ def kind_of(
     duration: float,
     until: float,
     drive: float,
-    oscillation: float,
-    across: float,
+    fast: FastOscillation,
     own: float,
     still: Shares,
     sticks: Shares,
+    stops: bool,
 ) -> str:
     """Return the kind of motion.
 
@@ -109,25 +107,23 @@ def kind_of(
         Of the run, s; and when drive or load change after the last swing, or else the end.
     drive : float
         Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
-    oscillation : float
-        Rate amplitude of the final fast oscillation over the drive's velocity along it.
-    across : float
-        The same rate amplitude times the lesser stiffness, N/s.
+    fast : FastOscillation
+        At the end.
     own : float
         Period of the mass on the spring along x alone, s.
     still, sticks : callable
         Return for which share of each of some swings the mass rests or creeps, and sticks.
+    stops : bool
+        Whether drive and mass rest at the end.
     """
     lasting = cycles_among(cycles, until)
     if len(lasting.drop) >= FEWEST_CYCLES:
         return by_shape(lasting, own, still, sticks)
     dying = die_out(cycles, until)
-    kind = kinds.SETTLING if dying else by_course(found, duration, drive)
-    if kind not in (kinds.SETTLING, kinds.STEADY) or oscillation <= OSCILLATES:
-        return kind
-    # what dies out sets the stiffer spring in motion, too
-    swing = pi * float(cycles.drop[-1] / cycles.period[-1]) if dying else 0.0
-    return kind if swing > across else kinds.TRANSVERSE
+    kind = kinds.SETTLING if dying else by_course(found, duration, drive, stops)
+    last = (float(cycles.drop[-1]), float(cycles.period[-1])) if dying else ()
+    slides = kind in (kinds.SETTLING, kinds.STEADY) and not stops
+    return kinds.TRANSVERSE if slides and fast.goes_on(*last) else kind
 
 
 def cycles_among(found: SwingShapes, until: float) -> SwingShapes:
@@ -162,7 +158,7 @@ def irregular(cycles: SwingShapes) -> bool:
     return irregularity(cycles.period, cycles.drop) > 0.5
 
 
-def by_course(found: Features, duration: float, drive: float) -> str:
+def by_course(found: Features, duration: float, drive: float, stops: bool) -> str:
     """Return the kind of a force without cycles, by the rules of `analysis.motion.regime`."""
     f = found.means.tolist()
     span, change = max(f) - min(f), f[-1] - f[0]
@@ -170,11 +166,17 @@ def by_course(found: Features, duration: float, drive: float) -> str:
     early, late = (f[QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - QUARTER]) / quarter
     if span > 0.0 and max(f[-QUARTER:]) - min(f[-QUARTER:]) <= force_course.SETTLED * span:
         return kinds.SETTLING
-    if len(found.turn_time):
+    if stops:
+        return kinds.SETTLING
+    course = np.array([found.first, *found.turn_value, found.last])
+    fallen = np.maximum.accumulate(course) - course
+    if fallen.max() > force_course.SETTLED * span:
         return kinds.UNDETERMINED
     ups_and_downs = sum(abs(b - a) for a, b in pairwise(f))
     rising = change > 0.0 and change >= force_course.ONE_WAY * ups_and_downs
     if not rising or 0.0 < max(abs(early), abs(late)) < force_course.SLOW * drive:
         return kinds.STEADY
+    if fallen[-1] > fallen[:-1].max():  # a slip ends the run
+        return kinds.UNDETERMINED
     loading = late / drive if drive else late / early
     return kinds.STUCK if loading >= force_course.LOADING else kinds.UNDETERMINED

@@ -11,7 +11,13 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import first_loading
 from stiction.analysis.motion.regime.kinds import STUCK
-from stiction.analysis.motion.rest import rests_throughout, stick_shares, still_shares
+from stiction.analysis.motion.rest import (
+    rests_throughout,
+    stick_shares,
+    still_shares,
+    stops_with_drive,
+)
+from stiction.analysis.motion.vibration import FAST_PERIODS, FastOscillation
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
@@ -29,7 +35,7 @@ PER_SLOW_PERIOD = 32
 PER_COUPLED_PERIOD = 16  # of the mass moving only along the drive
 LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of a run
 # The fast oscillation is measured over its last periods.
-FAST_PERIODS, PER_FAST_PERIOD = 32, 16
+PER_FAST_PERIOD = 16
 # Smallest reversal of the force that counts, as a share of its span in the last quarter of the time
 # until the drive stops for good; afterwards friction holds the force. It is ten times the fast
 # oscillation of the paper's system, and small enough to see swings die out. It is at least the
@@ -207,9 +213,10 @@ class ObservedRun:
         oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequency_x
         across = min(slider.k_x, slider.k_y) * self.rate_across
         shares = self.rests, self.sticks
+        stops = stops_with_drive(slider.motion, self.end, self.slip_speed)
         return kind_of(
-            self.features, self.swings, self.end - self.start, self.until, drive, oscillation,
-            across, own, *shares,
+            self.features, self.swings, self.end - self.start, self.until, drive,
+            FastOscillation(oscillation, across), own, *shares, stops,
         )  # fmt: skip
 
     def rests(self, cycles: SwingShapes) -> Floats:

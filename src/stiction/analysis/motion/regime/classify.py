@@ -20,13 +20,21 @@ from stiction.analysis.motion.regime.kinds import (
     STEADY,
     STUCK,
     TRANSITIONAL,
+    TRANSVERSE,
     UNDETERMINED,
 )
-from stiction.analysis.motion.rest import comes_to_rest, rests_throughout
-from stiction.analysis.motion.vibration import COUPLED, OWN
+from stiction.analysis.motion.rest import comes_to_rest, rests_throughout, stops_with_drive
+from stiction.analysis.motion.vibration import (
+    COUPLED,
+    FAST_PERIODS,
+    OSCILLATES,
+    OWN,
+    FastOscillation,
+)
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
+from stiction.drive.program import nominal_velocity
 from stiction.trajectory import Trajectory
 
 FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
@@ -81,7 +89,9 @@ def regime_of(record: Record, found: Swings) -> Regime:
         drop = found.table["drop"]
         sure = (len(drop) + 1) / (len(drop) + 3)
         name = "over" if found.over and drop[-1] > BELOW * drop.max() else "swings"
-        return Regime(SETTLING, sure, {name: len(drop), "last_over_first": drop[-1] / drop[0]})
+        evidence = {name: len(drop), "last_over_first": drop[-1] / drop[0]}
+        last = float(drop[-1]), float(found.table["period"][-1])
+        return _or_transverse(record, Regime(SETTLING, sure, evidence), *last)
     if len(found.table):
         period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))
@@ -97,7 +107,7 @@ def _while_it_slides(record: Record, found: Swings) -> Regime:
     """Return the kind of motion without cycles until the drive turns, or the spring is unloaded."""
     _, last, falls = sliding(record)
     if last == len(record) or last < PARTS or record.slip_speed is not None:
-        return by_course(record, found)
+        return _or_transverse(record, by_course(record, found))
     until = record.before(float(record.time[last]))
     seen = by_course(until, found._replace(force=found.force[:last]))
     end = min(falls, len(record) - 1)
@@ -106,10 +116,39 @@ def _while_it_slides(record: Record, found: Swings) -> Regime:
     return seen._replace(evidence=seen.evidence | {name: float(record.time[end])})
 
 
+def _or_transverse(record: Record, seen: Regime, *last: float) -> Regime:
+    """Return the transverse oscillation that goes on where the slow motion of a run has settled.
+
+    `last` is drop (N) and period (s) of the last swing, if swings die out.
+    """
+    fast = _fast_oscillation(record)
+    if fast is None or seen.kind not in (SETTLING, STEADY) or not fast.goes_on(*last):
+        return seen
+    sure = 1.0 - 0.5 * OSCILLATES / fast.amplitude  # at the bound either is as likely
+    return Regime(TRANSVERSE, sure, seen.evidence | {"across": fast.amplitude}, seen.kind)
+
+
+def _fast_oscillation(record: Record) -> FastOscillation | None:
+    """Return the fast oscillation at the end of a run; None of others, and where all rests."""
+    slider, rate = record.slider, record.rate_across
+    if slider is None or rate is None:
+        return None
+    if stops_with_drive(slider.motion, float(record.time[-1]), record.slip_speed):
+        return None
+    stiffer = 1 if slider.k_y >= slider.k_x else 0
+    drive = abs(nominal_velocity(slider.motion) * slider.direction[stiffer])
+    lasts = FAST_PERIODS / slider.natural_frequencies[1]
+    late = rate[int(np.searchsorted(record.time, record.time[-1] - lasts)) :]
+    across = 0.5 * float(np.ptp(late))
+    amplitude = across / drive if drive > 0.0 else 0.0
+    return FastOscillation(amplitude, min(slider.k_x, slider.k_y) * across)
+
+
 def _is_over(record: Record, found: Swings) -> bool:
     """Return whether swings have ended for good: mass and drive are known to rest."""
     drop = found.table["drop"]
-    ended = record.drive_velocity is None and comes_to_rest(record.slip_speed)
+    still = record.drive_velocity is None and record.drive_travel is None
+    ended = still and comes_to_rest(record.slip_speed)
     return ended and len(drop) > 0 and bool(drop[-1] <= drop[0])
 
 

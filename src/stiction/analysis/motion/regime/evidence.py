@@ -98,6 +98,11 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "falls_by": ("by {}", _force),
     "ends_falling_from": ("from {} to the end it falls", _seconds),
     "ends_falling_by": ("by {} or more", _force),
+    "stops": ("at the end, at {}, it rests with the drive", _seconds),
+    "across": (
+        "at the end it oscillates across the drive, by {} of the drive's velocity there",
+        percent,
+    ),
     "late_share": ("in the last quarter of the time it spans {} of this", percent),
     "one_way": ("{} of all its ups and downs is this change", percent),
     "rate_kept": ("at the end it changes at {} of the rate of the beginning", percent),

@@ -24,6 +24,7 @@ from stiction.analysis.motion.regime.kinds import (
     STUCK,
     UNDETERMINED,
 )
+from stiction.analysis.motion.rest import stops_with_drive
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Line, beat_frequency, narrow_lines, of_mains
@@ -60,6 +61,9 @@ def by_course(record: Record, found: Swings) -> Regime:
     late = way.late_span / way.span if way.span > 0.0 else 1.0
     rising = way.change > 0.0 and way.one_way >= ONE_WAY
     slides = not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive
+    end = float(record.time[-1])
+    if record.slider and stops_with_drive(record.slider.motion, end, record.slip_speed):
+        return Regime(SETTLING, 1.0, evidence | {"stops": end})
     if late > SETTLED and found.turns:
         return Regime(UNDETERMINED, 0.0, evidence | {"turns": found.turns})
     # a transient ends, and a load goes on, in the later half; what vibrates then does not end
