@@ -30,7 +30,7 @@ bound of w climbs to the root and never passes it: no bracket, no failure.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.arguments import is_numeric, name_arguments
 from stiction.arrays import Floats
@@ -41,6 +41,7 @@ from stiction.system.slider import Slider
 _limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")
 
 
+@_limits
 def natural_frequency(stiffness: ArrayLike, mass: ArrayLike) -> Floats:
     """Angular natural frequency sqrt(stiffness/mass), rad/s (omega_x, omega_y of the paper).
 
@@ -74,6 +75,7 @@ def friction_force(mu_0: ArrayLike, normal_load: ArrayLike) -> Floats:
     return mu_0 * normal_load
 
 
+@_limits
 def slip_length(F_0: ArrayLike, k_x: ArrayLike) -> Floats:
     """Elongation that carries the whole friction, F_0/k_x (m), of Eq. (8); F_0 (N), k_x (N/m).
 
@@ -96,9 +98,9 @@ def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
     u_x : array_like
         Elongation along x (m); NaN beyond `l_x`.
     V : array_like
-        Drive velocity (m/s).
+        Drive velocity (m/s), V >= 0, else NaN.
     phi : array_like
-        Misalignment (rad).
+        Misalignment (rad), 0 <= phi <= pi/2, else NaN.
     l_x : array_like
         Slip length (m), see `slip_length`.
 
@@ -109,7 +111,7 @@ def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
     0.001
     """
     u_x, V, phi, l_x = _floats(u_x, V, phi, l_x)
-    x = u_x / l_x
+    x = np.where(_applies(V, phi), u_x / l_x, np.nan)
     return V * (np.cos(phi) - np.sin(phi) * x / np.sqrt((1.0 - x) * (1.0 + x)))
 
 
@@ -125,7 +127,7 @@ def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
         Angle of the friction force to the x axis (rad), phi <= theta <= pi/2, else NaN;
         infinite at theta = phi > 0.
     V, phi, l_x : array_like
-        Drive velocity (m/s), misalignment (rad), slip length (m).
+        Drive velocity (m/s), misalignment (rad), slip length (m), as of `creep_force_angle`.
 
     Examples
     --------
@@ -136,7 +138,8 @@ def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
     theta, V, phi, l_x = _floats(theta, V, phi, l_x)
     delta, half = np.pi / 2 - theta, (theta - phi) / 2
     w = np.log1p(np.sin(delta / 2) / (np.cos(np.pi / 4 - phi / 2) * np.sin(half)))
-    s = np.where((delta >= 0) & (half >= 0), _scaled_time(delta, w, phi), np.nan)
+    turned = (delta >= 0) & (half >= 0) & _applies(V, phi)
+    s = np.where(turned, _scaled_time(delta, w, phi), np.nan)
     return s * l_x / V
 
 
@@ -151,7 +154,7 @@ def creep_force_angle(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
     t : array_like
         Time since the drive started with u_x = 0 (s), t >= 0, else NaN.
     V : array_like
-        Drive velocity (m/s).
+        Drive velocity (m/s), V >= 0, else NaN.
     phi : array_like
         Misalignment (rad), 0 <= phi <= pi/2, else NaN.
     l_x : array_like
@@ -240,6 +243,7 @@ def creep_velocity_as_printed(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: A
     return _creep_expansion(t, V, phi, l_x, power=2)
 
 
+@_limits
 def transverse_deflection(F_0: ArrayLike, k_y: ArrayLike) -> Floats:
     """Mean transverse elongation during creep, F_0/k_y (m); F_0 (N), k_y (N/m). From Eq. (9).
 
@@ -273,7 +277,7 @@ def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike)
     2.76
     """
     V, phi, omega_y = _floats(V, phi, omega_y)
-    return V * np.sin(phi) / omega_y
+    return np.asarray(np.abs(V * np.sin(phi)) / omega_y)[()]
 
 
 def oscillation_frequency(theta: ArrayLike, k_x: ArrayLike, k_y: ArrayLike, m: ArrayLike) -> Floats:
@@ -372,7 +376,7 @@ def critical_angle(A: ArrayLike) -> Floats:
     30.0
     """
     (A,) = _floats(A)
-    return np.arcsin(1.0 / np.cbrt(A))
+    return np.arcsin(np.where(A >= 1.0, 1.0 / np.cbrt(A), np.nan))
 
 
 @_limits
@@ -400,7 +404,7 @@ def first_stick_duration(
     11.46
     """
     F_0, V, phi, k_x, k_y = _floats(F_0, V, phi, k_x, k_y)
-    return F_0 / (V * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi)))
+    return np.asarray(F_0 / (np.abs(V) * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi))))[()]
 
 
 def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
@@ -427,6 +431,7 @@ def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
     return angle
 
 
+@_limits
 def critical_misalignment(
     V: ArrayLike, mu: ArrayLike, slope: ArrayLike, *, c_x: ArrayLike = 0.0, W: ArrayLike = 1.0
 ) -> Floats:
@@ -464,6 +469,7 @@ def critical_misalignment(
     return np.arctan(np.sqrt(weakening / (c_x + W * mu / V)))
 
 
+@_limits
 def critical_stiffness(
     a: ArrayLike, b: ArrayLike, D_c: ArrayLike, W: ArrayLike, V: ArrayLike, m: ArrayLike
 ) -> Floats:
@@ -501,6 +507,11 @@ def _floats(*values: ArrayLike) -> tuple[Floats, ...]:
     return tuple(np.asarray(value, dtype=np.float64) for value in values)
 
 
+def _applies(V: Floats, phi: Floats) -> NDArray[np.bool_]:
+    """Whether creep by Eq. (7) has this drive velocity and misalignment: both turn one way."""
+    return np.asarray((V >= 0) & (phi >= 0) & (phi <= np.pi / 2))
+
+
 def _scaled_time(delta: Floats, w: Floats, phi: Floats) -> Floats:
     """V t/l_x of the creep, see the module's docstring; the term in w vanishes with phi."""
     sin2 = np.sin(phi) ** 2
@@ -514,7 +525,7 @@ def _creep(
     """Turn made, delta = pi/2 - theta, turn to come, theta - phi, and phi itself (rad)."""
     t, V, phi, l_x = _floats(t, V, phi, l_x)
     s = V * t / l_x
-    s = np.where((s >= 0) & (phi >= 0) & (phi <= np.pi / 2), s, np.nan)
+    s = np.where((s >= 0) & _applies(V, phi), s, np.nan)
     sin2, start = np.sin(phi) ** 2, np.cos(phi) / (1.0 + np.sin(phi))  # start = tan(pi/4 - phi/2)
 
     def turns(w: Floats) -> tuple[Floats, Floats]:
@@ -540,5 +551,5 @@ def _creep_expansion(
 ) -> Floats:
     t, V, phi, l_x = _floats(t, V, phi, l_x)
     s = V * t / l_x
-    s = np.where((s >= 0) & (s < 1), s, np.nan)
+    s = np.where((s >= 0) & (s < 1) & _applies(V, phi), s, np.nan)
     return V * phi * (phi + s**power / np.sqrt((1.0 - s) * (1.0 + s)))

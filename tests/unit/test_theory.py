@@ -266,3 +266,33 @@ def test_the_mass_swings_along_the_friction_force():
         0.5 * omega_y,
         rel=2e-4,  # 3 k_x/(2 k_y)
     )
+
+
+@pytest.mark.parametrize("phi", [-30.0, -1.0, 91.0, 300.0])
+@pytest.mark.parametrize("V", [1e-3, -1e-3])
+def test_creep_outside_the_theory_is_nan(phi, V):
+    """Finite wrong numbers came out: `elongation_rate` at -30 deg was twice that at 30 deg."""
+    at, l_x = np.radians(phi), 2e-3
+    t = np.copysign(1.0, V)
+    found = [
+        theory.elongation_rate(1e-3, V, at, l_x),
+        theory.creep_time(0.5 * np.pi - 0.01, V, at, l_x),
+        theory.creep_force_angle(t, V, at, l_x),
+        theory.creep_velocity(t, V, at, l_x),
+        theory.creep_velocity_approximation(t, V, at, l_x),
+        theory.creep_force_angle(t, -abs(V), np.radians(1.0), l_x),
+        theory.critical_angle(-8.0),
+    ]
+    assert np.isnan(found).all(), found
+
+
+def test_sizes_have_no_sign_and_limits_no_warning():
+    mirrored = [theory.transverse_amplitude_bound(V, p, 1e3) for V in (1, -1) for p in (0.1, -0.1)]
+    assert mirrored == [mirrored[0]] * 4
+    assert mirrored[0] > 0.0
+    assert theory.first_stick_duration(2.0, -1e-3, 0.1, 1e3, 1e7) > 0.0
+    assert theory.critical_misalignment(0.0, 0.2, -1.0) == 0.0
+    assert theory.critical_misalignment(1e-3, 0.0, -1.0) == pytest.approx(0.5 * np.pi)
+    assert np.isinf(theory.critical_stiffness(0.01, 0.015, 0.0, 1.0, 1e-6, 1.0))
+    assert np.isinf(theory.slip_length(1.0, 0.0))
+    assert np.isinf(theory.natural_frequency(1.0, 0.0))

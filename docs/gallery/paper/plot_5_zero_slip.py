@@ -1,6 +1,6 @@
 """
-True rest, a thousand times a second
-====================================
+True rest, hundreds of times a second
+=====================================
 
 At zero slip friction holds whatever it must, up to μ₀W. Solved exactly, the mass of Fig. 3 rests
 once in each transverse oscillation. The shaded intervals are true rest; their ends are known to

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import degrees, hypot, isfinite, pi, sin, sqrt, tan
+from math import atan2, degrees, hypot, isfinite, pi, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
 
 from stiction import theory
 from stiction.analysis.creep.first_slip import slips_at_once
+from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, creep_distance
 from stiction.friction import Anisotropic, has_state
@@ -30,6 +31,7 @@ ANGLES = 2000  # of the friction force, at which creep may turn into slip
 # of the creep: what the drive covers in one radian of a free swing. A slip sets in about that
 # slowly: a third of it is crept beyond zeta = 1 (measured, from 0.1 to 2 deg and to 8 mm/s)
 SET_IN = 0.5
+ASKEW = 0.02  # sine of the angle between load cell and spring: 2 % of friction across it is read
 
 
 def suppositions(slider: Slider, p: Prediction) -> list[str]:
@@ -37,7 +39,12 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
     if has_state(slider.law):
         V = in_words(hypot(*slider.motion.rate(0.0)), "m/s")
         return [f"friction has no internal state; here F_0 is that at {V}"]
-    return [*_of_springs(slider, p), *_of_friction(slider, p), *_of_masses_and_dampers(slider)]
+    return [
+        *_of_springs(slider, p),
+        *_of_friction(slider, p),
+        *_of_masses_and_dampers(slider),
+        *_of_load_cell(slider),
+    ]
 
 
 def creep_suppositions(slider: Slider, p: Prediction) -> list[str]:
@@ -51,6 +58,16 @@ def creep_suppositions(slider: Slider, p: Prediction) -> list[str]:
         "the slip begins at once where ζ = 1; here it sets in while the drive moves by "
         f"{in_words(covered, 'm')} (V/ω_x), beside {in_words(p.creep_distance, 'm')} of creep"
     ]
+
+
+def _of_load_cell(s: Slider) -> Iterator[str]:
+    """Yield that the load cell reads another component of the force than k_x u_x."""
+    cell = cell_axis(s)
+    if abs(cell.y) > ASKEW:
+        yield (
+            "the load cell lies along the spring's axis x; here it lies at "
+            f"{degrees(atan2(cell.y, cell.x)):.4g} deg to it, and reads k_y u_y, too"
+        )
 
 
 def _of_springs(s: Slider, p: Prediction) -> Iterator[str]:

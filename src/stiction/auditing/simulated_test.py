@@ -174,6 +174,7 @@ def simulate_test(
     wait = DECAYS / abs(growth) if growth != 0.0 else 0.0
     longest = LOAD_UPS * load_up + LONGEST_WAIT / min(prediction.f_x, prediction.f_y)
     duration = min(max(LOAD_UPS * load_up, 1.2 * load_up + max(slips, wait)), longest)
+    duration = duration or CYCLES / prediction.f_x  # without friction nothing is loaded
     if multiscale is None:
         multiscale = duration * prediction.f_y > MANY
     run = simulate(

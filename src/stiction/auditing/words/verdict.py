@@ -163,6 +163,10 @@ def margin(found: Audit) -> str:
     if not len(values):
         always = "stable" if all(found.misalignment.stable) else "unstable"
         low, high = (in_words(end - turn, "rad") for end in found.misalignment.between)
+        if found.misalignment.neutral:
+            return f"No misalignment changes that: so it is at every φ from {low} to {high}."
+        if found.sliding.verdict not in (STABLE, UNSTABLE):
+            return f"At any other φ from {low} to {high} steady sliding is {always}."
         rigid = (
             f"; with a rigid transverse spring it would be stable above {in_words(closed, 'rad')}"
         )
