@@ -108,6 +108,14 @@ def _of_friction(s: Slider, p: Prediction) -> Iterator[str]:
         yield "friction weakens gently; here so steeply that each rest ends in a rapid slip"
     elif _creeps(p):
         yield from _of_creep_end(s, p)
+    elif not p.slips:
+        yield from _of_sliding(s, p)
+    swing = hypot(*s.motion.rate(0.0)) * sqrt(s.k_x * s.masses[0])
+    if p.slips and swing > WEAKENED * p.drop:
+        yield (
+            "the mass leaves rest slowly beside its slip; here the drive's velocity alone swings "
+            f"the force by {in_words(swing, 'N')} (V √(k_x m))"
+        )
     creeps = phi != 0.0 and isfinite(p.creep_at_slip)
     lost = s.F_0 - float(law.coefficient(p.creep_at_slip)) * s.normal_load if creeps else 0.0
     if p.slips and lost > WEAKENED * p.drop:
@@ -130,6 +138,22 @@ def _of_creep_end(s: Slider, p: Prediction) -> Iterator[str]:
         )
 
 
+def _of_sliding(s: Slider, p: Prediction) -> Iterator[str]:
+    """Yield that friction weakens too steeply for what Eq. (10) lets slide."""
+    phi = abs(s.misalignment)
+    theta = weakening_angle(s, p) if phi > 0.0 else 0.0
+    if phi < p.phi_c:
+        yield (
+            "what does not slip by Eq. (10) slides steadily; here friction weakens with speed, and "
+            f"steady sliding is unstable up to {degrees(p.phi_c):.4g} deg"
+        )
+    elif theta > np.fmax(p.theta_c, phi):
+        yield (
+            "what does not slip by Eq. (10) comes to slide steadily; here friction weakens so "
+            f"steeply that creep turns into slip from {degrees(theta):.4g} deg on"
+        )
+
+
 def weakening_angle(s: Slider, p: Prediction) -> float:
     """Return the angle of friction (rad) at which its weakening turns creep into slip.
 
@@ -138,19 +162,20 @@ def weakening_angle(s: Slider, p: Prediction) -> float:
     the slip speed s = V sin(phi)/sin(theta). And the mass swings along the force during creep, on
     a spring that grows softer as the force turns to the soft axis: where the slope exceeds the
     critical damping of that swing, it no longer swings back, and its next slip is the rapid one.
-    It is theta_c if neither happens before.
+    It is theta_c, or phi if that is larger, where neither happens before.
     """
     law: Any = s.law
-    theta = np.linspace(0.5 * pi, p.theta_c, ANGLES)
+    phi = abs(s.misalignment)
+    theta = np.linspace(0.5 * pi, np.fmax(p.theta_c, phi), ANGLES)
     across, along = np.sin(theta) ** 2, np.cos(theta) ** 2
-    speed = hypot(*s.motion.rate(0.0)) * sin(abs(s.misalignment)) / np.sin(theta)
+    speed = hypot(*s.motion.rate(0.0)) * sin(phi) / np.sin(theta)
     slope: Floats = np.array([float(law.slope(v)) for v in speed]) * s.normal_load
     unstable = s.F_0 / speed * across + s.c_x + slope * along < 0.0
     m_x, m_y = s.masses
     critical = 2.0 * np.sqrt((m_x * along + m_y * across) * (s.k_x * along + s.k_y * across))
     runs_away = slope + s.c_x * along + s.c_y * across < -critical
     first = np.flatnonzero(unstable | runs_away)
-    return float(theta[first[0]]) if len(first) else p.theta_c
+    return float(theta[first[0]] if len(first) else theta[-1])
 
 
 def _creeps(p: Prediction) -> bool:

@@ -561,6 +561,21 @@ def test_what_a_cell_askew_to_the_spring_reads_is_no_sure_theory(phi, cell):
     assert not any("load cell" in each for each in suppositions(PAPER, predict(PAPER)))
 
 
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        # theory: 0.1985 and no slip; simulated: 0.083, 2.3 N
+        ({"phi": "3 deg", "drive": st.ConstantVelocity("0.1 mm/s"),
+          "friction": st.ExponentialWeakening(0.2, 0.08, "10 mm/s")}, "steady sliding is unstable"),
+        ({"drive": st.ConstantVelocity("10 mm/s"), "phi": "0 deg",
+          "friction": st.Coulomb(mu_0=0.2, mu_static=0.203)}, "the mass leaves rest slowly"),
+    ],
+)  # fmt: skip
+def test_what_friction_that_weakens_makes_of_the_theory_is_named(changes, said):
+    slider = PAPER.replace(**changes)
+    assert any(said in each for each in suppositions(slider, predict(slider)))
+
+
 RUBBER = st.Slider(
     mass="50 g", k_x=300, k_y=900, phi="20 deg", normal_load="5 N", friction=st.Coulomb(mu_0=0.8),
     drive=st.ConstantVelocity("2 mm/s"),
