@@ -67,7 +67,8 @@ def test_friction_over_load_is_points_and_their_line(ax):
 def test_apparent_friction_has_peak_mean_and_steady_sliding(ax):
     phi = np.radians([0.0, 10.0, 20.0])
     steady = 0.3 * np.cos(phi)
-    found = ApparentFriction(phi, steady, steady + 0.02, np.full(3, 0.01), steady)
+    of_steady = steady, np.full(3, 0.3)
+    found = ApparentFriction(phi, steady, steady + 0.02, np.full(3, 0.01), *of_steady)
     plotting.plot_apparent_friction(found, ax)
     assert [line.get_ydata()[0] for line in ax.lines] == pytest.approx([0.32, 0.3, 0.3])
     assert ax.lines[0].get_xdata() == pytest.approx([0.0, 10.0, 20.0])

@@ -10,6 +10,8 @@ from stiction.analysis.protocols.friction_test import stretches
 from stiction.arrays import Floats, xr
 from stiction.drive import load_stretches
 from stiction.errors import ResultError
+from stiction.linear_stability import steady_sliding
+from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 from stiction.text.sections import Section, Table
 
@@ -28,7 +30,9 @@ class ApparentFriction:
     amplitude : ndarray
         (n,), half the span of that force in the last quarter, over the normal load.
     steady : ndarray
-        (n,), mu(V) cos(phi): what steady sliding gives.
+        (n,), what steady sliding gives: mu(V) cos(phi), without axes of the springs, or a grain.
+    along : ndarray
+        (n,), friction along the drive in steady sliding, over the normal load: mu(V).
     """
 
     phi: Floats
@@ -36,11 +40,12 @@ class ApparentFriction:
     peak: Floats
     amplitude: Floats
     steady: Floats
+    along: Floats
 
     @property
     def corrected(self) -> Floats:
-        """Mean friction along the drive where sliding is steady, `mean` over cos(phi), (n,)."""
-        return self.mean / np.cos(self.phi)
+        """Mean friction along the drive where sliding is steady: `mean` over cos(phi), (n,)."""
+        return self.mean * self.along / self.steady
 
     @property
     def section(self) -> Section:
@@ -55,7 +60,7 @@ class ApparentFriction:
                 self.phi, self.mean, self.peak, self.amplitude, self.steady, strict=True
             )
         ]
-        headings = ("phi", "mean", "peak", "amplitude", "steady: mu(V) cos(phi)")
+        headings = ("phi", "mean", "peak", "amplitude", "steady sliding")
         return Section("Apparent friction over the yaw angle", [said], Table(headings, rows))
 
     def __str__(self) -> str:
@@ -79,11 +84,20 @@ def _load_and_speed(slider: Slider) -> tuple[float, float]:
     return found[0].load, abs(found[0].velocity)
 
 
+def steady_forces(slider: Slider, phi: float) -> tuple[float, float]:
+    """Return the force on the soft spring in steady sliding, and friction along the drive, N."""
+    turned = change_unchecked(slider, "phi", phi)
+    x, y = np.array([turned.k_x, turned.k_y]) * steady_sliding(turned).state[:2]
+    way = float(np.sign(turned.motion.rate(0.0)[0]))
+    return way * float(x), way * float(turned.along_drive(x, y))
+
+
 def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
     """Return the friction that a load cell on the soft spring reads, over the misalignment.
 
     In steady sliding friction mu(V) W acts along the drive, of which the soft spring carries
-    cos(phi); stick-slip makes its mean lower.
+    cos(phi), or what axes of the springs' own, and a grain, make of it; stick-slip makes its mean
+    lower.
 
     Parameters
     ----------
@@ -112,8 +126,8 @@ def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
         raise ResultError(
             "the data are not a study over phi alone with its forces; see st.protocols.yaw_sweep"
         )
-    W, V = _load_and_speed(slider)
+    W, _ = _load_and_speed(slider)
     phi = study["phi"].values * (np.pi / 180.0 if study["phi"].attrs["units"] == "deg" else 1.0)
     mean, peak, amplitude = (study[name].values.astype(np.float64) / W for name in wanted)
-    steady = float(slider.law.coefficient(V)) * np.cos(phi)
-    return ApparentFriction(phi, mean, peak, amplitude, steady)
+    steady, along = np.array([steady_forces(slider, float(each)) for each in phi]).T / W
+    return ApparentFriction(phi, mean, peak, amplitude, steady, along)
