@@ -288,8 +288,13 @@ def test_a_ripple_before_a_hold_is_no_cycle():
     assert value("cycles", run) == 0
 
 
-# 3, 9 and 15 have few swings before a hold, which an analysis does not find
-@pytest.mark.parametrize("number", [*range(0, 24, 2), 1, 5, 7, 21, 23])
+FEW_SWINGS = pytest.mark.xfail(reason="few swings before a hold, which an analysis does not find")
+
+
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(n, marks=FEW_SWINGS) if n in (3, 9, 15) else n for n in range(24)],
+)
 def test_a_study_and_an_analysis_call_a_run_the_same(number):
     """Where the drive holds, or the transverse motion goes on, they had two names."""
     random = np.random.default_rng([17, number])

@@ -244,11 +244,7 @@ def _settles(found: Analysis, at: str) -> str:
     swings = bool({"swings", "over"} & set(evidence))
     if found.friction.break_away is not None and not swings:
         return f"The mass breaks away once, and comes to slide steadily{at}."
-    if (
-        {"swings", "over"} & set(evidence)
-        or "fading" in evidence
-        or evidence.get("change", 0.0) >= 0.0
-    ):
+    if swings or "fading" in evidence or evidence.get("change", 0.0) >= 0.0:
         what = "force settles" if "late_share" in evidence else "vibration dies down"
         return f"The {what}, and the mass comes to slide steadily{at}."
     if found.record.slip_speed is not None:

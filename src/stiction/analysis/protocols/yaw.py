@@ -44,7 +44,7 @@ class ApparentFriction:
 
     @property
     def corrected(self) -> Floats:
-        """Mean friction along the drive where sliding is steady: `mean` over cos(phi), (n,)."""
+        """Mean friction along the drive where sliding is steady, `mean` over cos(phi), (n,)."""
         return self.mean * self.along / self.steady
 
     @property
