@@ -14,9 +14,9 @@ from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
-from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.evidence import SLOW_SHARES, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
-from stiction.analysis.motion.rest import STILL, stuck_share
+from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, record_of
 from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
@@ -50,7 +50,7 @@ LOADING = 0.5  # of the drive's speed: a mass that stays slower has not slipped
 
 
 class Shares(NamedTuple):
-    """Shares of time at rest, in creep (see `STILL`), and in slip faster than the drive."""
+    """Shares of time at rest, creeping more slowly than the drive, and slipping."""
 
     rest: float
     creep: float
@@ -91,8 +91,12 @@ class SimulatedTest:
 
     @cached_property
     def regime(self) -> Regime:
-        """The kind of motion."""
-        return regime_of(self.record, self.swings)
+        """The kind of motion; how long the mass rests or creeps is what its `shares` tell."""
+        seen = regime_of(self.record, self.swings)
+        if not seen.loads:
+            return seen
+        slow = dict.fromkeys(SLOW_SHARES, self.shares.rest + self.shares.creep)
+        return seen._replace(evidence=seen.evidence | slow)
 
     @cached_property
     def shares(self) -> Shares:
@@ -241,15 +245,15 @@ def shares(run: Trajectory, force: Floats, cycles: CycleTable) -> Shares:
     """
     times, (drive, _) = run.samples["time"], run.slider.motion.rate(0.0)
     speed = run.samples["V_X"] / drive
-    begin, end = times[0], times[int(np.argmax(force >= ALMOST * force.max()))]
+    loaded = int(np.argmax(force >= ALMOST * force.max()))
+    begin, end = float(times[0]), float(times[loaded])
     if len(cycles):
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
     if not end > begin:  # started sliding
         return Shares(0.0, 0.0, 1.0)
-    then = speed[(times >= begin) & (times <= end)]
+    slip = float((speed[(times >= begin) & (times <= end)] > 1.0).mean())
     rest = stuck_share(begin, end, run.stick_intervals)
-    still = float((then < STILL).mean())
-    return Shares(float(rest), max(0.0, still - float(rest)), float((then > 1.0).mean()))
+    return Shares(rest, max(0.0, 1.0 - slip - rest), slip)
 
 
 def slip_time(seen: SimulatedTest) -> float:

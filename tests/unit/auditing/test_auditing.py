@@ -39,6 +39,7 @@ from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import margin, motions, stability, verdict
 from stiction.cli import main
 from stiction.linear_stability import Critical, critical, steady_sliding
+from stiction.text.quantity_text import percent
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -115,14 +116,11 @@ def test_critical_misalignment_of_the_paper_s_case(found):
     )
 
 
-def test_rest_is_that_of_the_sticks_and_creep_is_slower_than_a_tenth_of_the_drive(found):
+def test_shares_of_a_cycle_add_up_and_rest_is_that_of_the_sticks(found):
     seen = found.observation
     rest, creep, slip = seen.shares
+    assert rest + creep + slip == pytest.approx(1.0, abs=1e-12)
     begin, end = float(seen.cycles["start"][0]), float(seen.cycles["trough_time"][-1])
-    times, speed = (seen.run.samples[name] for name in ("time", "V_X"))
-    then = speed[(begin <= times) & (times <= end)] / 1e-3
-    assert rest + creep == pytest.approx((then < 0.1).mean(), abs=1e-12)
-    assert slip == pytest.approx((then > 1.0).mean(), abs=1e-12)
     inside = [stick for stick in seen.run.stick_intervals if begin <= stick[0] and stick[1] <= end]
     assert rest == pytest.approx(np.diff(inside, axis=1).sum() / (end - begin), abs=1e-5)
 
@@ -490,14 +488,13 @@ def test_what_vibrates_does_not_creep():
 
 
 def test_creep_shorter_than_a_transverse_period_shows_no_oscillation():
-    """5 ms of creep in each cycle beside a transverse period of 18 ms."""
-    rig = {"phi": "4 deg", "k_y": "60 kN/m", "drive": st.ConstantVelocity("10 mm/s")}
-    found = short(NEARLY_ISOTROPIC.replace(**rig))
+    """12 ms of creep in each cycle beside a transverse period of 36 ms."""
+    found = short(NEARLY_ISOTROPIC)
     seen = found.observation
     assert seen.shares.creep > 0.05
-    assert seen.shares.creep * seen.mean("period") < sqrt(0.5 / 60e3) * 2.0 * pi
+    assert seen.shares.creep * seen.mean("period") < sqrt(0.5 / 15e3) * 2.0 * pi
     text = " ".join(transverse(found))
-    assert "this mass creeps for 5" in text
+    assert "this mass creeps for 12" in text
     assert "During creep" not in text
 
 
@@ -580,6 +577,19 @@ RUBBER = st.Slider(
     mass="50 g", k_x=300, k_y=900, phi="20 deg", normal_load="5 N", friction=st.Coulomb(mu_0=0.8),
     drive=st.ConstantVelocity("2 mm/s"),
 )  # fmt: skip
+
+
+def test_the_shares_of_a_report_are_one_definition():
+    """ "At rest or in creep for 51 %" stood above "rests for 28 % and creeps for 36 %"."""
+    clutch = st.Slider(
+        mass="2 kg", k_x="50 kN/m", k_y="4 MN/m", c_x="20 N s/m", phi="3 deg", normal_load="800 N",
+        friction=st.ExponentialWeakening(0.14, 0.10, "50 mm/s"),
+        drive=st.ConstantVelocity("20 mm/s"),
+    )  # fmt: skip
+    found = short(clutch)
+    slow = percent(found.observation.shares.rest + found.observation.shares.creep)
+    assert f"at rest or in creep for {slow} of a cycle" in " ".join(verdict(found))
+    assert f"For {slow} of each cycle the mass is slower" in stick(found)[0]
 
 
 def test_what_dies_out_has_no_cycles_of_stick_and_slip():

@@ -27,7 +27,7 @@ def stick(found: Audit) -> list[str]:
     slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)
     how = " and ".join(f"{verb} for {percent(share)}" for verb, share in slow if share > NEVER)
     lines = [
-        f"For {percent(1.0 - seen.shares.slip)} {whole} the mass is slower than the "
+        f"For {percent(seen.shares.rest + seen.shares.creep)} {whole} the mass is slower than the "
         f"drive, and the load cell shows a rising force{'' if vibrates else f': the mass {how}'}. "
         + (
             f"For {percent(seen.shares.slip)} it is faster than the drive."
