@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.divergence import fit_parameters, used_bins
+from stiction.analysis.creep.divergence import THEORY, fit_parameters, used_bins
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 
@@ -15,6 +15,7 @@ START = 0.02  # rad, of phi, and of the weakening
 WEAKENINGS = (-0.3, 1.0)  # from strengthening to half the friction at the drive's speed
 ASSUMED = 0.1  # standard error of the weakening: its order is all that is known before
 TURNS = 6  # of the iteration for theta: the weakening is small, so each gains a digit or two
+OFF = 0.1  # of the velocity: largest common error of the theory that is tried
 NEAR_ZERO = 1e-3, 1e-6  # rad, of theta: while it is sought, and as found
 RESTS, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
 SURE = 2.0  # standard errors by which an angle must differ from zero
@@ -54,6 +55,7 @@ def fit_misalignment(
     stiffness: float,
     stretch: tuple[float, float] = (0.05, 1.0),
     stiffness_across: float = inf,
+    mass: float = 0.0,
 ) -> Misalignment:
     """Fit the misalignment of Eq. (7) to a creep curve.
 
@@ -65,7 +67,8 @@ def fit_misalignment(
 
     Eq. (7) supposes a spring across that is far stiffer, k_x/k_y << tan^2(phi). With
     `stiffness_across` the creep is that of both springs, and bins before its begin, where the mass
-    still rests, are left out.
+    still rests, are left out. It leaves out inertia, too: with `mass` friction carries the force
+    less what accelerates the mass.
 
     Parameters
     ----------
@@ -78,11 +81,14 @@ def fit_misalignment(
         to slip the inertia matters, which Eq. (7) neglects.
     stiffness_across : float, optional
         k_y, N/m.
+    mass : float, optional
+        m, kg.
 
     Returns
     -------
     Misalignment
-        Its standard errors combine the curve's with a hundredth of the velocity for the theory.
+        Its standard errors combine the curve's with a hundredth of the velocity for the theory:
+        in each bin by itself, and in all of them together, which more bins do not average out.
 
     Raises
     ------
@@ -108,6 +114,7 @@ def fit_misalignment(
     ratio = stiffness / stiffness_across
     if ratio > 0.0:
         used = _after_rest(used, drive_velocity)
+    used[-1] = used[-1] - mass * _acceleration(used)
     begin = max(1.02 * peak, float(used[-1].max()) + 1e-3 * peak)
     start = Misalignment(START, 0.0, begin, 0.0, weakening=START)
     found = _fit(used, peak, drive_velocity, 0.0, start)
@@ -124,18 +131,19 @@ def _fit(
     _, _, velocity, error, force = used
     largest = float(force.max())
 
-    def creep(force: Floats, phi: float, excess: float, weakening: float) -> Floats:
-        return drive_velocity * creep_velocity(force / (largest + excess), phi, weakening, ratio)
+    def creep(force: Floats, phi: float, excess: float, weakening: float, off: float) -> Floats:
+        share = force / (largest + excess)
+        return drive_velocity * (1.0 + off) * creep_velocity(share, phi, weakening, ratio)
 
     # below zero Eq. (7) creeps against the drive; with two springs it has its mirror image above
-    low = (-1.5 if ratio == 0.0 else 0.0, 1e-6 * peak, WEAKENINGS[0])
-    high = (1.5, 10.0 * peak, WEAKENINGS[1])
-    begin = np.clip((start.phi, start.F_0 - largest, start.weakening), low, high)
+    low = (-1.5 if ratio == 0.0 else 0.0, 1e-6 * peak, WEAKENINGS[0], -OFF)
+    high = (1.5, 10.0 * peak, WEAKENINGS[1], OFF)
+    begin = np.clip((start.phi, start.F_0 - largest, start.weakening, 0.0), low, high)
     found, errors = fit_parameters(
-        lambda at, *known: np.append(creep(at, *known), known[2]),
+        lambda at, *known: np.append(creep(at, *known), known[2:]),
         force,
-        np.append(velocity, 0.0),
-        np.append(error, ASSUMED),
+        np.append(velocity, (0.0, 0.0)),
+        np.append(error, (ASSUMED, THEORY)),
         tuple(begin.tolist()),
         (low, high),
     )
@@ -151,6 +159,12 @@ def _fit(
         scatter=float(np.sqrt(np.mean((off / error) ** 2))),
         weakening=found[2],
     )
+
+
+def _acceleration(used: list[Floats]) -> Floats:
+    """Return the acceleration in each bin (m/s^2)."""
+    begin, end, velocity = used[:3]
+    return np.asarray(np.gradient(velocity, -0.5 * (begin + end)))
 
 
 def _after_rest(used: list[Floats], drive_velocity: float) -> list[Floats]:

@@ -121,8 +121,45 @@ def test_the_misalignment_that_a_run_implies(slider, degrees):
         st.analysis.creep_curves(run, st.analysis.find_cycles(st.analysis.record_of(run)))
     )
     found = st.analysis.fit_misalignment(mean, V, K)
-    assert abs(found.phi - radians(degrees)) < 2 * found.phi_error < 0.015 * radians(degrees)
+    # two standard errors of the theory, a hundredth in all bins together, and a little noise
+    assert abs(found.phi - radians(degrees)) < 2 * found.phi_error < 0.022 * radians(degrees)
     assert abs(found.F_0 - F_0) < 2 * found.F_0_error < 0.02 * F_0
+
+
+def test_more_bins_do_not_average_the_theory_s_error_out():
+    wide, narrow = (
+        st.analysis.fit_misalignment(exact_curve(0.05, bin_edges(width, 1.95)), V, K)
+        for width in (0.01, 0.0001)
+    )
+    assert narrow.phi_error > 0.01 * narrow.phi  # a hundredth of the velocity is one of phi
+    assert wide.phi_error < 1.2 * narrow.phi_error
+
+
+def test_inertia_is_no_friction():
+    edges = bin_edges(0.002, 1.95)
+    curve, mass = exact_curve(0.1, edges), 40.0
+    middle = -0.5 * (edges[1:] + edges[:-1])
+    pull = mass * np.gradient(curve["velocity"].values, middle)  # what accelerates the mass
+    pulled = curve.assign(force=curve["force"] + xr.DataArray(pull, dims="bin"))
+    found, without = (st.analysis.fit_misalignment(pulled, V, K, mass=each) for each in (mass, 0.0))
+    assert found.phi == pytest.approx(0.1, rel=2e-3)
+    assert abs(without.F_0 - F_0) > 4.0 * abs(found.F_0 - F_0)
+
+
+def test_creep_by_jerks_implies_no_misalignment():
+    """Friction that weakens lets the mass swing across to rest; its mean is a quarter below F_0."""
+    slider = st.Slider(
+        mass=0.13,
+        k_x=2.5e3,
+        k_y=1.7e6,
+        phi="17 deg",
+        normal_load=6.3,
+        friction=st.ExponentialWeakening(mu_0=0.31, mu_inf=0.213, v_f=8e-4),
+        drive=st.ConstantVelocity(4.6e-4),
+    )
+    found = st.analyse(st.simulate(slider, "3 s", sample_rate="1 kHz"))
+    assert found.misalignment is None
+    assert "creeps by jerks and rests between them" in found.missing["misalignment"]
 
 
 def test_the_misalignment_of_the_closed_form_is_exact():
