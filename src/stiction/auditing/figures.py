@@ -15,7 +15,6 @@ from stiction.auditing.words.verdict import short_motion
 from stiction.friction import has_state
 from stiction.linear_stability import boundary
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
-from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.tolerance import plot_tolerance
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.inference.mechanism import plot_mechanism
@@ -37,7 +36,7 @@ if TYPE_CHECKING:
 
 def test(found: Audit) -> Figure | None:
     """Draw the simulated test as a load cell records it."""
-    return figure_of(plot_cycles, found.observation.record)
+    return figure_of(found.plot)
 
 
 def creep(found: Audit) -> Figure | None:

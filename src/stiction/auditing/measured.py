@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+import numpy as np
+
 from stiction.analysis.record import Record
 from stiction.analysis.report import analyse
 from stiction.auditing.progress import silent
@@ -18,7 +20,7 @@ from stiction.inference.library import SIMULATIONS
 from stiction.inference.mechanism.comparison import SHARE, mechanism
 from stiction.inference.mechanism.odds import UNDECIDED, UNLIKE, Odds, near_one
 from stiction.inference.mechanism.rivals import ROTATION
-from stiction.inference.observation import Observation, observe
+from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.priors import Rig
@@ -205,8 +207,8 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
     conditions = fit.plan.conditions[0]
     channels = " and ".join(NAMES.get(name, name) for name in conditions.noise)
     lines = [
-        f"{conditions.cycles} cycles of {in_words(conditions.cycle, 's')}, with {channels}, beside "
-        f"{fit.simulations} simulated records.",
+        f"{conditions.cycles} cycles of {in_words(_length(found, conditions), 's')}, with "
+        f"{channels}, beside {fit.simulations} simulated records.",
         curve(found.predictive),
         f"{percent(fit.farther)} of the simulated records lie farther from the others, by their "
         f"features, than the measured one; below {percent(RARE)} it is unlike them.",
@@ -217,6 +219,14 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
         if found.like and is_unusual_rotation(found.odds):
             lines.append(BOTH_HOLD)
     return lines
+
+
+def _length(found: RecordComparison, conditions: Conditions) -> float:
+    """Return the mean length of the cycles in a record, s; that simulated is rounded."""
+    if found.seen is None:
+        return conditions.cycle
+    its = found.seen.cycles
+    return float(np.mean(its.after - its.before)) * conditions.step
 
 
 def is_unusual_rotation(odds: Odds) -> bool:

@@ -128,9 +128,10 @@ class Audit(NamedTuple):
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
-        from stiction.plotting import plot_cycles
+        from stiction.plotting.analysis.cycles import plot_motion
 
-        return plot_cycles(self.observation.record, axes)
+        seen = self.observation
+        return plot_motion(seen.record, seen.cycles, seen.motion, axes)
 
     def write_html(self, path: str | Path, name: str = "apparatus") -> Path:
         """Write the report as a self-contained page with figures; return the path.

@@ -14,7 +14,7 @@ from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
-from stiction.analysis.motion.regime.evidence import SLOW_SHARES, Regime
+from stiction.analysis.motion.regime.evidence import SLOWER, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, record_of
@@ -91,12 +91,12 @@ class SimulatedTest:
 
     @cached_property
     def regime(self) -> Regime:
-        """The kind of motion; how long the mass rests or creeps is what its `shares` tell."""
+        """The kind of motion; how long the mass is slower than the drive is what `shares` tell."""
         seen = regime_of(self.record, self.swings)
         if not seen.loads:
             return seen
-        slow = dict.fromkeys(SLOW_SHARES, self.shares.rest + self.shares.creep)
-        return seen._replace(evidence=seen.evidence | slow)
+        slower = self.shares.rest + self.shares.creep
+        return seen._replace(evidence={SLOWER: slower} | seen.evidence)
 
     @cached_property
     def shares(self) -> Shares:

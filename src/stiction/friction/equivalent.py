@@ -11,6 +11,7 @@ from stiction.errors import DescriptionError
 from stiction.friction.law import Law, has_state, static_coefficient
 
 CHANGED = 1.0 - exp(-1.0)
+EQUAL = 1e-9  # relative difference of coefficients that are the same
 ABRUPT = 1e-3  # of the fastest slip: the speed of a change that is abrupt
 
 
@@ -20,7 +21,8 @@ class Traits(NamedTuple):
     Parameters
     ----------
     static, kinetic : float
-        Coefficient at rest; the coefficient within reach of slip that differs most from it.
+        Coefficient at rest; the smallest within reach of slip, or for a law that never falls below
+        the one at rest the largest.
     speed : float
         Slip speed at which the coefficient has made 1 - 1/e of the change, m/s.
     """
@@ -58,10 +60,12 @@ def traits(law: Law, drive: float, fastest: float) -> Traits:
     if not np.isfinite([*mu, static]).all():
         rule = f"its coefficient is not finite between {slowest:.3g} and {fastest:.3g} m/s"
         raise DescriptionError.of("law", f"{rule}; correct {type(law).__name__}")
-    kinetic = float(mu[np.abs(mu - static).argmax()])
-    if abs(kinetic - static) <= 1e-9 * static:
+    weakens = float(mu.min()) < static * (1.0 - EQUAL)
+    end = int(mu.argmin() if weakens else mu.argmax())
+    kinetic = float(mu[end])
+    if abs(kinetic - static) <= EQUAL * static:
         return Traits(static, static, drive or fastest)
-    done = (mu - static) / (kinetic - static)
+    done = (mu[: end + 1] - static) / (kinetic - static)
     first = int((done >= CHANGED).argmax())
     if first == 0:
         return Traits(static, kinetic, ABRUPT * fastest)

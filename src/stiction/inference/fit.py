@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
+from stiction.friction.registry import LAWS
 from stiction.inference.calibration import study
 from stiction.inference.library import (
     LONGEST_CYCLE,
@@ -91,13 +93,20 @@ def check(rig: Rig) -> None:
         message = "nothing is uncertain, and a fit estimates what is; write for example "
         message += 'phi = "2 +- 1 deg"'
         faults.append(Fault("slider", message))
-    if has_state(rig.slider.law) or "mu_0" not in getattr(rig.slider.law, "_fields", ()):
-        message = "must have a coefficient mu_0 and no internal state for a fit"
+    law = type(rig.slider.law)
+    if not _is_fitted(law):
+        known = ", ".join(name for name, kind in LAWS.items() if _is_fitted(kind))
+        message = f"{law.__name__} is not fitted; take one of {known}, or one of your own with mu_0"
         faults.append(Fault("friction.law", message))
     if not isinstance(rig.slider.motion, ConstantVelocity) or rig.slider.load is not None:
         faults.append(Fault("drive", "must be steady, and the load constant, for a fit"))
     if faults:
         raise DescriptionError(faults)
+
+
+def _is_fitted(law: type[Any]) -> bool:
+    """Return whether a law can be fitted: it has a coefficient mu_0, and no internal state."""
+    return "mu_0" in getattr(law, "_fields", ()) and not has_state(law)
 
 
 def plan_for(rig: Rig, conditions: Sequence[Conditions]) -> Plan:

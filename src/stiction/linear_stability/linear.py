@@ -36,7 +36,7 @@ STABLE, UNSTABLE = "stable", "unstable"
 BOUNDARY = "on the boundary of stability within its uncertainty"
 SETTLED = 1e-9  # largest relative error of friction from unsteady internal states
 NOT_SMOOTH = "friction: has no derivatives at {:g} m/s; see what check_law says of it"
-STEADY = "this needs a steady drive and load; remove the program"
+STEADY = "this needs a steady drive and load; remove"
 
 
 @dataclass(frozen=True, eq=False)
@@ -273,14 +273,20 @@ def drive_velocity(slider: Slider) -> Floats:
     drives, loads = drive_stretches(slider.motion), load_stretches(slider.normal_load, slider.load)
     X, Y = slider.motion.rate(0.0)
     if len(drives) > 1 or not drives[0][1].steady():
-        found.append(Fault("drive", f"is not steady; {STEADY}, or drive=st.ConstantVelocity(...)"))
+        found.append(Fault("drive", f"is not steady; {STEADY} {_varying(slider.drive)}"))
     elif X == Y == 0.0:
         found.append(Fault("drive.velocity", "is zero: nothing slides; give it a velocity"))
     if len(loads) > 1 or not loads[0][1].constant():
-        found.append(Fault("load", f"is not constant; {STEADY}, or load=None"))
+        found.append(Fault("load", f"is not constant; {STEADY} {_varying(slider.load)}"))
     if found:
         raise DescriptionError(found)
     return np.array(slider.along_axes(X, Y))
+
+
+def _varying(part: object) -> str:
+    """Return the keys by which a drive or load varies."""
+    names = ("program", "along", "across", "modulation")
+    return " and ".join(name for name in names if getattr(part, name, None))
 
 
 def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:

@@ -221,6 +221,18 @@ def test_laws_of_given_traits():
     assert (bristles.sigma_0, bristles.sigma_1) == pytest.approx((1e5, 1e5**0.5), rel=1e-3)
 
 
+def test_of_friction_that_weakens_and_then_strengthens_the_minimum_counts():
+    """The greatest change did: viscous friction made laws of 3.2 in slip for 1.3 at rest."""
+    law = st.laws.Stribeck(1.3, 0.7, "0.5 mm/s", c="2 s/m")
+    least = min(law.coefficient(float(v)) for v in np.geomspace(1e-4, 1.0, 4001))
+    found = traits(law, 1.7e-3, 0.9)
+    assert found.static == 1.3
+    assert found.kinetic == pytest.approx(least, rel=1e-5)
+    assert law.coefficient(found.speed) == pytest.approx(1.3 - CHANGED * (1.3 - least), rel=1e-3)
+    only = traits(st.laws.Stribeck(0.7, 0.7, "0.5 mm/s", c="2 s/m"), 1.7e-3, 0.9)
+    assert only.kinetic == pytest.approx(0.7 + 2.0 * 0.9)
+
+
 @pytest.mark.parametrize("kind", [st.laws.RateStateAgeing, st.laws.RateStateSlip2])
 def test_rate_and_state_laws_of_given_traits(kind):
     """`kinetic` at the speed, `static` at a ten-thousandth of it, b = 2 a."""

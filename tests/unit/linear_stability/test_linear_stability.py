@@ -504,6 +504,10 @@ def test_what_is_not_steady_is_refused_with_a_remedy():
         growth_rate(PAPER.replace(drive=ramp, load=pressed))
     assert "drive: is not steady" in str(error.value)
     assert "load: is not constant" in str(error.value)
+    assert str(error.value).count("remove program") == 2
+    shaken = st.protocols.DriveProgram(velocity=V, along=st.protocols.Modulation(V, "3 Hz"))
+    with pytest.raises(st.DescriptionError, match=r"remove along$"):  # it has no program
+        growth_rate(PAPER.replace(drive=shaken))
     with pytest.raises(st.DescriptionError, match="nothing slides"):
         growth_rate(PAPER.replace(drive=st.ConstantVelocity(0.0)))
     program = PAPER.replace(drive=st.protocols.DriveProgram(velocity=V))

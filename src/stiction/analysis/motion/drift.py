@@ -55,10 +55,11 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
 
 def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
     """Return the slope of a line, and its standard error."""
-    line = np.polyfit(at, middle, 1)
-    rate, left = float(line[0]), middle - np.polyval(line, at)
+    elapsed = at - at.mean()
+    line = np.polyfit(elapsed, middle, 1)
+    rate, left = float(line[0]), middle - np.polyval(line, elapsed)
     spread = float((left @ left / max(len(at) - 2, 1)) ** 0.5)
-    return rate, spread / float(np.sqrt(((at - at.mean()) ** 2).sum()))
+    return rate, spread / float(np.sqrt(elapsed @ elapsed))
 
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:

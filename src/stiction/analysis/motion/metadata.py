@@ -116,8 +116,9 @@ def _loading_rates(record: Record, kind: str, cycles: xr.Dataset) -> list[Stated
     if len(places) < 2:
         if steady_change(slopes) is None:
             return [whole]
-        line = np.polyfit(starts, slopes, 1)  # from the first sample to the last
-        low, high = np.sort(np.polyval(line, record.time[[0, -1]]))
+        begin = starts[0]  # times may count from 1970, whose squares leave no digits
+        line = np.polyfit(starts - begin, slopes, 1)  # from the first sample to the last
+        low, high = np.sort(np.polyval(line, record.time[[0, -1]] - begin))
         passes = SLOWER * stated < high and low < FASTER * stated
         return [whole._replace(stated=nan) if passes else whole]
     at = [-inf, *(float(starts[place.start]) for place in places[1:]), inf]
@@ -241,8 +242,9 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
     """Compare the slope of the drive's displacement with the stated velocity."""
     if record.drive_position is None or len(record) < FEW:
         return None
-    line, square = np.polyfit(record.time, record.drive_position, 1, cov=True)
-    found, error = abs(float(line[0])), float(np.sqrt(max(square[0, 0], 0.0)))
+    elapsed = record.time - record.time[0]  # of times from 1970 rounding leaves no error
+    line, square = np.polyfit(elapsed, record.drive_position, 1, cov=True)
+    found, error = abs(float(line[0])), float(np.sqrt(square[0, 0]))
     stated = record.drive_velocity or nan
     how = "slope of the drive's displacement"
     speeds, reach = _speeds_of_parts(record.time, record.drive_position)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import floor, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -28,6 +28,7 @@ COLUMNS = {
     "creep_distance": "creep",
     "slip_distance": "slip",
 }
+LATE = 100.0  # of the time of all cycles: four digits do not tell starts so late apart
 UNLESS_NONE = ("hesitations",)
 
 
@@ -79,6 +80,12 @@ def each_cycle(table: xr.Dataset) -> Table:
     columns = {
         COLUMNS[name]: Quantity(table[name].values, table[name].attrs["units"]) for name in known
     }
+    first, end = float(table["start"][0]), float(table["trough_time"][-1])
+    if first > LATE * (end - first):
+        since = floor(first)
+        late = Quantity(table["start"].values - since, "s")
+        columns = {f"start after {since} s": late} | columns
+        del columns["start"]
     numbers = grid(columns, SHOWN)
     cycle = [str(number) for number in table["cycle"].values]
     rows = [(number, *row) for number, row in zip(cycle, numbers.rows, strict=False)]

@@ -220,11 +220,15 @@ def _verdict(problem: _Problem, at: Floats) -> Inversion:
     if not np.isfinite(slopes).all() or len(off) <= PARAMETERS:
         return unknown(samples)
     slow, quick = _variances(off[1:], PARAMETERS)
-    before = max(_variances(data.before - data.level, 1))
+    rests = _variances(data.before - data.level, 1)
+    before = max(rests)
     misses = slow > BY_CHANCE * max(quick, before) or quick > NOISIER * before
-    variance = max(slow, quick) + data.noise**2
+    together = data.noise**2
+    if rests[0] > BY_CHANCE * max(slow, quick):  # it swings before the step, and goes on after it
+        together += rests[0] * min(MODES, len(data.before)) / len(data.before)
+    variance = max(slow, quick) + together
     # what all samples are off by together is as any smooth curve of few parameters
-    alone = variance + data.noise**2 * weight / PARAMETERS
+    alone = variance + together * weight / PARAMETERS
     whole = alone + (AMISS**2 * variance if misses else 0.0)
     a, D, b, errors = _with_errors(at, slopes, sqrt(whole))
     seen = problem.shortest / E_FOLDS < D < problem.longest

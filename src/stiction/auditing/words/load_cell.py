@@ -103,7 +103,7 @@ def _readings(seen: SimulatedTest) -> str:
     return (
         "The apparent static friction is the largest force of the whole test over the normal load; "
         f"the kinetic one, force drop and period are means over {many}. So the difference of both "
-        "coefficients is not half of the mean force drop."
+        "coefficients need not be half of the mean force drop."
     )
 
 
@@ -117,7 +117,7 @@ def _largest(seen: SimulatedTest) -> list[str]:
     if abs(read / true - 1.0) <= RIGHT:
         return [
             f"The largest force shows the friction of the surfaces to within {percent(RIGHT)}: it "
-            f"is {shown}, and friction until then is up to {_number(true)}."
+            f"is {shown}, and friction in the swing before is {_number(true)} at most."
         ]
     if read > true:
         return [

@@ -5,6 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
 from stiction.friction import has_state
 from stiction.text.quantity_text import percent
@@ -12,6 +14,7 @@ from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
+    from stiction.auditing.simulated_test import SimulatedTest
 
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 NEVER = 1e-3  # of the time: a smaller share is a matter of samples
@@ -23,17 +26,16 @@ def stick(found: Audit) -> list[str]:
     seen, s = found.observation, found.slider
     whole = "of each cycle" if len(seen.table) else "of the loading"
     vibrates, state = seen.motion in VIBRATES, has_state(s.law)
+    inertia = _share_of_inertia(found)
     slowly = "creeps" if s.misalignment or state else "slides slowly"
+    if inertia > 0.5 * seen.shares.creep:
+        slowly = "gains or loses speed"
     slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)
     how = " and ".join(f"{verb} for {percent(share)}" for verb, share in slow if share > NEVER)
     lines = [
         f"For {percent(seen.shares.rest + seen.shares.creep)} {whole} the mass is slower than the "
         f"drive, and the load cell shows a rising force{'' if vibrates else f': the mass {how}'}. "
-        + (
-            f"For {percent(seen.shares.slip)} it is faster than the drive."
-            if seen.shares.slip
-            else "It is never faster than the drive."
-        )
+        + _faster(seen)
     ]
     if s.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
@@ -47,7 +49,7 @@ def stick(found: Audit) -> list[str]:
             if s.misalignment
             else "The creep is due to the law of friction."
         )
-    elif s.misalignment and seen.shares.creep > seen.shares.rest:
+    elif s.misalignment and seen.shares.creep - inertia > seen.shares.rest:
         distance = seen.mean("creep_distance")
         far = (
             f"{in_words(distance, 'm')} before each slip"
@@ -59,6 +61,11 @@ def stick(found: Audit) -> list[str]:
             f"of the misalignment. The mass covers {far}. The largest force shows how far "
             f"friction has turned; it is no evidence of static friction."
         )
+    elif inertia > 0.5 * seen.shares.creep > 0.5 * seen.shares.rest:
+        lines.append(
+            "The drive is too fast for creep: the mass takes as long to gain its speed, and to "
+            "lose it, as to swing on its spring."
+        )
     elif seen.shares.rest > HARDLY:
         lines.append("The apparent stick is mostly true rest.")
     if seen.motion == STICK_SLIP:
@@ -67,3 +74,24 @@ def stick(found: Audit) -> list[str]:
             "in each slip, so the trough alone is not a property of the interface."
         )
     return lines
+
+
+def _faster(seen: SimulatedTest) -> str:
+    """Return how long, or by how much, the mass is faster than the drive."""
+    if seen.shares.slip:
+        return f"For {percent(seen.shares.slip)} it is faster than the drive."
+    drive, _ = seen.run.slider.motion.rate(0.0)
+    fastest = float(np.nanmax(seen.run.samples["V_X"] / drive))
+    if fastest <= 1.0 + HARDLY:
+        return "It is never faster than the drive."
+    times = float(f"{fastest:.3g}")
+    return f"Then it breaks away, and is up to {times:g} times as fast as the drive for a while."
+
+
+def _share_of_inertia(found: Audit) -> float:
+    """Return the share of a cycle in which the mass gains or loses the drive's speed.
+
+    It swings on its spring then, for a quarter of its period before the slip and after it.
+    """
+    period = found.observation.mean("period")
+    return min(0.5 / (found.prediction.f_x * period), 1.0) if isfinite(period) else 0.0

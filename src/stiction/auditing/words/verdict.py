@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite, sqrt
+from math import copysign, isfinite, sqrt
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -159,7 +159,7 @@ def margin(found: Audit) -> str:
     """Return the margin of phi to its critical values in a sentence."""
     phi, turn = found.slider.misalignment, found.slider.turn
     values = found.misalignment.values - turn
-    closed = found.prediction.phi_c
+    closed = copysign(found.prediction.phi_c, phi)
     if not len(values):
         always = "stable" if all(found.misalignment.stable) else "unstable"
         low, high = (in_words(end - turn, "rad") for end in found.misalignment.between)
@@ -168,7 +168,8 @@ def margin(found: Audit) -> str:
         if found.sliding.verdict not in (STABLE, UNSTABLE):
             return f"At any other φ from {low} to {high} steady sliding is {always}."
         rigid = (
-            f"; with a rigid transverse spring it would be stable above {in_words(closed, 'rad')}"
+            "; with a rigid transverse spring it would be stable "
+            f"{'above' if closed > 0.0 else 'below'} {in_words(closed, 'rad')}"
         )
         return (
             f"No misalignment changes that: steady sliding is {always} at every φ from {low} to "
@@ -181,7 +182,7 @@ def margin(found: Audit) -> str:
         plain = in_words(closed, "rad")
         rigid = "with a rigid transverse spring"
         form = f", as {rigid}," if plain == at else f" ({plain} {rigid}),"
-    way = "more" if abs(nearest) > abs(phi) else "less"
+    way = "more" if nearest > phi else "less"
     changes = {STABLE: "It becomes unstable", UNSTABLE: "It becomes stable"}
     what = changes.get(found.sliding.verdict, "Its stability changes")
     said = (

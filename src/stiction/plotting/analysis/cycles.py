@@ -53,12 +53,21 @@ def plot_cycles(
     """
     record = as_record(source)
     found = swings(record)
-    cycles, regime = found.cycles, regime_of(record, found)
+    return plot_motion(record, found.cycles, regime_of(record, found).kind, axes)
+
+
+def plot_motion(
+    record: Record,
+    cycles: xr.Dataset,
+    kind: str,
+    axes: Axes | Sequence[Axes] | None = None,
+) -> NDArray[np.object_]:
+    """Draw what `plot_cycles` draws, where cycles and kind of motion are known."""
     many = cycles.sizes["cycle"] > FEW
     with style():
         panels = grid_of(axes, (PAGE, 4.4 if many else 2.6), 2 if many else 1, 1)
         draw_cycles(panels[0], record, cycles)
-        panels[0].set_title(regime.kind.capitalize())
+        panels[0].set_title(kind.capitalize())
         if many and len(panels) > 1:
             _zoom(panels[0], panels[1], record, cycles)
         for ax in panels:

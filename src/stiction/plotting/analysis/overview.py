@@ -12,7 +12,7 @@ from stiction.analysis.creep.findings import RESTS, drive_speed
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
-from stiction.plotting.analysis.cycles import plot_cycles
+from stiction.plotting.analysis.cycles import plot_motion
 from stiction.plotting.analysis.energy import plot_energy
 from stiction.plotting.analysis.oscillation import plot_oscillation
 from stiction.plotting.page.canvas import figure_of
@@ -28,14 +28,14 @@ def plot_analysis(found: Analysis, axes: Any = None) -> Any:
     >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="1 kHz")
     >>> axes = st.plotting.plot_analysis(st.analyse(run))
     """
-    return plot_cycles(found.record, axes)
+    return plot_motion(found.record, found.cycles, found.regime.kind, axes)
 
 
 def figures(found: Analysis) -> dict[str, Figure]:
     """Return the figures of the existing parts of an analysis by name."""
     drawn = {}
     if len(found.record):
-        drawn["cycles"] = figure_of(plot_cycles, found.record)
+        drawn["cycles"] = figure_of(plot_motion, found.record, found.cycles, found.regime.kind)
     V = drive_speed(found.source, found.record)
     if found.curves is not None and found.creep is not None and V is not None and moves(found, V):
         fit, lines = found.misalignment, {}

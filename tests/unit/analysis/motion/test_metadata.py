@@ -27,9 +27,9 @@ def sawtooth(scale=1.0):
     return scale * force + noise
 
 
-def compare(force, **known):
+def compare(force, time=TIME, **known):
     """The comparisons of a record by name."""
-    found = st.analyse(st.Record(time=TIME, force=force, **known))
+    found = st.analyse(st.Record(time=time, force=force, **known))
     return {each.quantity: each for each in found.parts["metadata"]}, str(found)
 
 
@@ -108,6 +108,21 @@ def test_the_drive_and_the_load_are_compared_with_their_channels():
     assert drive.agrees is False
     assert its["normal load"].agrees
     assert "Drive velocity: by the slope of the drive's displacement it is 0.5 times" in said
+
+
+def test_times_may_count_from_1970():
+    """The squares of such times leave no digits: the error of the velocity was zero."""
+    noise = 1e-6 * np.random.default_rng(2).standard_normal(len(TIME))
+    drive = VELOCITY * TIME + noise
+    of_old, today = (
+        compare(sawtooth(), TIME + since, drive_velocity=VELOCITY, drive_position=drive)[0]
+        for since in (0.0, 1.7e9)
+    )
+    assert today["drive velocity"].error > 0.0
+    for name, its in of_old.items():
+        # such a time is rounded to 2e-7 s, and a slip takes 0.05 s
+        assert today[name].found == pytest.approx(its.found, rel=1e-5, abs=0.01 * its.error)
+        assert today[name].error == pytest.approx(its.error, rel=1e-2)
 
 
 @pytest.mark.parametrize("strokes", [2, 3, 10])

@@ -199,6 +199,26 @@ def test_the_law_of_a_run_is_known(law):
     assert "Fitted: the ageing law, though the run has the" in str(wrong)
 
 
+@pytest.mark.parametrize("distance", [0.4e-3, 0.7e-3, 2e-3])
+def test_friction_that_swings_before_a_step_goes_on_after_it(distance):
+    """It is loaded for 0.93 mm, and then rings: b was 0.0083 +- 0.00005 after the first."""
+    truth = np.array([0.0055, 0.0085, 7e-6])
+    friction = st.laws.RateStateAgeing(*truth, mu_star=0.58, V_star=1e-6)
+    program = st.protocols.velocity_steps(
+        ["1 um/s", "3 um/s", "10 um/s", "1 um/s"], distance=distance
+    )
+    slider = on_a_line(
+        mass=10.0, k_x=25e6, normal_load=40e3, friction=friction, drive=program, driven="spring"
+    )
+    found = st.analysis.velocity_steps(st.simulate(slider, sample_rate=10.0))
+    for each in found.steps:
+        off = np.array([each.a, each.b, each.D_c]) - truth
+        errors = np.array([each.a_error, each.b_error, each.D_c_error])
+        assert (np.isnan(off) | (np.abs(off) < 3.0 * errors)).all()
+    # it swings by ten times the last step, or by nothing
+    assert np.isnan(found.steps[-1].D_c) == (distance < 0.45e-3)
+
+
 def test_samples_without_a_pattern_have_no_law():
     """Nor does an error come of them."""
     random = np.random.default_rng(SEED)

@@ -100,7 +100,7 @@ def doubt_few_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
     if not samples < FEW:
         return
     yield (
-        f"A fall of the force takes {samples:.1f} samples: peaks and troughs are cut off"
+        f"A fall of the force takes {samples:.1f} samples: peaks and troughs lie between them"
         f"{_slow_slips(record, cycles, samples)}. "
         f"Sample at {in_words(10.0 / max(fall, 1.0 / record.sample_rate), 'Hz')} or more."
     )

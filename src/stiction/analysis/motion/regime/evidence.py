@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
+SLOWER = "slower_share"  # evidence, too: of the motion itself, as an audit knows it
 SLOW_SHARES = ("rest_share", "still_share")  # evidence of rest or creep, by the shape and the slip
 CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for another kind
 NO_MORE = 1e-6  # a ratio that is less is nothing, up to rounding
@@ -184,6 +185,8 @@ class Regime(NamedTuple):
             return ""
         if not self.loads and "stick_share" in self.evidence:
             return f"stuck for {percent(self.evidence['stick_share'])} of a cycle"
+        if SLOWER in self.evidence:
+            return f"slower than the drive for {percent(self.evidence[SLOWER])} of a cycle"
         slow = [self.evidence[name] for name in SLOW_SHARES if name in self.evidence]
         return f"at rest or in creep for {percent(max(slow))} of a cycle" if slow else ""
 
