@@ -89,6 +89,20 @@ KINDS = {
 Samples = Annotated[Any, BeforeValidator(_samples)]
 
 
+class OfRun(NamedTuple):
+    """The run of a record: slider and sticks, and (n,) each of all samples, for its parts, too.
+
+    `time` is in s, `rate_across`, of the mass along the stiffer axis, in m/s, and `drive_travel`,
+    along the force, in m; None where the drive is constant.
+    """
+
+    slider: Slider
+    sticks: Floats
+    time: Floats
+    rate_across: Floats
+    drive_travel: Floats | None
+
+
 class Record(Described):
     """A force over time, and the known parameters of the apparatus.
 
@@ -164,11 +178,7 @@ class Record(Described):
     load_unit: str = "N"
     drive_position_unit: str = "m"
     _same_time: int = PrivateAttr(0)
-    _sticks: Floats | None = PrivateAttr(None)
-    _own_period: float | None = PrivateAttr(None)
-    _drive_travel: Floats | None = PrivateAttr(None)
-    _slider: Slider | None = PrivateAttr(None)
-    _rate_across: Floats | None = PrivateAttr(None)
+    _of_run: OfRun | None = PrivateAttr(None)
 
     @model_validator(mode="before")
     @classmethod
@@ -272,29 +282,33 @@ class Record(Described):
     @property
     def sticks(self) -> Floats | None:
         """All intervals in which the mass sticks, (n, 2), s, where the record is that of a run."""
-        return self._sticks
+        return self._of_run and self._of_run.sticks
 
     @property
     def own_period(self) -> float | None:
         """Period of the mass on the spring along x alone, s, where the record is that of a run."""
-        return self._own_period
+        return 1.0 / self.slider.natural_frequency_x if self.slider else None
 
     @property
     def drive_travel(self) -> Floats | None:
         """How far the drive has moved along the force, (n,), m, of a run whose drive varies."""
-        if self._drive_travel is None:
-            return None
-        return np.asarray(np.interp(self.time, *self._drive_travel))
+        return self._of_run and self._at_own_times(self._of_run.drive_travel)
 
     @property
     def slider(self) -> Slider | None:
         """The system, where the record is that of a run."""
-        return self._slider
+        return self._of_run and self._of_run.slider
 
     @property
     def rate_across(self) -> Floats | None:
         """Velocity of the mass along the stiffer axis, (n,), m/s, of a run."""
-        return self._rate_across
+        return self._of_run and self._at_own_times(self._of_run.rate_across)
+
+    def _at_own_times(self, values: Floats | None) -> Floats | None:
+        """Return values at all samples of the run at those of this record, which may be a part."""
+        if self._of_run is None or values is None:
+            return None
+        return np.asarray(np.interp(self.time, self._of_run.time, values))
 
     def steady_until(self, time: float) -> float:
         """Return until when drive and load are known to go on as at a time, s: at most the end.
@@ -302,7 +316,7 @@ class Record(Described):
         Those of a measured record are supposed to.
         """
         end = float(self.time[-1])
-        return end if self._slider is None else min(end, self._slider.steady_until(time))
+        return min(end, self.slider.steady_until(time)) if self.slider else end
 
     def __len__(self) -> int:
         """Return the number of samples."""
@@ -461,10 +475,9 @@ def record_of(run: Trajectory) -> Record:
         slip_speed=slip_speed,
         load=None if slider.load is None else load,
     )
-    record._sticks = run.stick_intervals
-    record._slider, record._rate_across = slider, rate
-    record._own_period = 1.0 / slider.natural_frequency_x
+    travel = None
     if not isinstance(slider.motion, ConstantVelocity):
         d_X, d_Y = slider.motion.travel(time[0], time - time[0])
-        record._drive_travel = np.stack([time, way * (share * d_X + (y * c - x * s) * d_Y)])
+        travel = way * (share * d_X + (y * c - x * s) * d_Y)
+    record._of_run = OfRun(slider, run.stick_intervals, time, rate, travel)
     return record

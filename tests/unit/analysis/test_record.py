@@ -45,6 +45,20 @@ def test_a_run_as_its_load_cell_records_it():
     assert record.sample_rate == pytest.approx(1e3)
 
 
+def test_a_part_of_a_run_s_record_has_all_columns_of_the_part():
+    motion = st.protocols.DriveProgram(
+        velocity="1 mm/s", along=st.protocols.Modulation("0.1 mm/s", "50 Hz")
+    )
+    run = st.simulate(st.presets.nakano_popov_2020().replace(drive=motion), 0.05, sample_rate=1e3)
+    record = record_of(run)
+    part = record.before(0.02)
+    assert len(part) == 20
+    for name in ("drive_travel", "rate_across"):
+        assert np.array_equal(getattr(part, name), getattr(record, name)[:20])
+    assert part.slider is run.slider
+    assert part.own_period == record.own_period == 1.0 / run.slider.natural_frequency_x
+
+
 def test_a_drive_the_other_way_is_turned_round():
     slider = st.presets.nakano_popov_2020()
     there = record_of(st.simulate(slider, duration=0.05, sample_rate=1e3))
