@@ -91,8 +91,8 @@ def accuracy(
     Its speed (M40) is V sin(phi), at which the transverse motion slips; without misalignment V;
     without a drive a millionth of the speed that friction can give the mass on its spring, which is
     also the upper limit; without either a tiny share of the initial speeds. Friction that weakens
-    at the rate g = -F'(0)/m per second lets slip grow from k V/(m g^2), which must then be
-    resolved; k is the acting stiffness, and g the steepest rate up to some V. Slip that the
+    at the rate g per second, the steepest -F'(v)/m up to 10 times that speed, lets slip grow from
+    k V/(m g^2), which must then be resolved; k is the acting stiffness. Slip that the
     rounding of forces makes in 1/g, or in a radian of the spring, is no error; where a law has
     states, each step tells how much that is (M70c).
     """

@@ -198,7 +198,7 @@ def next_phase(
 
 
 def time_held(equations: Equations, u: np.ndarray) -> float:
-    """Return the time (s) that friction holds the mass: until g.N^-1 g reaches F_0^2, (M3).
+    """Return the time (s) that friction holds the mass: until g.N^-1 g reaches F_0^2, (M6).
 
     While s = 0, g changes at the constant rate g' = K v_d, so that this is quadratic in time; the
     stick ends at the root at which it grows. If it is reached within rounding and grows, the stick

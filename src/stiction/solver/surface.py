@@ -17,6 +17,9 @@ from typing import NamedTuple
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem, is_aligned, isotropic, metric
 
+ROOT = 1e-15  # of 1: of the convex equation of a take-off
+CLIMBED = 1e-16  # of t: a step towards it
+
 
 class Flow(NamedTuple):
     """Friction over f along e, the part that turns the slip, and their derivatives by w."""
@@ -123,11 +126,11 @@ def takeoff(problem: Problem, a: tuple[float, float], f: float) -> tuple[float, 
         y = (yy * a[0] - xy * a[1]) * per, (xx * a[1] - xy * a[0]) * per
         stress = f * f * (n.xx * y[0] + n.xy * y[1]), f * f * (n.xy * y[0] + n.yy * y[1])
         excess = stress[0] * y[0] + stress[1] * y[1] - 1.0
-        if excess < 1e-15:
+        if excess < ROOT:
             break
         change = (stress[0] * (yy * y[0] - xy * y[1]) + stress[1] * (xx * y[1] - xy * y[0])) * per
         step = 0.5 * excess / change
         t += step
-        if step <= 1e-16 * t:
+        if step <= CLIMBED * t:
             break
     return y

@@ -2,8 +2,8 @@
 
 Near zero slip the spring acceleration a and the friction deceleration f are constant,
 and s' = a - f s/|s|. For |a| < f, zero slip is reached after T = r (f + |a| cos alpha) /
-(f^2 - |a|^2), with r the slip speed and alpha its angle to a (project reference; classical,
-e.g. Bouguer 1732). The displacement is closed as well: with P = a.s and R = |s|,
+(f^2 - |a|^2), with r the slip speed and alpha its angle to a (Bouguer
+1732). The displacement is closed as well: with P = a.s and R = |s|,
 
     d/dt (f R + P)         = |a|^2 - f^2
     d/dt (f R P + P^2/2)   = (|a|^2 - 2 f^2) P + f |a|^2 R,   d/dt R^2 = 2 P - 2 f R
@@ -26,6 +26,8 @@ from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
 from stiction.solver.state import Motion, State, at_takeoff
 
+WITHOUT_FORCE = 1e-8  # of friction: springs that neither shorten nor turn the slip
+STRAIGHT = 1e-12  # sine of the angle to their force: it does not turn the slip
 INSTANT = 1e-13  # of the time so far, and of a spring's time for a radian
 
 
@@ -60,7 +62,7 @@ def landing_slip(r: float, a1: float, a2: float, f: float) -> tuple[float, float
     """
     square = a1 * a1 + a2 * a2
     a = sqrt(square)
-    if a < 1e-8 * f:
+    if a < WITHOUT_FORCE * f:
         return 0.5 * r * r / f, 0.0
     along, across = r * a1 / a, -r * a2 / a  # slip in the axes of a
     distance_along = (f * r * along + 0.5 * a * (along * along + r * r)) / (2 * (f * f - square))
@@ -82,7 +84,7 @@ def slip_before_landing(
     square = a1 * a1 + a2 * a2
     a = sqrt(square)
     whole = atan2(abs(a2), a1)
-    if a < 1e-8 * f or sin(whole) < 1e-12:
+    if a < WITHOUT_FORCE * f or sin(whole) < STRAIGHT:
         return left * (f * f - square) / (f + a1), 1.0, 0.0
     low, high, speed = 0.0, whole, r
     for _ in range(60):

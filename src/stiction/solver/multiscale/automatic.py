@@ -21,11 +21,11 @@ from stiction.solver.problem import Problem, varies
 from stiction.solver.state import RUNNING, Output, State
 from stiction.system.slider import Slider
 
-LOOK = 512  # turns of the first leg, (M59c); each next one is twice as long
-CYCLES = 8  # sticks in a leg that make cycles, (M59c)
-WORTH = 5_000.0  # steps to be expected still, (M59c): a patch costs some hundred
-LOSS = 0.03  # of all expected steps, which maps that do not pay may cost, (M59c)
-STAKE = 0.5  # of the steps of the leg before, which one trial may cost, (M59c)
+LOOK = 512  # turns of the first leg, (M58a); each next one is twice as long
+CYCLES = 8  # sticks in a leg that make cycles, (M58a)
+WORTH = 5_000.0  # steps to be expected still, (M58a): a patch costs some hundred
+LOSS = 0.03  # of all expected steps, which maps that do not pay may cost, (M58a)
+STAKE = 0.5  # of the steps of the leg before, which one trial may cost, (M58a)
 
 
 class Leg(NamedTuple):
@@ -104,7 +104,7 @@ def next_leg(turns: int, now: State) -> Leg:
 
 
 def trial(leg: Leg, now: State, end: float, lost: int) -> MapTrial | None:
-    """Return the map that is tried after a leg (M59c), if it is, when `lost` steps are lost."""
+    """Return the map that is tried after a leg (M58a), if it is, when `lost` steps are lost."""
     lasted, cycles = now.motion.t - leg.start.motion.t, now.counts.sticks - leg.start.counts.sticks
     if cycles < CYCLES:
         return None

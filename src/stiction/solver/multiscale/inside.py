@@ -2,7 +2,7 @@
 
 The phase is the time since the take-off over the slip's duration. It is divided into pieces, in
 each of which every column of a sample is a polynomial through Chebyshev points; their values are
-interpolated in the angle through the patch's own nodes, as its turn and time are (see
+interpolated in the angle through the patch's own nodes (M59a), as its turn and time are (see
 `interpolant`). The steps of each node are kept while it is solved, and evaluated at these points.
 """
 

@@ -44,6 +44,7 @@ from stiction.solver.state import COMPLETED, RUNNING, Counts, Plain, State, plai
 PAYS = 8.0  # cycles that a patch must replace to pay
 VAIN = 30  # wasted nodes allowed at first, plus one for each so many solved cycles
 VAIN_EACH = 4
+BESIDE = 0.3  # of the width to try: a patch that begins nearer may be overlapped
 SHORTER = 0.25  # of the steps beside a map: so many more are taken, 1 - STEP_SHARE^(1/4), (M39)
 
 
@@ -64,7 +65,7 @@ def reach(known: Returns, theta: float, turn: float) -> float:
             width = min(width, part * gap)
     for i in range(known.sizes[PATCHES_MADE]):
         gap = way * float(known.patches[i, PATCH_START] - theta)
-        if gap > 0.3 * width:
+        if gap > BESIDE * width:
             width = min(width, gap)
     return way * width
 

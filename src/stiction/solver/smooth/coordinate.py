@@ -17,6 +17,8 @@ ROUND = (1 / 6, 1 / 20, 1 / 42, 1 / 72, 1 / 110)
 OUTER = (1 / 10, 1 / 28, 1 / 54, 1 / 88, 1 / 130)
 LARGEST = 700.0  # sinh of more overflows
 ROUNDS = 30
+GENTLE = 0.1  # rise that is not damped
+NEARLY = 1e-3  # change of q: the damped one need not be known better
 
 
 @inlined
@@ -83,7 +85,7 @@ def damped_rise(q: float, rise: float, share: float) -> float:
 
     instead. It is convex, so Newton's method converges from above.
     """
-    if rise < 0.1:
+    if rise < GENTLE:
         return q + rise
     most = min(q + rise / max(1.0 - share, 1e-300), LARGEST)
     if share > 0.0:
@@ -101,6 +103,6 @@ def damped_rise(q: float, rise: float, share: float) -> float:
         value = share * (sinh_y - sinh_q) + (1.0 - share) * (y - q) - rise
         change = value / (share * cosh_y + 1.0 - share)
         y -= change
-        if abs(change) < 1e-3:
+        if abs(change) < NEARLY:
             break
     return max(y, q)

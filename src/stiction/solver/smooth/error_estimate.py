@@ -18,7 +18,7 @@ from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import coordinate, slip_at
 from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
-from stiction.solver.smooth.newton import correct, larger
+from stiction.solver.smooth.newton import DIVERGED, correct, larger
 from stiction.solver.smooth.right_hand_side import (
     SmoothOutset,
     evaluate,
@@ -38,6 +38,7 @@ from stiction.solver.stepping.radau import (
 )
 
 BALANCE_ITERATIONS = 20
+COARSE = 0.1  # relative correction: the error needs one digit
 # how the error goes inside a step, 1 in magnitude at c_1, where it is largest
 _PI = Polynomial.fromroots(C).integ()
 LARGEST = float(abs(_PI(C[0])))  # integral of the cubic less the quadratic, over the factor of c^3
@@ -159,7 +160,7 @@ def balance(
         q_x, q_y, _, size = correct(start, share, w.size[0], q_x, q_y, d_x, d_y)
         if n > 2:
             size = larger(correct_states_inside(d_x, d_y, w), size)
-        if not size < 1e100:
+        if not size < DIVERGED:
             break
         if size < enough or size * size < enough:
             d_x, d_y = (yy * lost_x - xy * lost_y) * per, (xx * lost_y - yx * lost_x) * per
@@ -196,7 +197,7 @@ def local_error(
     """
     p = within(w, INTERIOR)
     found, (s_x, s_y), (by_x, by_y), rounding = balance(
-        problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, 0.1, distance_error(w)
+        problem, start, h, INTERIOR, DEFECT_WEIGHT, p, w, COARSE, distance_error(w)
     )
     if not found:
         return inf

@@ -8,7 +8,7 @@ from typing import NamedTuple
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
-from stiction.solver.smooth.coordinate import damped_rise, slip_at
+from stiction.solver.smooth.coordinate import GENTLE, damped_rise, slip_at
 from stiction.solver.smooth.elimination import (
     correct_states,
     residuals_without,
@@ -39,6 +39,7 @@ from stiction.solver.stepping.radau import A, C, D
 
 ITERATIONS = 14
 FIRM = 0.01  # of the tolerance: corrections that are negligible, where states remember them
+DIVERGED = 1e100  # size of a correction, whose square must not overflow
 CLOSEST = 1e-14  # relative: corrections below are rounding
 
 
@@ -173,7 +174,7 @@ def correct(
     if start.eps == inf:
         return Corrected(q_x, q_y, d / (speed + q), d / (start.unit + q))
     to = sqrt(q_x * q_x + q_y * q_y)
-    if to - q > 0.1:
+    if to - q > GENTLE:
         f = damped_rise(q, to - q, share) / to
         q_x, q_y = f * q_x, f * q_y
     size = d / min(1.0, start.unit + q)
@@ -241,7 +242,7 @@ def solve(
         if states:
             z_size = correct_states(d_x, d_y, w)
             size, turn = larger(z_size, size), larger(z_size, turn)
-        if not size < 1e100:
+        if not size < DIVERGED:
             return False, iteration
         rate = turn if fresh else size / last
         if settled(size, rate, enough):

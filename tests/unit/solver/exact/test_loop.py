@@ -150,6 +150,23 @@ def test_when_a_slip_is_zero():
         assert rest(problem_of("ellipse"), motion, accuracy) == wanted
 
 
+def test_a_slip_that_is_faster_than_the_clock():
+    """(M50a): it rests, if it is slowed by more than rounding, or has the speed that is zero."""
+    problem, t, held = problem_of("steady"), 0.35, held_to(1e-4)
+    frame = plain(slip_frame.frame_of)(problem, motion_of(5e-4, 1e-5, 9e-7, 4e-7))
+    start = plain(slip_frame.outset)(problem, frame)
+    for slows, r, wanted in (
+        (0.5, 0.9e-13 * 0.5 * t, 0.0),
+        (0.5, 1.1e-13 * 0.5 * t, 1.1e-13 * 0.5 * t),
+        (1e-13, 1e-30, 1e-30),  # of a friction of 2: rounding
+        (-0.5, 1e-30, 1e-30),
+        (-0.5, 0.0, 1e-4 * 1e-4),
+    ):
+        forces = start._replace(f=2.0, a_1=2.0 - slows)
+        slip = Motion(t, 5e-4, 1e-5, r, 0.6, 0.8)
+        assert plain(loop.beyond_floats)(forces, slip, held) == slip._replace(r=wanted)
+
+
 @pytest.mark.parametrize("name", SLIDERS)
 def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     """In one go, or with any budget; and says why it ends."""

@@ -32,7 +32,7 @@ def steps_of(statistics):
 
 @pytest.mark.parametrize("start", [0.0, 3.0])
 def test_what_a_map_may_cost(start):
-    """A share of what steps would still cost, of which some is lost; and of those of the leg."""
+    """(M58a): of what steps would still cost, less some that is lost; and of those of the leg."""
     leg, now = Leg(1000, 0, state_at(start, 7)), state_at(start + 0.1, 57)
     expects = start + 0.1 + 0.1 * np.array([0.99, 1.01, 10.0, 20.0]) * WORTH / 1000
     assert trial(leg, now, expects[0], 0) is None

@@ -5,6 +5,7 @@ from math import factorial
 import numpy as np
 import pytest
 from numpy.polynomial import Chebyshev
+from scipy.interpolate import barycentric_interpolate
 from tests.entry import map_of, plain
 from tests.unit.solver.exact.test_step import held_to
 from tests.unit.solver.multiscale.test_construction import EXACT, problem_of, taking_off
@@ -54,6 +55,19 @@ def test_a_motion_is_interpolated_in_angle_and_phase(pieces, off):
     assert np.isnan(samples[6]).all()
     wanted = np.array([motion(0.37, phase)[:7] for phase in (times[:6] - 4.0) / 2.0])
     assert samples[:6] == pytest.approx(wanted, abs=off)
+
+
+def test_the_polynomials_of_a_piece_are_the_printed_ones():
+    """(M59a): Lagrange's in the phase, through values interpolated in the angle."""
+    known, errors = known_of(1)
+    phases = np.array([plain(inside.phase_of)(0, 1, y) for y in inside.PHASE])
+    values = np.array([[motion(x, phase)[:7] for phase in phases] for x in POINTS[: len(errors)]])
+    samples, at = np.zeros((3, 7)), np.array([0.1, 0.5, 0.93])
+    plain(inside.write_cycle)(known, 0, 0.37, 0.0, 1.0, at, samples, 0)
+    wanted = barycentric_interpolate(
+        phases, barycentric_interpolate(POINTS[: len(errors)], values, 0.37), at
+    )
+    assert samples == pytest.approx(wanted, rel=1e-9, abs=1e-9)  # of some roundings, eight terms
 
 
 def test_the_points_of_a_piece_and_its_ends():

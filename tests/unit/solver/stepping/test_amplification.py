@@ -62,11 +62,14 @@ def test_modes_are_those_of_the_matrix():
 
 @pytest.mark.parametrize("growth", [1e-6, 1e-4, 1e-2, 0.3])
 def test_the_longest_step_shows_the_growth(growth):
-    """Radau IIA multiplies a mode by R(z), which must have most of the growth of exp(z)."""
+    """(M43a): Radau IIA multiplies a mode by R(z), which has most of the growth of exp(z)."""
     rates = np.array([[growth, 1.0], [-1.0, growth]])
     h = longest_step(rates, 1.0, 1e9)
     assert 0.1 < h <= RESOLVED / abs(complex(growth, 1.0))
-    z = h * complex(growth, 1.0)
+    mode = complex(growth, 1.0)
+    longest = min(1.0, (0.1 * 7200 * growth / abs(mode)) ** 0.2) / abs(mode)
+    assert h == pytest.approx(longest, rel=1e-9)  # modes are known to 1e-11
+    z = h * mode
     R = (1 + 2 * z / 5 + z * z / 20) / (1 - 3 * z / 5 + 3 * z * z / 20 - z**3 / 60)
     assert np.log(abs(R)) == pytest.approx(z.real, rel=2 * SHARE)
 
