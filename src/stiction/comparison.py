@@ -19,7 +19,7 @@ from stiction.friction.law import static_coefficient
 from stiction.friction.user.loading import finder_for_descriptions
 from stiction.machine import shortage
 from stiction.names import draw
-from stiction.simulation import automatic_times, run
+from stiction.simulation import MOST_STEPS, automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
 from stiction.text.sections import Section, Table, as_html, as_text
@@ -114,7 +114,7 @@ def compare(
     description: Description | str | Path,
     laws: Sequence[Law | Mapping[str, Any] | str | Path],
     *,
-    max_steps: int = 100_000_000,
+    max_steps: int = MOST_STEPS,
     progress: Callable[[float], None] | None = None,
 ) -> Comparison:
     """Simulate one apparatus under its own friction law and under others.
