@@ -359,6 +359,8 @@ class Record(Described):
         """
         if self.load is None or not len(self):
             return 0.0
+        # mean squares, as variances are subtracted: if a load flickers between two readings,
+        # `white_noise`, by the median, is 0
         differences = np.diff(self.load, 4)
         noise = inner_product(differences, differences) / 70.0 / max(len(differences), 1)
         rest = float(self.load.var()) - noise

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.auditing.prediction import predict
 from stiction.auditing.progress import Progress, silent
@@ -28,7 +29,6 @@ from stiction.text.units import in_words
 
 ALLOWED = 0.02  # error of the static coefficient
 DRAWS = 64  # of the priors, a power of 2 for Sobol's sequence
-TAILS = (0.025, 0.5, 0.975)
 MOST_STEPS = 400_000  # of each test
 SCAN = 14  # misalignments at which the error is looked at, in a geometric series
 FINE = 24  # misalignments, evenly in the logarithm, about the first of these that is too large
@@ -108,7 +108,7 @@ class Budget:
         for i, column in enumerate(self.drawn.T):
             values = column[np.isfinite(column)]
             if len(values):
-                found[:, i] = np.quantile(values, [TAILS[0], TAILS[2]])
+                found[:, i] = np.quantile(values, BOUNDS_95)
         return found
 
 
@@ -131,9 +131,8 @@ def budget(rig: Rig, progress: Progress) -> Budget:
 
     names = [*rig.priors]
     shares = Sobol(len(names), seed=0).random(DRAWS)
-    which = names.index("phi")
     values = {name: rig.priors[name].quantile(shares[:, i]) for i, name in enumerate(names)}
-    ends = rig.priors["phi"].quantile(np.array(TAILS))
+    ends = rig.priors["phi"].quantile(np.array([BOUNDS_95[0], 0.5, BOUNDS_95[1]]))
     rigs = [
         *(change(rig.slider, {name: values[name][i] for name in names}) for i in range(DRAWS)),
         *(change(rig.slider, {"phi": end}) for end in ends),
@@ -142,7 +141,7 @@ def budget(rig: Rig, progress: Progress) -> Budget:
     found = read_all(rigs, lambda fraction: progress(0.7 * fraction))
     limit = alignment(rig.slider, found[-1][0], max(abs(ends - rig.slider.turn)))
     progress(1.0)
-    angles = values[names[which]] - rig.slider.turn
+    angles = values["phi"] - rig.slider.turn
     others = tuple(name for name in names if name != "phi")
     at_ends = found[DRAWS : DRAWS + len(ends)]
     return Budget(

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.inference.features import Cycles
 from stiction.inference.library import Plan, Synthetic, synthesise
@@ -21,7 +22,6 @@ from stiction.inference.posterior import Fit
 from stiction.study.execution.cores import Cores
 
 DRAWS = 60  # simulations with parameters of the posterior
-TAILS = (0.025, 0.975)
 SHARES = np.linspace(0.0, 1.0, 41)
 
 
@@ -63,7 +63,8 @@ class Predictive(NamedTuple):
     def bands(self) -> tuple[Floats, Floats]:
         """The predictive intervals, 95 %, of force and bend, (2, s) each."""
         force, bend = (
-            np.quantile(each, TAILS, axis=0) for each in (self.simulated.force, self.simulated.bend)
+            np.quantile(each, BOUNDS_95, axis=0)
+            for each in (self.simulated.force, self.simulated.bend)
         )
         return force, bend
 

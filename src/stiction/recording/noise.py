@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import comb, inf, sqrt
+from math import comb, exp, inf, pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ REPEATED = 4  # samples for each of them, on average
 LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
+ROUNDED = 12.0**-0.5  # of a step: standard deviation of the rounding to it
 HIDDEN = 1 / 3  # of a step of rounding: noise that does not average it away
 
 
@@ -56,7 +57,7 @@ def resolved_noise(values: Floats, step: float) -> float:
     A quantisation of step q adds q^2/12 to the variance (B. Widrow & I. Kollar, Quantization Noise,
     Cambridge 2008, chapter 4). Noise below a third of a step is not resolved.
     """
-    left = white_noise(values, step) ** 2 - step**2 / 12.0
+    left = white_noise(values, step) ** 2 - (ROUNDED * step) ** 2
     return sqrt(left) if left > (HIDDEN * step) ** 2 else 0.0
 
 
@@ -69,6 +70,17 @@ def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> flo
     """
     weights = sqrt(comb(2 * order, order))  # root of the sum of their squares
     return _median(np.abs(np.diff(values, order)), step) / (NORMAL_MEDIAN * weights)
+
+
+def rounding_error(values: Floats, step: float) -> float:
+    """Return the standard deviation of the rounding to a step that noise does not average away."""
+    return ROUNDED * step * dither_remainder(values, step) if step else 0.0
+
+
+def dither_remainder(values: Floats, step: float) -> float:
+    """Return the share of the first harmonic of the rounding to a step that noise leaves."""
+    noise = white_noise(values, step) if len(values) > ORDER else 0.0
+    return exp(-2.0 * (pi * noise / step) ** 2)
 
 
 def _median(values: Floats, step: float) -> float:

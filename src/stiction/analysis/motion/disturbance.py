@@ -11,7 +11,7 @@ from stiction.analysis.motion.vibration import COUPLED, OWN, irregularity
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
-from stiction.analysis.signals.robust import inner_product, part_means, part_starts
+from stiction.analysis.signals.robust import MEANS_OF_RECORD, inner_product, part_means, part_starts
 from stiction.analysis.signals.turning_points import turning_points
 from stiction.arrays import Floats
 
@@ -25,7 +25,6 @@ WHOLE = 0.98
 # own swings are at most if these stick, too
 MORE, AND_MORE, NEARLY_ALL, NEAR, NO_LARGER = 1.01, 1, 0.8, 0.2, 1.5
 MEANS = 24  # of each period, in which such cycles are first sought
-PARTS = 400  # means of a record in which its first loading is sought
 LOADED = 0.5  # of its rise: until then the mass goes at half the drive's speed or less
 SLIDES = 0.5  # of the rate of loading: afterwards the force rises more slowly, if at all
 PERIODS = 5.0  # of the line while the spring is loaded, and afterwards
@@ -203,7 +202,7 @@ def _end_of_loading(time: Floats, force: Floats, least: float) -> int | None:
     The force begins near zero, rises by more than `least` (N), and then stays, or rises more slowly
     by half.
     """
-    means, times = (part_means(each, PARTS) for each in (force, time))
+    means, times = (part_means(each, MEANS_OF_RECORD) for each in (force, time))
     means = means if means.max() >= -means.min() else -means
     rise = means - means[0]
     if means[0] > UNLOADED * means.max() or not rise.max() > least:
@@ -213,4 +212,4 @@ def _end_of_loading(time: Floats, force: Floats, least: float) -> int | None:
         return None
     rate, later = rise[at] / (times[at] - times[0]), rise[-1] - rise[at]
     slides = later < SLIDES * rate * (times[-1] - times[at])
-    return int(part_starts(len(force), PARTS)[at]) if slides else None
+    return int(part_starts(len(force), MEANS_OF_RECORD)[at]) if slides else None

@@ -24,13 +24,18 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import mean_and_spread, part_means, part_starts, statistics
+from stiction.analysis.signals.robust import (
+    MEANS_OF_RECORD,
+    mean_and_spread,
+    part_means,
+    part_starts,
+    statistics,
+)
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, xr
-from stiction.recording.noise import ORDER, white_noise
+from stiction.recording.noise import rounding_error, white_noise
 from stiction.text.quantity_text import percent
 
-PARTS = 400  # number of means of a record in which its break-away is sought
 LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading is not resolved
 FEWEST_SAMPLES = 32  # least number of samples
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
@@ -125,7 +130,7 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
     )
     static = None
-    rounding = _rounding(record.force) if count else 0.0
+    rounding = rounding_error(record.force, resolution(record.force)) if count else 0.0
     if regime.loads and count:
         static = _over(peak, peak / load_at_peak, load, rounding)
     else:
@@ -162,7 +167,9 @@ def _find_break_away(
     end = len(force)
     if len(cycles):
         before, first = np.searchsorted(time, [cycles["start"][0], cycles["trough_time"][0]])
-        end = min(end, max(FEWEST_SAMPLES, int(first) + 1, PARTS // LOADING * int(before)))
+        end = min(
+            end, max(FEWEST_SAMPLES, int(first) + 1, MEANS_OF_RECORD // LOADING * int(before))
+        )
     force = force[:end]
     forces, noise = _means(force)
     at, reason = _first_peak(forces, noise)
@@ -173,8 +180,8 @@ def _find_break_away(
 
 def _means(force: Floats) -> tuple[Floats, float]:
     """Return means over equal parts of a force, and the noise of each (N)."""
-    forces = part_means(without_spikes(force), PARTS)
-    size = float(np.median(np.diff(part_starts(len(force), PARTS), append=len(force))))
+    forces = part_means(without_spikes(force), MEANS_OF_RECORD)
+    size = float(np.median(np.diff(part_starts(len(force), MEANS_OF_RECORD), append=len(force))))
     noise = white_noise(force, order=2) / size**0.5
     return forces, noise
 
@@ -237,15 +244,6 @@ def _peak_excess(values: Floats, step: int) -> float:
         return float(max(rise, before - rise))  # it lies after the largest value, or before
     meet = rise * (after - fall) / (rise + after), fall * (before - rise) / (fall + before)
     return float(max(meet))
-
-
-def _rounding(force: Floats) -> float:
-    """Return the standard deviation (N) of the rounding that noise leaves in a digitised force."""
-    step = resolution(force)
-    if not step or len(force) <= ORDER:
-        return 0.0
-    noise = white_noise(force, step)
-    return float(step / 12.0**0.5 * np.exp(-2.0 * (np.pi * noise / step) ** 2))
 
 
 def _over(forces: Floats, reduced: Floats, load: float, rounding: float = 0.0) -> Measured:

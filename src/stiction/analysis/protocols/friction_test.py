@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import inf, isclose, isnan, nan, sqrt
+from math import inf, isclose, isnan, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -23,7 +23,7 @@ from stiction.drive import (
 )
 from stiction.errors import ResultError
 from stiction.friction import Law
-from stiction.recording.noise import ORDER, resolved_noise
+from stiction.recording.noise import rounding_error
 from stiction.system.tensors import damping_tensor
 from stiction.trajectory import Trajectory
 
@@ -225,19 +225,11 @@ def of_record(
         lag,
         record.stiffness or nan,
         0.0,
-        _rounding(record.force),
+        rounding_error(record.force, resolution(record.force)),
         None,
         drive,
         stretches(drive, loads, record.time),
     )
-
-
-def _rounding(force: Floats) -> float:
-    """Return by how much all samples of a record may be off that noise does not average away."""
-    step = resolution(force)
-    if not step or len(force) <= ORDER:
-        return 0.0
-    return 0.0 if resolved_noise(force, step) else step / sqrt(12.0)
 
 
 def stretches(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.recording.noise import dither_remainder
 
 MANY, FINE = 100_000, 1e-4  # samples examined for steps; finest step, over the signal's range
 
@@ -14,12 +15,6 @@ def resolution(values: Floats) -> float:
     some = values[:MANY]
     step = float(np.diff(np.unique(some)).min(initial=np.inf))
     return step if np.isfinite(step) and step >= FINE * float(np.ptp(some)) else 0.0
-
-
-def dither_remainder(values: Floats, step: float) -> float:
-    """Return the share of the first harmonic of the rounding that noise leaves."""
-    noise = float(np.std(np.diff(values[:MANY], 2))) / 6.0**0.5
-    return float(np.exp(-2.0 * (np.pi * noise / step) ** 2))
 
 
 def rounding_line(values: Floats) -> float:

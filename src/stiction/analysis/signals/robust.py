@@ -17,6 +17,8 @@ WIDEST = 4  # samples in a row: two pairs
 LONGEST_GROUP = 8  # samples in a group from first to last, including correct ones
 BESIDE = 3  # samples on either side for the motion of the signal; one of them may be wild
 PASSES = 4  # a group beside another is seen after that one is removed
+MEANS_OF_RECORD = 400  # a longer one is not resolved by its samples but by these
+BOUNDS_95 = (0.025, 0.975)  # quantiles, between which 95 % of all values lie
 MOST = 0.05  # of the samples: if there are more, they are the signal
 
 

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.friction.laws import Coulomb, LuGre, RateStateAgeing, RateStateSlip
 from stiction.friction.laws.rate_and_state.common import least_direct_effect
 from stiction.inference.fit import plan_for
@@ -35,7 +36,6 @@ RATE_AND_STATE = "rate and state"
 LUGRE = "LuGre"
 
 DRAWN = 400  # of the description's law, for the range of its coefficients
-TAILS = (0.025, 0.975)
 WIDER = 0.1  # by which the range is widened on either side: another law, other coefficients
 DIRECT = 0.01, 0.15  # direct effect a over the fall of the coefficient
 EVOLVING = 0.05, 0.5  # evolution effect b over it
@@ -116,7 +116,7 @@ def levels(rig: Rig) -> Levels:
         law: Any = slider.law
         at_rest = max(law.coefficient(0.0), getattr(law, "mu_static", 0.0))
         found.append((at_rest, law.coefficient(fastest(rig.slider))))
-    (s_low, k_low), (s_high, k_high) = np.quantile(found, TAILS, axis=0)
+    (s_low, k_low), (s_high, k_high) = np.quantile(found, BOUNDS_95, axis=0)
     s_low, k_low, s_high, k_high = (
         s_low * (1.0 - WIDER), k_low * (1.0 - WIDER), s_high * (1.0 + WIDER), k_high * (1.0 + WIDER)
     )  # fmt: skip

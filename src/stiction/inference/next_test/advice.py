@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
+from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats, xr
 from stiction.inference.library import Plan
 from stiction.inference.next_test.further import AGAIN
@@ -28,7 +29,6 @@ from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
 
 RESAMPLED = 1000  # times, for the interval of a ratio
-TAILS = (0.025, 0.975)
 
 
 class Expected(NamedTuple):
@@ -98,7 +98,7 @@ def expectation(trial: Plan, test: str, truth: Floats, after: Floats, before: Fl
     count = len(before)
     drawn = np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), RESAMPLED)
     ratios = np.sqrt((drawn @ squares) / (drawn @ reference))
-    low, high = np.quantile(ratios, TAILS, axis=0)
+    low, high = np.quantile(ratios, BOUNDS_95, axis=0)
     width = np.sqrt(squares.mean(axis=0))
     ratio = width / np.sqrt(reference.mean(axis=0))
     errors = [

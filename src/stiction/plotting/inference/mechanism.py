@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, RED, style
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from stiction.inference.mechanism.odds import Odds
 
 LETTERS = 16  # in a line of a mechanism's name
-TAILS = (0.025, 0.975)
 LOOKS = (  # of the mechanisms' loadings: distinct without colour, too
     (BLUE, "-"), (RED, (0, (4, 1.5))), (GREEN, (0, (1, 1))), (ORANGE, (0, (5, 1.5, 1, 1.5))),
 )  # fmt: skip
@@ -88,7 +88,7 @@ def draw_loading(ax: Axes, odds: Odds) -> None:
         bends = 100.0 * its.bends[:, :parts]
         ax.plot(share, bends.mean(axis=0), color=color, linestyle=line, label=name)
         if i == odds.likeliest:
-            low, high = np.quantile(bends, TAILS, axis=0)
+            low, high = np.quantile(bends, BOUNDS_95, axis=0)
             ax.fill_between(share, low, high, color=color, alpha=0.2, linewidth=0.0)
     record = 100.0 * odds.bend[:parts]
     ax.plot(share, record, "o-", color=BLACK, markersize=2.0, linewidth=0.5, label="this record")

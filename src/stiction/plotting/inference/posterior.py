@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
+from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import xr
 from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
@@ -84,7 +85,7 @@ def draw_parameter(ax: Axes, after: xr.DataArray, before: xr.DataArray, identifi
     ax.stairs(wide, bins, facecolor=PALE, edgecolor=GREY, label="prior", **look)
     ax.stairs(sharp, fine, facecolor=(BLUE, 0.55), edgecolor=BLUE, label="posterior", **look)
     if identified:
-        for edge in np.quantile(posterior, [0.025, 0.975]):
+        for edge in np.quantile(posterior, BOUNDS_95):
             ax.axvline(edge, color=BLUE, linewidth=0.8, linestyle=(0, (4, 2)))
     else:
         ax.set_title("not identifiable", color=GREY)
@@ -249,7 +250,7 @@ def plot_ranks(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.objec
     from scipy.stats import binom  # type: ignore[attr-defined]
 
     names = [*fit.data.data_vars]
-    low, high = binom.ppf([0.025, 0.975], len(fit.ranks), 1.0 / RANK_BINS)
+    low, high = binom.ppf(BOUNDS_95, len(fit.ranks), 1.0 / RANK_BINS)
     with style():
         panels = panels_of(axes, len(names), 1.3)
         for ax, name, ranks in zip(panels, names, fit.ranks.T, strict=True):

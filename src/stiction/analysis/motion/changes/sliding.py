@@ -11,12 +11,11 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import part_means, part_starts
+from stiction.analysis.signals.robust import MEANS_OF_RECORD, part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats
 from stiction.recording.noise import seeming_motion
 
-PARTS = 400  # means of a record: a longer one is not resolved by its samples but by these
 UNLOADED = 0.05  # of the largest mean: a force that stays below is that of no load
 # The level is that of the shortest interval with so many of the loaded means; with all of them at
 # one level, in normal noise, it is as wide as 0.51 standard deviations, with fewer wider
@@ -52,8 +51,8 @@ def sliding(record: Record) -> Sliding:
     """
     begin, end = _moving(record)
     force = without_spikes(record.force) / record.relative_load()
-    means = part_means(np.where(np.isfinite(force), force, 0.0), PARTS)
-    starts = np.append(part_starts(len(force), PARTS), len(force))
+    means = part_means(np.where(np.isfinite(force), force, 0.0), MEANS_OF_RECORD)
+    starts = np.append(part_starts(len(force), MEANS_OF_RECORD), len(force))
     first, last, falls = (int(starts[at]) for at in _about_level(means))
     if max(first, begin) >= min(last, end):
         return Sliding(begin, end, end)
