@@ -242,11 +242,9 @@ def gather(
     return parts
 
 
-def choose(
-    table: dict[str, Any], key: str, known: Mapping[str, type[Any]], default: str | None = None
-) -> Any:
+def choose(table: dict[str, Any], key: str, known: Mapping[str, type[Any]]) -> Any:
     """Make the law or drive that ``table[key]`` names from the rest of the table."""
-    name = table.pop(key, default)
+    name = table.pop(key, None)
     if not isinstance(name, str) or name not in known:
         listed = f"missing; known: {', '.join(known)}"
         message = listed if name is None else unknown_name(key, str(name), known)

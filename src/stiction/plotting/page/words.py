@@ -181,16 +181,22 @@ def plain(value: float, digits: int = DIGITS) -> str:
     return rf"${mantissa}\times 10^{{{int(power)}}}$"
 
 
+OUTCOME_WIDTH = 38  # characters of a line
 MEAN_MOTION = "too few samples for such short slips: the line of the slip speed is the mean motion"
 
 
-def outcome_in_words(run: Trajectory, width: int = 38) -> list[str]:
-    """Return how the run ended, in lines of at most `width` characters, and how it stuck."""
+def outcome_in_words(run: Trajectory) -> list[str]:
+    """Return how the run ended, in lines that fit a panel, and how it stuck."""
     times = run.samples["time"]
     lasted, stuck = float(times[-1] - times[0]), run.stick_intervals
     share = stuck_share(float(times[0]), float(times[-1]), stuck) if lasted > 0 else 0.0
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {percent(share, 3)} of the time"
     simulated = f"{in_words(lasted, 's')} simulated"
     none = "no true rest: the law has a state" if states(run.slider.law) else "no stick"
-    beats = wrap(MEAN_MOTION, width) if is_undersampled(run) else []
-    return [*wrap(run.status.value, width), simulated, count if len(stuck) else none, *beats]
+    beats = wrap(MEAN_MOTION, OUTCOME_WIDTH) if is_undersampled(run) else []
+    return [
+        *wrap(run.status.value, OUTCOME_WIDTH),
+        simulated,
+        count if len(stuck) else none,
+        *beats,
+    ]

@@ -163,12 +163,14 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
     >>> axes = st.plotting.plot_map(st.map("phi.zarr"))
     """
     view = in_order(found.view)
-    draw = {1: _curves, 2: _maps}[len(found.dims)]
     names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
-    if len(found.dims) == 1 and len({*names} - {"run.duration"}) > 1:
-        draw, view = _points, found.view
     with style():
-        panels = draw(view, found.measures, axes)
+        if len(found.dims) == 2:
+            panels = _maps(view, found.measures, axes)
+        elif len({*names} - {"run.duration"}) > 1:
+            panels = _points(found.view, axes)
+        else:
+            panels = _curves(view, found.measures, axes)
         if view.at:
             panels[0].set_title(cut(view), loc="left")
         return np.array(panels, dtype=object)
@@ -266,7 +268,7 @@ def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
     return list(panels)
 
 
-def _points(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
+def _points(view: View, axes: Any) -> list[Axes]:
     """Draw samples in the damping diagram, if their position in it is known."""
     (dim,) = view.data["status"].dims
     known = view.study.coordinates

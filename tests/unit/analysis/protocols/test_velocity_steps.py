@@ -248,4 +248,7 @@ def test_a_fit_beside_slip_that_runs_away_ends(number):
     mu = MU + (a - b) * log(ratio) + curve + off[0]
     after = mu[int(0.8 * len(mu)) :].mean()
     found = invert(StepData(0.0, rig, slip, mu, MU + off[1], after, 0.0), law)
-    assert np.isnan(found.D_c) or abs(found.D_c / D_c - 1.0) < 1.0
+    if number in (36, 37):
+        assert np.isnan(found.D_c)  # nothing is determined: it misses the samples, or is uncertain
+    else:
+        assert found.D_c == pytest.approx(D_c, rel=0.06)  # up to 2.4 of its errors
