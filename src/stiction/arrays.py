@@ -1,4 +1,4 @@
-"""Arrays of numbers, as annotations name them, and xarray, imported at its first use."""
+"""Arrays of numbers, as annotations name them, a least divisor, and xarray, imported when used."""
 
 from __future__ import annotations
 
@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Complex", "Floats", "Indices", "xr"]
+__all__ = ["TINY", "Complex", "Floats", "Indices", "xr"]
+
+TINY = 1e-300  # nothing beside any quantity in SI, and more than 0: of a divisor, or in a logarithm
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from stiction import theory
+from stiction.analysis.measured_line import STEPS
 from stiction.analysis.motion.rest import sticks_until, stuck_until
 from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import rate_spectrogram
-from stiction.arrays import Floats, xr
+from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -19,7 +20,6 @@ from stiction.trajectory import Trajectory
 Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name
 
 WIDTH = 50.0  # transverse periods in a window
-STEPS = 5  # windows that overlap at any time
 LOWEST = 0.15  # of omega_y: the frequency falls no lower before it dies away
 HIGHEST = 1.2
 SELDOM = 0.05  # of the time: a line that is seen no longer may be chance
@@ -228,7 +228,7 @@ def _in_windows(run: Trajectory, middle: Floats, width: float) -> tuple[Floats, 
     range_y = np.maximum.reduceat(v_y, pairs)[::2] - np.minimum.reduceat(v_y, pairs)[::2]
     across = np.abs(slider.along_axes(mean("drive_X"), mean("drive_Y"))[1])
     holds = slider.F_0 * mean("normal_load") / slider.normal_load
-    cosine = np.clip(np.abs(mean("spring_x")) / np.maximum(holds, 1e-300), 0.0, 1.0)
+    cosine = np.clip(np.abs(mean("spring_x")) / np.maximum(holds, TINY), 0.0, 1.0)
     m = slider.masses[1]  # the oscillation is across, on the stiff spring
     expected = theory.oscillation_frequency(np.arccos(cosine), slider.k_x, slider.k_y, m)
     return 0.5 * range_y, across, expected

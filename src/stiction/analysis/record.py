@@ -22,7 +22,7 @@ from stiction.recording.request import SignedForce
 from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
-from stiction.system.springs import ROUND
+from stiction.system.tensors import ROUND
 from stiction.text.samples import as_numbers, samples_to_si, unit_on
 from stiction.text.units import (
     FORCE,

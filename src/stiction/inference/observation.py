@@ -23,7 +23,7 @@ from stiction.inference.features import (
     features,
     find_cycles,
 )
-from stiction.recording.noise import ROUNDED, white_noise
+from stiction.recording.noise import ROUNDING_SPREAD, white_noise
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
@@ -248,7 +248,11 @@ def record_from(source: Source) -> Record:
 def noise_of(record: Record, channel: str, values: Floats) -> Noise:
     """Return the noise of a channel, as its sensor states it or as its samples show it."""
     sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
-    level = 0.0 if sensor is None else float(np.hypot(sensor.noise, ROUNDED * sensor.quantisation))
+    level = (
+        0.0
+        if sensor is None
+        else float(np.hypot(sensor.noise, ROUNDING_SPREAD * sensor.quantisation))
+    )
     level = level or white_noise(values)
     if sensor is None:
         return Noise(level)

@@ -34,7 +34,7 @@ from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory, load
 
 SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
-RATE = 25  # frames a second
+FRAME_RATE = 25  # frames a second
 LENGTH, LONGEST_FILM = 10.0, 300.0  # s of film
 PERIODS = 4  # of the fast oscillation under the microscope
 FINE = 2_000  # samples of these
@@ -139,17 +139,17 @@ def animate(
     """
     found = run if isinstance(run, Trajectory) else load(run, trust=trust)
     lasts = read_arguments(Screening, length=length).length
-    if not 1.0 / RATE <= lasts <= LONGEST_FILM:
+    if not 1.0 / FRAME_RATE <= lasts <= LONGEST_FILM:
         raise ResultError(
-            f"length must lie between {1 / RATE:g} s and {LONGEST_FILM:g} s, is {lasts:g} s"
+            f"length must lie between {1 / FRAME_RATE:g} s and {LONGEST_FILM:g} s, is {lasts:g} s"
         )
     if kind not in KINDS:
         raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {echo(kind)}")
     start, end = window_of(found.description, window)
     middle = None if at is None else time_in(found.description, at)
-    times = np.linspace(start, end, ceil(lasts * RATE))
+    times = np.linspace(start, end, ceil(lasts * FRAME_RATE))
     frames = draw(found.description, times, middle, lasts)
-    return Film(encode(_count(frames, len(times), progress), RATE, kind), kind)
+    return Film(encode(_count(frames, len(times), progress), FRAME_RATE, kind), kind)
 
 
 def _count(

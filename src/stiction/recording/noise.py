@@ -17,7 +17,7 @@ REPEATED = 4  # samples for each of them, on average
 LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
-ROUNDED = 12.0**-0.5  # of a step: standard deviation of the rounding to it
+ROUNDING_SPREAD = 12.0**-0.5  # of a step: standard deviation of the rounding to it
 HIDDEN = 1 / 3  # of a step of rounding: noise that does not average it away
 
 
@@ -57,7 +57,7 @@ def resolved_noise(values: Floats, step: float) -> float:
     A quantisation of step q adds q^2/12 to the variance (B. Widrow & I. Kollar, Quantization Noise,
     Cambridge 2008, chapter 4). Noise below a third of a step is not resolved.
     """
-    left = white_noise(values, step) ** 2 - (ROUNDED * step) ** 2
+    left = white_noise(values, step) ** 2 - (ROUNDING_SPREAD * step) ** 2
     return sqrt(left) if left > (HIDDEN * step) ** 2 else 0.0
 
 
@@ -74,7 +74,7 @@ def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> flo
 
 def rounding_error(values: Floats, step: float) -> float:
     """Return the standard deviation of the rounding to a step that noise does not average away."""
-    return ROUNDED * step * dither_remainder(values, step) if step else 0.0
+    return ROUNDING_SPREAD * step * dither_remainder(values, step) if step else 0.0
 
 
 def dither_remainder(values: Floats, step: float) -> float:

@@ -19,7 +19,7 @@ from stiction.system.slider import Slider
 ROUNDING = 1e-15
 LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
 LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
-TINY = float(np.finfo(np.float64).tiny)
+LEAST_FLOAT = float(np.finfo(np.float64).tiny)
 FACTOR = 0.8  # of (M39): measured by python -m benchmarks --only calibration
 
 
@@ -114,7 +114,7 @@ def accuracy(
         weakening = steepest_weakening(law, speed) * load
         rounding = ROUNDING * free / (1.0 + weakening / sqrt(k * system.mass)) / local
     speed = speed / (1.0 + weakening**2 / (k * system.mass))
-    speed = max(speed, rounding, LEAST_SPEED * elastic, TINY)
+    speed = max(speed, rounding, LEAST_SPEED * elastic, LEAST_FLOAT)
     # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
     newton = min(0.2, 100.0 * sqrt(local)) * local
     rate = fastest_swing(stretch.problem)

@@ -29,8 +29,8 @@ from stiction.friction import Anisotropic, Law, has_state, read_law, registered_
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law, sound
 from stiction.names import picture, warn_renamed
-from stiction.system.springs import ROUND, Springs, read_springs, whole
-from stiction.system.tensors import solver_axes
+from stiction.system.springs import Springs, read_springs, whole
+from stiction.system.tensors import ROUND, solver_axes
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_toml, toml_text

@@ -18,14 +18,13 @@ from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
 
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.system.tensors import principal
+from stiction.system.tensors import ROUND, principal
 from stiction.text.paths import slug
 from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import Angle, Kind, Mass, Read, fault, reader, to_si
 from stiction.text.validation import faulty, make, validate
 
 LETTER = r"[^\W\d_]"
-ROUND = 1e-12  # of a compliance, or rad: less is rounding
 STIFFNESSES, COMPLIANCES = ("k_x", "k_y"), ("compliance_x", "compliance_y")
 SINGULAR = 1e-15  # of the larger compliance: a smaller one is lost beside it
 

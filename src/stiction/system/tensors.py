@@ -14,7 +14,7 @@ from stiction.friction import ellipse
 if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
-ROUND = 1e-12  # rad: less is rounding
+ROUND = 1e-12  # of a compliance, or rad: less is rounding
 
 
 def mass_tensor(slider: Slider) -> Floats:

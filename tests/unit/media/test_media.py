@@ -12,6 +12,7 @@ import stiction as st
 from stiction.cli import main
 from stiction.media.encoder import as_gif
 from stiction.media.film import (
+    FRAME_RATE,
     NAMES,
     draw,
     fine_times,
@@ -22,7 +23,6 @@ from stiction.media.film import (
     series,
     slowness,
 )
-from stiction.media.film import RATE as FRAMES
 from stiction.media.scene import ROOM, Scene, magnification
 from stiction.media.sound import LOUD, RATE, audible_speed
 from stiction.plotting.page.style import BLUE, GREEN, ORANGE, RED
@@ -167,7 +167,7 @@ def test_a_film_has_its_frames(run, kind, tmp_path):
     path = film.save(tmp_path / f"a.{kind}")
     with av.open(str(path)) as file:
         frames = [frame.to_ndarray(format="rgb24") for frame in file.decode(video=0)]
-    count = round(0.2 * FRAMES)
+    count = round(0.2 * FRAME_RATE)
     assert len(frames) == (count if kind != "gif" else (count + 1) // 2)
     assert frames[0].shape == ((720, 1280, 3) if kind != "gif" else (360, 640, 3))
     assert f"base64,{'R0lG' if kind == 'gif' else ''}" in film._repr_html_()

@@ -19,7 +19,7 @@ ORDERED = -0.9  # rank correlation of size and number: each smaller than the las
 # Swings in such order, how many, and what is left of the first: by chance once in a thousand
 # records; fewer do where no swing follows for three periods, which is evidence by itself.
 MANY, LEFT = 8, 1 / 3
-FEW, LEFT_BEFORE_QUIET = 3, 1 / 2  # counted from the largest, if it is quiet for long after
+FEW_SWINGS, LEFT_BEFORE_QUIET = 3, 1 / 2  # counted from the largest, if it is quiet for long after
 QUIET = 3.0
 TWO, LEFT_OF_TWO = 2, 2 / 3  # of only two swings, if it is quiet for long after
 # Fewer swings, of any number from three, die out if each is smaller than the last by about the same
@@ -29,9 +29,9 @@ STEADILY = 0.3
 # Swings that build up: less than half the median, so many in succession (by chance once in a
 # thousand records where a quarter of all are so small)
 BELOW, BUILDING = 0.5, 5
-UNLOADED = 0.3  # of the largest force, below which a record begins with an unloaded spring
-QUARTER = 8  # medians in each quarter of a record: few enough to be free of noise
-PARTS = 4 * QUARTER
+BEGINS_UNLOADED = 0.3  # of the largest force, below which a record begins with an unloaded spring
+PER_QUARTER = 8  # medians in each quarter of a record: few enough to be free of noise
+PARTS = 4 * PER_QUARTER
 # A lone fall: its share of the record's time at most, and its height in standard deviations of the
 # noise, whose range over a million samples is 10
 BRIEF, STANDS_OUT = 1 / 16, 15.0
@@ -59,7 +59,7 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
         size = size[int(np.argmax(size)) :]
     if quiet and len(size) == TWO:
         return bool(size[-1] < LEFT_OF_TWO * size[0])
-    enough, left = (FEW, LEFT_BEFORE_QUIET) if quiet else (MANY, LEFT)
+    enough, left = (FEW_SWINGS, LEFT_BEFORE_QUIET) if quiet else (MANY, LEFT)
     if len(size) < enough:
         return _decays_steadily(size)
     return order(size) <= ORDERED and bool(size[-1] < left * size[0])
@@ -80,7 +80,7 @@ def is_over(period: Floats, rest: float) -> bool:
 
 def _decays_steadily(size: Floats) -> bool:
     """Return whether a few swings decay by about the same factor each."""
-    if len(size) < FEW or not size[-1] < LEFT * size[0]:
+    if len(size) < FEW_SWINGS or not size[-1] < LEFT * size[0]:
         return False
     factor = size[1:] / size[:-1]
     return bool(factor.max() < 1.0 and np.ptp(factor) < STEADILY)
@@ -200,9 +200,9 @@ def course(time: Floats, force: Floats) -> Course:
     return Course(
         change=float(f[-1] - f[0]),
         span=float(np.ptp(f)),
-        late_span=float(np.ptp(f[-QUARTER:])),
+        late_span=float(np.ptp(f[-PER_QUARTER:])),
         one_way=abs(float(f[-1] - f[0])) / ups_and_downs if ups_and_downs else 0.0,
-        early_rate=float((f[QUARTER] - f[0]) / (t[QUARTER] - t[0])),
-        late_rate=float((f[-1] - f[-1 - QUARTER]) / (t[-1] - t[-1 - QUARTER])),
+        early_rate=float((f[PER_QUARTER] - f[0]) / (t[PER_QUARTER] - t[0])),
+        late_rate=float((f[-1] - f[-1 - PER_QUARTER]) / (t[-1] - t[-1 - PER_QUARTER])),
         scatter=float(scatter),
     )

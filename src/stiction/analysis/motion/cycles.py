@@ -32,7 +32,7 @@ from stiction.trajectory import Trajectory
 FEWEST_CYCLES = 3  # cycles beside a ringing
 LINES = 4  # subtracted at most
 SAME = 0.01  # of a line's frequency: so far apart are two lines at least
-OWN = 10.0  # harmonics of the cycles below this can be lines as well; they make no cycles more
+OWN_HARMONICS = 10.0  # of the cycles: lower ones can be lines as well; they make no cycles more
 
 
 def find_cycles(source: Trajectory | Record) -> xr.Dataset:
@@ -216,7 +216,7 @@ def _without_line(record: Record, grid: EvenGrid, found: Swings) -> tuple[Record
             number = line.frequency * without.table.median("period")
             count, left = len(found.table), len(without.table)
             own = left < 2 * count <= 2 * left + 2 or is_subharmonic(line, without.table)
-            if number >= OWN or not own:
+            if number >= OWN_HARMONICS or not own:
                 return rest, without
         if record.slip_speed is None and lasts_through_loading(line, record.time, record.force):
             return rest, without

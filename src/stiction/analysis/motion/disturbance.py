@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.analysis.motion.course import UNLOADED
+from stiction.analysis.motion.course import BEGINS_UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.rest import STICKING, rest_share
-from stiction.analysis.motion.vibration import COUPLED, OWN, irregularity
+from stiction.analysis.motion.vibration import COUPLED, OWN_PERIODS, irregularity
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
@@ -69,7 +69,7 @@ def _is_own(line: Line, record: Record) -> bool:
     if record.mass is None or record.stiffness is None:
         return False
     own = 2.0 * np.pi * (record.mass / record.stiffness) ** 0.5
-    return bool(COUPLED <= 1.0 / (line.frequency * own) <= OWN)
+    return bool(COUPLED <= 1.0 / (line.frequency * own) <= OWN_PERIODS)
 
 
 def is_subharmonic(line: Line, table: CycleTable) -> bool:
@@ -205,7 +205,7 @@ def _end_of_loading(time: Floats, force: Floats, least: float) -> int | None:
     means, times = (part_means(each, MEANS_OF_RECORD) for each in (force, time))
     means = means if means.max() >= -means.min() else -means
     rise = means - means[0]
-    if means[0] > UNLOADED * means.max() or not rise.max() > least:
+    if means[0] > BEGINS_UNLOADED * means.max() or not rise.max() > least:
         return None
     at = int(np.argmax(rise > LOADED * rise.max()))
     if at == 0 or at == len(means) - 1 or rise[at:].min() < 0.5 * rise[at]:

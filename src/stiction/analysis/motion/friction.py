@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.sliding import Sliding, sliding
-from stiction.analysis.motion.course import UNLOADED
+from stiction.analysis.motion.course import BEGINS_UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable, table_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
@@ -32,7 +32,7 @@ from stiction.analysis.signals.robust import (
     statistics,
 )
 from stiction.analysis.signals.turning_points import without_spikes
-from stiction.arrays import Floats, xr
+from stiction.arrays import TINY, Floats, xr
 from stiction.recording.noise import rounding_error, white_noise
 from stiction.text.quantity_text import percent
 
@@ -189,7 +189,7 @@ def _means(force: Floats) -> tuple[Floats, float]:
 def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
     """Return the index of the first maximum of a loading; or None and the reason."""
     highest = np.maximum.accumulate(forces)
-    if forces[0] > UNLOADED * highest[-1] or _is_within(forces):
+    if forces[0] > BEGINS_UNLOADED * highest[-1] or _is_within(forces):
         return None, "the record does not begin with an unloaded spring"
     fall = np.maximum(STANDS_OUT * noise, PEAK * (highest - forces[0]))
     risen = highest - forces[0] > 0.5 * (highest[-1] - forces[0])
@@ -207,10 +207,10 @@ def _is_within(forces: Floats) -> bool:
     A spring that is loaded from there, with an untared zero, leaves those forces for good.
     """
     largest = float(np.abs(forces).max())
-    if forces[0] >= -UNLOADED * largest:
+    if forces[0] >= -BEGINS_UNLOADED * largest:
         return False
     rise = forces - forces[0]
-    if rise.max() < UNLOADED * largest:
+    if rise.max() < BEGINS_UNLOADED * largest:
         return True
     return bool(rise[np.argmax(rise > 0.5 * rise.max()) :].min() <= 0.0)
 
@@ -221,7 +221,7 @@ def _break_away(force: Floats, forces: Floats, at: int, noise: float, load: Floa
     begin = max(0, first - 2 * size)
     near = without_spikes(force)[begin : first + 3 * size]
     rough = noise * size**0.5  # of a sample
-    wanted = (rough / max(SHARP * float(np.ptp(forces)), 1e-300)) ** 2
+    wanted = (rough / max(SHARP * float(np.ptp(forces)), TINY)) ** 2
     width = int(min(max(wanted, 1.0), size))
     smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
     error = float(np.hypot(rough / width**0.5, _peak_excess(smooth, width)))

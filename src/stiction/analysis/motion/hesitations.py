@@ -25,7 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import Floats, Indices
+from stiction.arrays import TINY, Floats, Indices
 
 HALF = 0.5  # of the swing: a larger fall is a cycle
 ABOUT_HALF = (0.4, 0.6)  # of the swing: without a fall between these, half divides them clearly
@@ -34,7 +34,7 @@ AROUND = 12  # neighbours on each side for comparison: amplitudes may grow or sh
 # Times as many as falls: so many reversals come with the falls and belong to them. Those below
 # LEAST do not count, as how many of them are seen depends on noise and samples.
 OFTEN = 1.1
-FEW = 5  # falls: whether fewer are alike is not known
+FEW_FALLS = 5  # falls: whether fewer are alike is not known
 # Falls spread evenly from half the swing to the whole of it have a standard deviation of 0.19 of
 # their mean; twice the standard error of that, 1/(2 n)^(1/2), is added.
 ALIKE = 0.23
@@ -164,7 +164,7 @@ def level(values: Floats, time: Floats) -> Floats:
     middle = np.clip(np.arange(last + 1), AWAY, last - AWAY)
     before, after = inner[middle] - inner[middle - AWAY], inner[middle + AWAY] - inner[middle]
     moves = np.minimum(np.abs(before), np.abs(after)) * (before * after > 0.0)
-    lasts = np.maximum(time[middle + AWAY] - time[middle - AWAY], np.finfo(float).tiny)
+    lasts = np.maximum(time[middle + AWAY] - time[middle - AWAY], TINY)
     rate = (before + after) / lasts
     # a peak and a trough together: swings may grow to both sides
     moves, rate = (0.5 * (each[1:] + each[:-1]) for each in (moves, rate))
@@ -201,13 +201,13 @@ def _below(values: Floats, share: float, most: float = np.inf) -> Hesitations:
 
 def _is_divided(values: Floats, most: float = np.inf) -> bool:
     """Return whether falls and reversals lie on either side of half the swing, none about it."""
-    least, most = (len(_below(values, share, most).kept) for share in ABOUT_HALF)
-    return least == most > 2 * FEW
+    few, many = (len(_below(values, share, most).kept) for share in ABOUT_HALF)
+    return few == many > 2 * FEW_FALLS
 
 
 def _alike(fall: Floats) -> bool:
     """Return whether falls are of one size."""
-    if len(fall) < FEW:
+    if len(fall) < FEW_FALLS:
         return False
     ratio = fall / typical(fall)
     spread = float(ratio.std() / ratio.mean())

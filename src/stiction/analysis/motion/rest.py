@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stiction.arrays import Floats, Indices
+from stiction.arrays import TINY, Floats, Indices
 from stiction.drive import Drive
 from stiction.text.quantity_text import MEASURABLE
 
@@ -16,7 +16,7 @@ ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them,
 # touches zero, by the root of that
 TOUCHES = 1e-3
 STILL = 0.1  # of the drive velocity: a mass that slips more slowly rests, or creeps
-LAST, AT_REST = 20, 1e-6  # part of a record, and of its largest slip speed
+LAST, COME_TO_REST = 20, 1e-6  # part of a record, and of its largest slip speed
 _GAINED = 2.0 / np.tan(ANGLES)
 _CYCLE = np.pi + 2.0 * ANGLES + _GAINED  # omega times the period
 RISES, RESTS = np.append(1.0 - np.pi / _CYCLE, 1.0), np.append(_GAINED / _CYCLE, 1.0)
@@ -92,7 +92,7 @@ def stick_shares(sticks: Floats, start: Floats, peak_time: Floats, period: Float
 def _crossing(time: Floats, speed: Floats, inside: Indices, outside: Indices) -> Floats:
     """Return when a speed passes `STILL` between samples below it and their neighbours above."""
     beyond = np.clip(outside, 0, len(time) - 1)
-    rise = np.maximum(speed[beyond] - speed[inside], 1e-300)
+    rise = np.maximum(speed[beyond] - speed[inside], TINY)
     share = np.clip((STILL - speed[inside]) / rise, 0.0, 1.0)
     return np.asarray(time[inside] + share * (time[beyond] - time[inside]))
 
@@ -101,7 +101,7 @@ def comes_to_rest(speed: Floats | None) -> bool:
     """Return whether a mass is known to rest in the last part of a record, from its slip speed."""
     if speed is None or not len(speed):
         return False
-    return bool(speed[-max(len(speed) // LAST, 1) :].max() <= AT_REST * speed.max())
+    return bool(speed[-max(len(speed) // LAST, 1) :].max() <= COME_TO_REST * speed.max())
 
 
 def stops_with_drive(drive: Drive, end: float, speed: Floats | None) -> bool:

@@ -14,7 +14,7 @@ from stiction.arrays import Floats
 # transverse spring swing as well, as friction that turns couples them. On one spring friction only
 # prolongs it
 COUPLED = 0.9
-OWN = 1.2  # times that period: up to there a vibration is that of the mass on its spring
+OWN_PERIODS = 1.2  # times that period: up to there a vibration is that of the mass on its spring
 # A vibration is irregular beyond either: the standard deviation of the periods over their mean,
 # which noise through a wide filter brings to 0.37 and more; and the span of the drops over their
 # median, a tenth left out at each end. Noise through any filter has 1.4 of it, as amplitudes of

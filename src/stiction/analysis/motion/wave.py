@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.arrays import Complex, Floats
+from stiction.arrays import TINY, Complex, Floats
 
 FEWEST_CYCLES, TURNS, PER_TURN = (
     16,
@@ -44,7 +44,7 @@ def regular_wave(table: CycleTable) -> SlowWave | None:
         _fit_sine(turned[part], _without_line(at[part], middle[part]))[0]
         for part in (slice(half), slice(half, None))
     )
-    alike = 2.0 * (first * last.conjugate()).real / (abs(first) ** 2 + abs(last) ** 2 + 1e-300)
+    alike = 2.0 * (first * last.conjugate()).real / (abs(first) ** 2 + abs(last) ** 2 + TINY)
     height = 2.0 * abs(whole)
     if explained < EXPLAINS or alike < ALIKE or height < WORTH * table.median("drop"):
         return None

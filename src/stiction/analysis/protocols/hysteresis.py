@@ -25,7 +25,7 @@ from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
-ROUNDED = 1e-9  # of a drive's travel: no way there and back
+NO_WAY = 1e-9  # of a drive's travel: no way there and back
 FEWEST_SAMPLES = 20  # samples of a loop: an ellipse through them has 1.6 % less area
 A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
 MOST = 1e6  # such times between two jumps
@@ -200,7 +200,7 @@ def _turns(way: _Way) -> list[_Turn]:
     time, X = way.time, way.X
     if not len(time):
         return []
-    least = max(way.stirs, way.noise, ROUNDED * float(np.ptp(X)))
+    least = max(way.stirs, way.noise, NO_WAY * float(np.ptp(X)))
     points, _ = taken_out(X, least)
     ways = np.flatnonzero(np.abs(np.diff(X[points])) > least)
     if not len(ways):
@@ -239,7 +239,7 @@ def _stirs(drive: ConstantVelocity | DriveProgram, time: Floats) -> float:
         return 0.0
     if not np.ptp(without_harmonics(drive).travel(0.0, time)[0]) > 0.0:
         return 0.0  # the harmonic is the test
-    return abs(float(drive.along.amplitude)) / (pi * float(drive.along.frequency)) * (1.0 + ROUNDED)
+    return abs(float(drive.along.amplitude)) / (pi * float(drive.along.frequency)) * (1.0 + NO_WAY)
 
 
 def _loop(test: FrictionTest, way: _Way, first: _Turn, middle: _Turn, second: _Turn) -> Loop | None:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.protocols.spring_slider import Law, SpringSlider, friction_after_a_step
-from stiction.arrays import Floats
+from stiction.arrays import TINY, Floats
 
 PARAMETERS = 4  # level before the step, a, D_c, a - b
 FEWEST = 8  # samples of a fit
@@ -246,7 +246,7 @@ def _with_errors(
 ) -> tuple[float, float, float, tuple[float, ...]]:
     """Return a, D_c, b, and the standard errors of a, b, D_c."""
     a, D = exp(at[1]), exp(at[2])
-    scale = np.linalg.norm(slopes, axis=0).clip(1e-300)
+    scale = np.linalg.norm(slopes, axis=0).clip(TINY)
     _, sizes, rows = np.linalg.svd(slopes / scale, full_matrices=False)
     part = rows.T / np.maximum(sizes, 1e-150) / scale[:, None]
     parts = a * part[1], a * part[1] - part[3], D * part[2]

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.robust import inner_product, median
-from stiction.arrays import Complex, Floats
+from stiction.arrays import TINY, Complex, Floats
 
 PERIODS = 16  # of a line that a record has at least
 ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of 2^30 samples
@@ -107,7 +107,7 @@ def _measure_line(
     turn = np.exp(2j * np.pi * cycles * np.arange(len(even)))
     for _ in range(2):  # as it wanders
         phase = _envelope(quick * turn.conj(), cycles)
-        turn *= phase / np.maximum(np.abs(phase), 1e-300)
+        turn *= phase / np.maximum(np.abs(phase), TINY)
     values = np.zeros(len(grid.time))
     turned = np.unwrap(np.angle(turn))
     for k in range(1, HARMONICS + 1):
@@ -222,7 +222,7 @@ def _peaks(power: Floats, floor: Floats, above: float) -> list[int]:
         low, high, own = int(at / 1.5), int(at * 1.5) + 1, _lobe(at)
         others = max(power[low : own.start].max(), power[own.stop : high].max(initial=0.0))
         if power[at] > above * others:
-            alone[at] = power[at] / max(others, 1e-300)
+            alone[at] = power[at] / max(others, TINY)
     return sorted(alone, key=lambda at: -alone[at])[:4]
 
 

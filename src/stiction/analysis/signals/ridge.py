@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.arrays import Floats, Indices, xr
+from stiction.arrays import TINY, Floats, Indices, xr
 from stiction.errors import ResultError
 
 # Amplitudes of noise are Rayleigh-distributed: 1 in 500 windows of 1000 lines has one that is
@@ -99,7 +99,7 @@ def _surroundings(level: Floats, lines: Floats, path: Indices) -> Floats:
     halves = slice(BESIDE + 1), slice(BESIDE, None)
     low, high = (np.median(around[half], axis=0) for half in halves)
     left, right = (np.median(octave[half], axis=0) for half in halves)
-    share = (np.log(lines[path]) - left) / np.maximum(right - left, np.finfo(float).tiny)
+    share = (np.log(lines[path]) - left) / np.maximum(right - left, TINY)
     return np.asarray(low + np.where(right > left, share, 0.5) * (high - low))
 
 

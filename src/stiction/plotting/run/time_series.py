@@ -17,7 +17,7 @@ from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.reversals import standing_out, taken_out
 from stiction.analysis.signals.turning_points import FINE, as_counts
 from stiction.analysis.slip import Slip, averaged_slip
-from stiction.arrays import Floats, Indices
+from stiction.arrays import TINY, Floats, Indices
 from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.text.quantity_text import metric_prefix, percent
@@ -230,7 +230,7 @@ def _smooth(values: Floats, starts: Indices, period: float) -> tuple[Floats, ...
         np.convolve(np.add.reduceat(each, starts), weight)[len(weight) // 2 :][: len(starts)]
         for each in (np.where(known, values, 0.0), known.astype(np.float64))
     )
-    return low, high, total / np.maximum(count, 1e-300)
+    return low, high, total / np.maximum(count, TINY)
 
 
 def _extremes(values: Floats, starts: Indices, half: int, extreme: np.ufunc, none: float) -> Floats:

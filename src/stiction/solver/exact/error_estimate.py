@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from math import inf, sqrt
 
+from stiction.arrays import TINY
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep, products
@@ -120,7 +121,7 @@ def error_at(
     n = flow(problem, frame.surface, w_in)
     error_p = dp - h * (a_1 - f * n.n_1) + rest_over
     stiffness = p_in + weight * h * abs(a_1 + f * n.dtau)
-    error_w = (p_in * dw - h * (a_2 - w_in * a_1 - f * n.tau)) / (stiffness + 1e-300)
+    error_w = (p_in * dw - h * (a_2 - w_in * a_1 - f * n.tau)) / (stiffness + TINY)
     error_q = w_in * error_p + p_in * error_w
     e_x, e_y, size = frame.e_x, frame.e_y, p_in * stretch
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t + dt))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from stiction.arrays import TINY
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep, factors, stage
@@ -69,7 +70,7 @@ def solve(
             h -= dp[2]
             s = swing(o, h, landing)
             p = (p[0] - dp[0], p[1] - dp[1], 0.0)
-            size = abs(dp[2]) / (abs(h) + 1e-300)
+            size = abs(dp[2]) / (abs(h) + TINY)
         else:
             p = (p[0] - dp[0], p[1] - dp[1], p[2] - dp[2])
             size = abs(dp[2]) / (speed + abs(p[2]))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from math import asinh, cosh, exp, hypot, inf, log, sinh, sqrt
 from typing import NamedTuple
 
+from stiction.arrays import TINY
 from stiction.solver.compilation.jit import inlined
 
 SMALL = 0.2  # below, the series are exact to the last digit; above, differences of exponentials
@@ -87,7 +88,7 @@ def damped_rise(q: float, rise: float, share: float) -> float:
     """
     if rise < GENTLE:
         return q + rise
-    most = min(q + rise / max(1.0 - share, 1e-300), LARGEST)
+    most = min(q + rise / max(1.0 - share, TINY), LARGEST)
     if share > 0.0:
         # sinh q' = sinh q + cosh q rise/share, for large values too
         x = rise / share

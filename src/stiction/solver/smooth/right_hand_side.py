@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import sqrt
 from typing import NamedTuple
 
+from stiction.arrays import TINY
 from stiction.friction.law import Vector
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
@@ -187,7 +188,7 @@ def inertia_share(
     inertia = a * (xx * s[0] + 2.0 * xy * s[1] + yy * s[2])
     inertia *= 1.0 + h * (system.c_x * xx + system.c_y * yy) * system.per_mass
     friction = h * (xx * f[0] + 2.0 * xy * f[1] + yy * f[2])
-    return inertia / (inertia + max(friction, 0.0) + 1e-300)
+    return inertia / (inertia + max(friction, 0.0) + TINY)
 
 
 @inlined

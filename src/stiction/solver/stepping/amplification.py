@@ -11,7 +11,7 @@ from math import inf
 
 import numpy as np
 
-from stiction.arrays import Complex, Floats
+from stiction.arrays import TINY, Complex, Floats
 from stiction.solver.compilation.jit import piece
 from stiction.solver.compilation.stand_in import called_from_both
 from stiction.solver.problem import Problem, cross_damping
@@ -23,7 +23,6 @@ DOUBLINGS = 100
 DAMPED = 7200.0  # |R(iy)| = 1 - y^6/7200 + ... of Radau IIA
 SHARE = 0.1  # of the growth that the method may damp
 RESOLVED = 1.0  # h |lambda|, at most
-TINY = 1e-300  # of a row of zeros
 HIDDEN = 1e-8  # of the slowest mode's 1/(1 - h lambda): less is rounding
 
 

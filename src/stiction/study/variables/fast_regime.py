@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.course import QUARTER, built_up, dies_out, is_over
+from stiction.analysis.motion.course import PER_QUARTER, built_up, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.vibration import FastOscillation, irregularity
@@ -162,9 +162,9 @@ def by_course(found: Features, duration: float, drive: float, stops: bool) -> st
     """Return the kind of a force without cycles, by the rules of `analysis.motion.regime`."""
     f = found.means.tolist()
     span, change = max(f) - min(f), f[-1] - f[0]
-    quarter = QUARTER * duration / PARTS
-    early, late = (f[QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - QUARTER]) / quarter
-    if span > 0.0 and max(f[-QUARTER:]) - min(f[-QUARTER:]) <= force_course.SETTLED * span:
+    quarter = PER_QUARTER * duration / PARTS
+    early, late = (f[PER_QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - PER_QUARTER]) / quarter
+    if span > 0.0 and max(f[-PER_QUARTER:]) - min(f[-PER_QUARTER:]) <= force_course.SETTLED * span:
         return kinds.SETTLING
     if stops:
         return kinds.SETTLING

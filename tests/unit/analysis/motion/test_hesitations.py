@@ -5,7 +5,7 @@ import pytest
 from tests.drawn import inside
 
 from stiction.analysis.motion import hesitations
-from stiction.analysis.motion.hesitations import ALIKE, AROUND, FEW, LEAST, OFTEN
+from stiction.analysis.motion.hesitations import ALIKE, AROUND, FEW_FALLS, LEAST, OFTEN
 
 SIZES = [np.array(each) for each in inside(3, *[(0.1, 1.0)] * 40)]
 
@@ -111,8 +111,8 @@ def test_falls_of_one_size():
         falls = 1.0 + spread * ALIKE / (1 + (2 / 40) ** 0.5) * np.array([1.0, -1.0] * 20)
         # over what is typical of them, the larger ones
         assert hesitations._alike(falls) == alike
-    assert hesitations._alike(np.ones(FEW))
-    assert not hesitations._alike(np.ones(FEW - 1))
+    assert hesitations._alike(np.ones(FEW_FALLS))
+    assert not hesitations._alike(np.ones(FEW_FALLS - 1))
 
 
 def test_too_few_points_hold_no_hesitation():

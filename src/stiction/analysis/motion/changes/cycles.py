@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.course import ORDERED, order
-from stiction.arrays import Floats, xr
+from stiction.arrays import TINY, Floats, xr
 from stiction.drive.recorded.resolution import NORMAL_MEDIAN
 
 FEW_CYCLES = 4  # in each part
@@ -27,7 +27,7 @@ def parts_of(period: Floats) -> list[slice]:
 
     Each part differs from its neighbours by far more than its cycles do; a single part is none.
     """
-    size = np.log(np.maximum(period, 1e-300))
+    size = np.log(np.maximum(period, TINY))
     edges = [0, *_splits(size), len(size)]
     margins = [_margin(size, edges, k) for k in range(1, len(edges) - 1)]
     while margins and min(margins) < 0.0:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.changes.sliding import NO_LOAD
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import median, part_means, standard_error
 from stiction.arrays import Floats
@@ -20,7 +21,6 @@ MOST = 0.6
 # comes no farther than its root of their number
 WITHIN, EVEN, CHANGED = 5.0, 2.0, 12.0
 WORTH = 0.02  # of the force: a change that is less is not worth a level
-UNLOADED = 0.05  # of the largest level: a force that stays below is that of no load
 QUICK = 1.0  # of the shorter level: a change takes no longer
 
 
@@ -61,7 +61,7 @@ def levels(record: Record) -> list[Level]:
         (force, error), (mu, mu_error) = _mean(raw[run]), _mean(means[run] / load)
         ends = float(times[run.start] - half), float(times[run.stop - 1] + half)
         found.append(Level(*ends, force, error, mu, mu_error))
-    least = UNLOADED * max(abs(each.force) for each in found)
+    least = NO_LOAD * max(abs(each.force) for each in found)
     return [each for each in found if abs(each.force) > least]
 
 

@@ -16,7 +16,7 @@ from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats
 from stiction.recording.noise import seeming_motion
 
-UNLOADED = 0.05  # of the largest mean: a force that stays below is that of no load
+NO_LOAD = 0.05  # of the largest mean or level: a force that stays below is that of no load
 # The level is that of the shortest interval with so many of the loaded means; with all of them at
 # one level, in normal noise, it is as wide as 0.51 standard deviations, with fewer wider
 SHARE, WIDTH = 1 / 5, 0.51
@@ -101,7 +101,7 @@ def _is_passage(means: Floats, half: float) -> bool:
 
 def _level(means: Floats) -> tuple[float, float]:
     """Return the level about which most of the loaded means lie, and their standard deviation."""
-    loaded = np.sort(means[means > UNLOADED * means.max()])
+    loaded = np.sort(means[means > NO_LOAD * means.max()])
     if len(loaded) < 2:
         return 0.0, 0.0
     count = max(int(SHARE * len(loaded)), 2)

@@ -12,7 +12,7 @@ import numpy as np
 
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import spectrum
-from stiction.arrays import Floats
+from stiction.arrays import TINY, Floats
 
 PERIODS = 16  # of the vibration that a record has at least
 SUSPECTED = 5  # periods from which on a vibration is suspected, but not known
@@ -81,7 +81,7 @@ def highest_hump(time: Floats, force: Floats, periods: int = PERIODS) -> Hump:
     tried = np.geomspace(periods, last, 1 + int(PER_OCTAVE * np.log2(last / periods)))
     slow, begin, end = (np.rint(tried * by).astype(np.intp) for by in (1 / FAR, 1 / WIDE, WIDE))
     slower, hump, faster = (
-        np.maximum(below[b] - below[a], 1e-300) for a, b in ((slow, begin), (begin, end), (end, -1))
+        np.maximum(below[b] - below[a], TINY) for a, b in ((slow, begin), (begin, end), (end, -1))
     )
     height = np.minimum(hump / slower / OVER_SLOWER, hump / faster / OVER_FASTER)
     best = int(np.argmax(height))

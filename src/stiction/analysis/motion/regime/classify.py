@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.analysis.motion.changes.levels import levels
-from stiction.analysis.motion.changes.sliding import UNLOADED, sliding
+from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import BELOW, PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
@@ -28,7 +28,7 @@ from stiction.analysis.motion.vibration import (
     COUPLED,
     FAST_PERIODS,
     OSCILLATES,
-    OWN,
+    OWN_PERIODS,
     FastOscillation,
 )
 from stiction.analysis.record import Record, as_record
@@ -112,7 +112,7 @@ def _while_it_slides(record: Record, found: Swings) -> Regime:
     seen = by_course(until, found._replace(force=found.force[:last]))
     end = min(falls, len(record) - 1)
     before, later = (abs(float(np.median(part))) for part in np.split(record.force, [end]))
-    name = "unloaded" if later < UNLOADED * before else "turned"
+    name = "unloaded" if later < NO_LOAD * before else "turned"
     return seen._replace(evidence=seen.evidence | {name: float(record.time[end])})
 
 
@@ -159,7 +159,7 @@ def _or_hum(record: Record, period: float, differs: float, seen: Regime) -> Regi
     slip speed is known, or the mass swings with that period on its spring.
     """
     own = seen.evidence.get("natural_period", 0.0)
-    free = seen.kind in MAY_BE_HUM and not COUPLED <= own <= OWN
+    free = seen.kind in MAY_BE_HUM and not COUPLED <= own <= OWN_PERIODS
     if not free or record.slip_speed is not None:
         return seen
     for line in narrow_lines(even_grid(record.time), record.force):

@@ -29,7 +29,7 @@ from stiction.analysis.motion.wave import regular_wave
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
 from stiction.analysis.signals.robust import median
-from stiction.arrays import Floats
+from stiction.arrays import TINY, Floats
 
 ENOUGH = 8.0  # samples a cycle, which show its shape
 ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more
@@ -254,7 +254,7 @@ def _near_ends(record: Record, table: CycleTable) -> tuple[float, float]:
     time, force = record.time[inside], record.force[inside]
     low = np.interp(time, [start[0], *end], [table["start_force"][0], *table["trough"]])
     high = np.interp(time, peak, table["peak"])
-    place = (force - low) / np.maximum(high - low, 1e-300)
+    place = (force - low) / np.maximum(high - low, TINY)
     return float(np.mean(place < NEAR)), float(np.mean(place > 1.0 - NEAR))
 
 

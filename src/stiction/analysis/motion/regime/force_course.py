@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.analysis.motion.course import UNLOADED, course, final_fall, lone_fall
+from stiction.analysis.motion.course import BEGINS_UNLOADED, course, final_fall, lone_fall
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.regime.band import (
@@ -102,7 +102,7 @@ def by_course(record: Record, found: Swings) -> Regime:
     loading = way.late_rate / drive if drive else kept
     if loading >= LOADING:
         sure = way.one_way * min(loading, 1.0) * (1.0 - vibrates)
-        if not drive and abs(record.force[0]) > UNLOADED * largest_magnitude(record.force):
+        if not drive and abs(record.force[0]) > BEGINS_UNLOADED * largest_magnitude(record.force):
             return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
         return Regime(STUCK, sure, evidence)
     return Regime(UNDETERMINED, 0.0, evidence)
