@@ -42,7 +42,7 @@ from stiction.analysis.oscillation import (
 )
 from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
-from stiction.arrays import xr
+from stiction.arrays import TINY, xr
 from stiction.names import draw, warn_renamed
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
@@ -333,7 +333,7 @@ def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | 
 def _above(record: Record, cycles: xr.Dataset) -> float:
     """Return the frequency (Hz) above which an oscillation is sought."""
     fastest = cycles["period"].values.min() if cycles.sizes["cycle"] else record.duration / 10.0
-    return HARMONICS / max(float(fastest), 1e-300)
+    return HARMONICS / max(float(fastest), TINY)
 
 
 def _phases(run: Trajectory, curves: xr.Dataset, cycles: xr.Dataset) -> np.ndarray:

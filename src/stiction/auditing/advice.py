@@ -13,10 +13,9 @@ from stiction.auditing.simulated_test import (
     LEAST_WORK,
     SLIDES,
     SimulatedTest,
-    coarse_rate,
-    simulate_test,
+    simulate_coarsely,
 )
-from stiction.linear_stability import Critical, critical, growth_rate
+from stiction.linear_stability import Critical, critical
 from stiction.system.parameter import change_parameter, quantity, read, unit
 from stiction.system.slider import Slider
 from stiction.system.springs import COMPLIANCES
@@ -150,18 +149,8 @@ def lever(path: str) -> str:
 
 def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]:
     """Return growth rate and simulation of a changed slider."""
-    growth, prediction = growth_rate(slider), predict(slider)
-    rate = coarse_rate(prediction)
-    seen = simulate_test(
-        slider,
-        prediction,
-        growth,
-        sample_rate=rate,
-        multiscale="auto",
-        most_steps=most_steps,
-        progress=progress,
-    )
-    return {"growth": growth, "tried": seen}
+    seen = simulate_coarsely(slider, predict(slider), most_steps, progress, multiscale="auto")
+    return {"growth": seen.growth, "tried": seen}
 
 
 def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:

@@ -14,11 +14,9 @@ from stiction.auditing.progress import Progress, part, silent
 from stiction.auditing.simulated_test import (
     LEAST_WORK,
     SimulatedTest,
-    coarse_rate,
-    simulate_test,
+    simulate_coarsely,
 )
 from stiction.errors import DescriptionError
-from stiction.linear_stability import growth_rate
 from stiction.system.slider import Slider
 from stiction.system.springs import COMPLIANCES, STIFFNESSES, Spring, compliance, scale_stiffness
 
@@ -165,8 +163,4 @@ def replace_one(
     p = predict(other)
     if work < LEAST_WORK:
         return Replacement(spring, factor, other, p)
-    rate = coarse_rate(p)
-    seen = simulate_test(
-        other, p, growth_rate(other), sample_rate=rate, most_steps=work, progress=progress
-    )
-    return Replacement(spring, factor, other, p, seen)
+    return Replacement(spring, factor, other, p, simulate_coarsely(other, p, work, progress))

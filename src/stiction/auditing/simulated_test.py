@@ -21,7 +21,7 @@ from stiction.analysis.record import Record, record_of
 from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.auditing.progress import Progress, silent
-from stiction.linear_stability import Linearisation
+from stiction.linear_stability import Linearisation, growth_rate
 from stiction.simulation import simulate
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -191,6 +191,25 @@ def simulate_test(
         progress=progress,
     )
     return SimulatedTest(run, growth)
+
+
+def simulate_coarsely(
+    slider: Slider,
+    prediction: Prediction,
+    most_steps: int,
+    progress: Progress = silent,
+    multiscale: Literal["auto"] | None = None,
+) -> SimulatedTest:
+    """Simulate a friction test from rest, sampled for its slow motion only."""
+    return simulate_test(
+        slider,
+        prediction,
+        growth_rate(slider),
+        sample_rate=coarse_rate(prediction),
+        multiscale=multiscale,
+        most_steps=most_steps,
+        progress=progress,
+    )
 
 
 def from_sliding(

@@ -15,11 +15,10 @@ from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.auditing.prediction import predict
 from stiction.auditing.progress import Progress, silent
-from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, simulate_test
+from stiction.auditing.simulated_test import creep_before_slip, simulate_coarsely
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.priors import Rig
-from stiction.linear_stability import growth_rate
 from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider
@@ -116,8 +115,7 @@ def read(slider: Slider) -> Reading:
     """Return what a test from rest reads; NaN if it cannot be simulated to its end."""
     prediction = predict(slider)
     try:
-        rate, growth = coarse_rate(prediction), growth_rate(slider)
-        seen = simulate_test(slider, prediction, growth, sample_rate=rate, most_steps=MOST_STEPS)
+        seen = simulate_coarsely(slider, prediction, MOST_STEPS)
     except StictionError:
         return Reading(nan, nan, nan, prediction.amplitude)
     if not seen.run.status.ok:

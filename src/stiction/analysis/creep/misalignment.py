@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.creep.divergence import THEORY, fit_parameters, used_bins
-from stiction.arrays import Floats, xr
+from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 
 START = 0.02  # rad, of phi, and of the weakening
@@ -149,7 +149,7 @@ def _fit(
     )
     theory = creep(force, *found)
     off = np.abs(velocity - theory)
-    size = np.maximum(np.maximum(np.abs(velocity), np.abs(theory)), 1e-300)
+    size = np.maximum(np.maximum(np.abs(velocity), np.abs(theory)), TINY)
     return Misalignment(
         found[0],
         errors[0],

@@ -17,7 +17,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
-from stiction.arrays import Floats, xr
+from stiction.arrays import TINY, Floats, xr
 from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
 
@@ -230,7 +230,7 @@ def _unseen_ends(record: Record, cycles: xr.Dataset) -> tuple[float, float]:
     falls = cycles["trough_time"].values - cycles["peak_time"].values
     share = min(reach / float(np.median(cycles["drop"])), 0.25)
     hidden = 2.0 * float(np.arccos(1.0 - 2.0 * share)) / pi  # of a slip, at both ends
-    rate = max(float(np.median(cycles["stick_slope"])), 1e-300)
+    rate = max(float(np.median(cycles["stick_slope"])), TINY)
     return 1.0 / (1.0 - hidden), max(1.0 - reach / rate / float(np.median(falls)), 0.0)
 
 

@@ -110,7 +110,7 @@ def _describe_cycles(found: Analysis) -> str:
         return ""
     mean = found.summary["mean"]
     drop, period = (float(mean.sel(quantity=name)) for name in ("drop", "period"))
-    times = {1: "once", 2: "twice"}.get(count, f"{count} times")
+    times = {1: "once", 2: "twice"}.get(count, f"{count} times") + _after_first(found)
     every = f", every {_period(found.cycles, period)}" if count > 1 else ""
     share = _stick_share(found)
     plain = {
@@ -123,6 +123,14 @@ def _describe_cycles(found: Analysis) -> str:
         return ""
     falls = f"the force drops by {in_words(drop, 'N')}{_each_time(found)}."
     return f"{plain}; {falls}{_why_transverse(found)}{_slow_swing(found)}{_on_a_wave(found)}"
+
+
+def _after_first(found: Analysis) -> str:
+    """Return that cycles are counted from the end of a run's first slip, if it has one before."""
+    run = found.source
+    if not isinstance(run, Trajectory) or found.regime.kind != STICK_SLIP:
+        return ""
+    return " after the first slip" if found.friction.break_away is not None else ""
 
 
 def _period(cycles: xr.Dataset, mean: float) -> str:

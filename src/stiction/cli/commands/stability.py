@@ -59,8 +59,6 @@ def stability(
     from stiction.errors import StictionError
     from stiction.linear_stability.examination import OVER
     from stiction.linear_stability.examination import stability as examine
-    from stiction.plotting.page.canvas import figure_of
-    from stiction.plotting.page.save import drawable, write
 
     slider = slider_from(config, preset, changes(set), trust)
     paths, ranges = over or OVER, [tuple(map(number, each)) for each in between or []]
@@ -70,10 +68,15 @@ def stability(
             f"give --over once or twice, and --between as often or not at all, not {counts} times"
         )
     if output is not None:
+        from stiction.plotting.page.save import drawable
+
         drawable(output)
     found = examine(slider, paths, ranges or None)
     print_sections(str(config or preset), found.tables())
     if output is not None:
+        from stiction.plotting.page.canvas import figure_of
+        from stiction.plotting.page.save import write
+
         with progress("drawing"):
             written = write(figure_of(found.plot), output)
         say(f"wrote {written}")
