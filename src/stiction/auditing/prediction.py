@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, hypot, isfinite, nan, pi, sin, sqrt
+from math import atan2, cos, hypot, isfinite, nan, pi, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -122,7 +122,7 @@ def predict(slider: Slider) -> Prediction:
         peak / s.normal_load,
         mean / s.normal_load,
         drop,
-        drop / (s.k_x * V * cos(phi)) + 0.5 / f_x,
+        stick_slip_period(s, drop),
         float(theory.transverse_amplitude_bound(V, phi, 2.0 * pi * f_y)),
         SEEN * f_y,
     )
@@ -165,7 +165,7 @@ def _forces(slider: Slider, F_static: float, turn: float, fast: bool) -> tuple[f
         peak = F_static if phi == 0.0 else s.F_0 * cos(turn)
         drop, mean = stick_slip(s, peak, s.k_x, s.masses[0]) if fast else (nan, peak)
     if drop > 0.0:
-        return peak, mean, drop
+        return mean + 0.5 * drop, mean, drop  # it rises until the mass is as fast as the drive
     # friction does not fall below the spring's force: steady sliding follows
     steady = s.law.coefficient(hypot(*s.motion.rate(0.0))) * s.normal_load * cos(phi)
     return max(peak, steady) if fast else steady, steady, nan
@@ -192,20 +192,37 @@ def creep_distance(V: float, phi: float, l_x: float, t: float) -> float:
 def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tuple[float, float]:
     """Return the fall of the force in a slip from `peak`, and its mean in the slip (N).
 
-    This estimate takes the slip as half a free swing of the mass on a spring, s = v sin(tau), about
-    the mean friction along its path, F = (1/2) integral of F(v sin(tau)) sin(tau), and solves this
-    together with the fastest slip v = (peak - F)/sqrt(k m) + V. The slip ends as far below the mean
-    as it began above it.
+    This estimate takes the slip as a free swing of the mass on a spring about the mean friction F
+    along its path. It begins at rest with the force `peak`, so that the force swings by
+
+        A = sqrt[(peak - F)^2 + k m V^2]
+
+    to each side of F, and the mass has the speed V + (A/sqrt(k m)) sin(tau) from rest to rest. F
+    and A are found together. The fall is 2 A, or 2 (peak - F) below zero where there is none.
     """
-    V = hypot(*slider.motion.rate(0.0))
+    V, scale = hypot(*slider.motion.rate(0.0)), sqrt(stiffness * mass)
     coefficient, load = slider.law.coefficient, slider.normal_load
-    shares = np.sin((np.arange(HALF) + 0.5) * (pi / (2 * HALF)))  # the other half is alike
-    of_speed, weights = shares.tolist(), shares * (load * pi / (2.0 * HALF))
-    mean = 0.5 * peak
+    mean, swing = 0.5 * peak, 0.0
     for _ in range(60):  # damped by one half: steeply weakening friction would overshoot
-        v = max(peak - mean, 0.0) / sqrt(stiffness * mass) + V
-        before = mean
-        mean = 0.5 * (mean + float(np.dot([coefficient(v * share) for share in of_speed], weights)))
+        over = max(peak - mean, 0.0)
+        swing, early = hypot(over, scale * V), atan2(scale * V, over)
+        tau = (np.arange(HALF) + 0.5) * ((0.5 * pi + early) / HALF) - early  # its half: both alike
+        speed = np.maximum(V + swing / scale * np.sin(tau), 0.0)
+        before, share = mean, speed / speed.sum()
+        mean = 0.5 * (mean + load * float(np.dot([coefficient(v) for v in speed.tolist()], share)))
         if mean == before:
             break
-    return 2.0 * (peak - mean), mean
+    return 2.0 * (swing if peak > mean else peak - mean), mean
+
+
+def stick_slip_period(slider: Slider, drop: float) -> float:
+    """Return the time from slip to slip (s) if the force falls by `drop` (N) in each; NaN if not.
+
+    The mass rests while the drive loads the spring by 2 (peak - F), and swings for the rest of a
+    period of its own, from rest to rest as in `stick_slip`.
+    """
+    V, k = hypot(*slider.motion.rate(0.0)), slider.k_x
+    by_drive = V * sqrt(k * slider.masses[0])
+    over = sqrt(max((0.5 * drop) ** 2 - by_drive**2, 0.0)) if isfinite(drop) else nan
+    slip = (0.5 + atan2(by_drive, over) / pi) / slider.natural_frequency_x
+    return 2.0 * over / (k * V * cos(slider.misalignment)) + slip

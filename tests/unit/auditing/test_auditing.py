@@ -785,3 +785,24 @@ def test_a_test_lasts_until_the_softer_spring_has_settled():
 def test_a_run_that_ended_before_its_second_half_is_not_settled():
     run = st.simulate(PAPER, "10 ms", sample_rate=0)
     assert simulated_test.outcome(run) == simulated_test.UNSETTLED
+
+
+@pytest.mark.parametrize("quick", [0.01, 0.1, 1.0, 5.0])
+def test_what_the_theory_says_of_a_slip_is_exact_under_constant_friction(quick):
+    """The mass leaves rest beside a drive of any speed: at 5 the drop was a fifth of what it is."""
+    m, k, W = 0.5, 2e3, 10.0
+    V = quick * 0.1 * W / sqrt(k * m)  # V sqrt(k m) beside the peak less kinetic friction
+    slider = st.Slider(
+        mass=m, k_x=k, k_y=10.0 * k, phi="0 deg", normal_load=W,
+        friction=st.Coulomb(0.2, mu_static=0.3), drive=st.ConstantVelocity(V),
+    )  # fmt: skip
+    told = predict(slider)
+    run = st.simulate(slider, told.load_up + 6.0 * told.period, sample_rate=1000.0 * told.f_x)
+    cycles = st.analysis.find_cycles(run)
+    assert cycles.sizes["cycle"] >= 4
+    seen = cycles.median()
+    # parabolas through three of 1000 samples in each swing
+    assert told.drop == pytest.approx(float(seen["drop"]), rel=1e-4)
+    assert told.period == pytest.approx(float(seen["period"]), rel=1e-3)
+    assert told.mu_static * W == pytest.approx(float(seen["peak"]), rel=1e-4)
+    assert told.mu_kinetic == pytest.approx(0.2, rel=1e-9)
