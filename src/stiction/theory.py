@@ -139,7 +139,7 @@ def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
     delta, half = np.pi / 2 - theta, (theta - phi) / 2
     w = np.log1p(np.sin(delta / 2) / (np.cos(np.pi / 4 - phi / 2) * np.sin(half)))
     turned = (delta >= 0) & (half >= 0) & _applies(V, phi)
-    s = np.where(turned, _scaled_time(delta, w, phi), np.nan)
+    s = np.where(turned, np.where(delta == 0, 0.0, _scaled_time(delta, w, phi)), np.nan)
     return s * l_x / V
 
 

@@ -173,6 +173,7 @@ def test_the_end_of_creep_is_steady_sliding(degrees, s):
     assert theory.creep_force_angle(s, 1.0, phi, 1.0) == phi
     assert theory.creep_velocity(s, 1.0, phi, 1.0) == pytest.approx(1.0, rel=4 * EPS)
     assert theory.creep_time(phi, 1.0, phi, 1.0) == np.inf
+    assert theory.creep_time(0.5 * np.pi, 1.0, [phi, 0.5 * np.pi], 1.0).tolist() == [0.0, 0.0]
 
 
 def test_no_misalignment_is_ideal_stick_and_then_slip():
