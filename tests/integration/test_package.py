@@ -59,6 +59,18 @@ print(*sys.modules)
     assert {"xarray", "matplotlib", "pint", "pandas", "dask"}.isdisjoint(printed)
 
 
+def test_the_analysis_of_a_record_loads_no_solver():
+    """The compiler is a fifth of what it waits for; it simulates nothing."""
+    code = """
+import sys
+import numpy as np, stiction as st
+time = np.arange(2000) * 1e-2
+st.analyse(st.Record(time=time, force=1.0 + time % 0.5, normal_load=5.0, mass=0.1))
+print(*sys.modules)
+"""
+    assert {"numba", "llvmlite", "stiction.solver.exact"}.isdisjoint(run_python(code).split())
+
+
 def test_a_command_does_not_search_for_garbage_while_it_loads_nor_when_it_ends():
     """Python would search all modules several times, for a fifth of the time of a short command."""
     code = """
