@@ -1,5 +1,6 @@
 """The explorer's page in a real browser: Debian's Chromium, driven by Playwright."""
 
+import json
 import math
 import os
 import re
@@ -11,6 +12,7 @@ from tests.waiting import PATIENCE, until
 
 import stiction as st
 from stiction.explorer.answers import tables_of
+from stiction.explorer.form import form
 from stiction.explorer.source import open_sources
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
@@ -137,6 +139,54 @@ def test_a_slider_moves_the_curves_and_can_be_undone(page):
     page.done_after(lambda: page.tab.click("#redo"))
     page.done_after(lambda: page.tab.click("#reset"))
     assert page.number("u_x at the end") == before
+
+
+def test_the_ends_of_each_slider_are_values_that_are_taken(page):
+    """Scales were made before the server's values had come, for 0: Home gave -1000 kg."""
+    paths = (
+        "[...document.querySelectorAll('[data-slider]')].filter((each) => each.checkVisibility())"
+    )
+    page.done_after(lambda: page.tab.select_option("#law", "stribeck"))
+    found = page.value(f"{paths}.map((each) => each.dataset.slider)")
+    assert "slider.mass" in found
+    assert "friction.v_s" in found
+    for path in found:
+        slider = page.row(path).locator("input[type=range]")
+        text = page.row(path).locator("input[type=text]")
+        first = text.input_value()
+        for end in ("Home", "End"):
+            page.done_after(lambda slider=slider, end=end: slider.press(end))
+            assert page.row(path).locator(".fault").inner_text() == "", (path, end)
+        text.fill(first)
+        page.done_after(lambda text=text: text.press("Enter"))
+    slider = page.row("slider.mass").locator("input[type=range]")
+    page.done_after(lambda: slider.press("Home"))
+    assert page.row("slider.mass").locator("input[type=text]").input_value() == "1 g"
+
+
+def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(page):
+    """Also where a parameter has no value yet, or 0."""
+    made, known = form(), []
+    for part in (made["tables"], made["laws"], made["pieces"]["drive"], made["pieces"]["load"]):
+        for each in part.values():
+            known += each.get("fields", []) if isinstance(each, dict) else each
+    known = [each for each in known if each["kind"] == "number"]
+    assert len(known) > 90
+    ends = page.value(
+        module(
+            "scale.js",
+            """({ scaleOf }) => FIELDS.map((field) => [0, 2e-3, 1, 3e4].map((base) => {
+          const scale = scaleOf(field, base);
+          return [scale.value(0), scale.value(1000), scale.place(base)];
+        }))""".replace("FIELDS", json.dumps(known)),
+        )
+    )
+    for field, scales in zip(known, ends, strict=True):
+        low, high = field.get("low", -math.inf), field.get("high", math.inf)
+        for first, last, place in scales:
+            assert low <= first < last <= high * (1 + 1e-9), field
+            assert field.get("low_allowed", True) or first > low, field
+            assert math.isfinite(place), field
 
 
 def test_dampers_with_axes_of_their_own_are_drawn(page):

@@ -293,7 +293,12 @@ def _not_below_one(value: float) -> float:
 Angle = Annotated[Read[float], reader("an angle", "rad", "1 deg"), PlainSerializer(angle_text)]
 Coefficient = Annotated[Read[float], reader("a number", "", "0.20"), Field(ge=0)]
 Number = Annotated[Read[float], reader("a number", "", "1e-6")]
-Exponent = Annotated[Read[float], reader("a number", "", "2"), AfterValidator(_not_below_one)]
+Exponent = Annotated[
+    Read[float],
+    reader("a number", "", "2"),
+    AfterValidator(_not_below_one),
+    Field(json_schema_extra={"minimum": 1, "maximum": 10}),
+]
 PositiveNumber = Annotated[Read[float], reader("a number", "", "0.01"), Field(gt=0)]
 Mass = Annotated[Read[float], reader("a mass", "kg", "0.25 kg"), Field(gt=0)]
 Stiffness = Annotated[Read[float], reader("a stiffness", "N/m", "1 kN/m"), Field(gt=0)]

@@ -186,19 +186,21 @@ export class Form {
       const its = value(), words = shown(its);
       const typing = text.edited && document.activeElement === text; // nobody's words are taken away
       if (text.value !== words && !typing) text.value = words;
-      const number = this.numberAt(path) ?? (typeof field.default === "number" ? field.default : 0);
-      const key = serverPath(path);
       if (!slider) return;
+      const spoken = text.value || placeholder(field);
+      if (slider.ariaValueText !== spoken) slider.ariaValueText = spoken;
+      const known = this.numberAt(path), key = this.scaleKey(path);
+      if (known === null && its !== undefined) return; // the server has not read it yet
+      const number = known ?? (typeof field.default === "number" ? field.default : 0);
       if (!this.bases[key] || !this.bases[key].holds(number)) this.bases[key] = scaleOf(field, number);
       const at = this.bases[key].place(number);
       if (at !== slider.at && (document.activeElement !== slider || !this.sliding)) slider.value = slider.at = at;
-      const spoken = text.value || placeholder(field);
-      if (slider.ariaValueText !== spoken) slider.ariaValueText = spoken;
     };
   }
 
   slide(field, path, slider, text, done) {
-    const scale = this.bases[serverPath(path)];
+    const scale = this.bases[this.scaleKey(path)];
+    if (!scale) return;
     const value = scale.value(Number(slider.value));
     text.value = quantity(value, field.unit, 3);
     slider.ariaValueText = text.value;
@@ -224,6 +226,11 @@ export class Form {
     if (typeof found === "number") return found;
     const angle = /^([-\d.e+]+) (deg|rad)$/.exec(found ?? "");
     return angle ? Number(angle[1]) * (angle[2] === "deg" ? Math.PI / 180 : 1) : null;
+  }
+
+  // Laws share names of parameters, but not their bounds.
+  scaleKey(path) {
+    return path[0] === "friction" ? `${this.tables.friction.law} ${path.join(".")}` : path.join(".");
   }
 
   setValues(values) {

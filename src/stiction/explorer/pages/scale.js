@@ -18,10 +18,11 @@ export function scaleOf(field, base) {
     const size = Math.abs(base), decades = field.unit === "s" ? 1.5 : 2;
     const low = 10 ** (Math.floor(Math.log10(size)) - decades);
     const high = 10 ** (Math.ceil(Math.log10(size)) + decades);
-    return logarithmic(low, high, Math.sign(base));
+    return logarithmic(Math.max(low, field.low ?? 0), high, Math.sign(base));
   }
   const [low, high] = SPANS[field.unit] ?? [1e-3, 1e3];
-  return zero ? fromZero(low, high) : crossing(low, high);
+  if (zero) return fromZero(low, high);
+  return field.low >= 0 ? logarithmic(Math.max(low, field.low), high, 1) : crossing(low, high);
 }
 
 function linear(low, high) {
@@ -35,7 +36,7 @@ function linear(low, high) {
 function logarithmic(low, high, sign) {
   const range = Math.log(high / low);
   return {
-    place: (value) => (STEPS * Math.log((sign * value) / low)) / range,
+    place: (value) => (sign * value > low ? (STEPS * Math.log((sign * value) / low)) / range : 0),
     value: (place) => sign * low * Math.exp((range * place) / STEPS),
     holds: (value) => sign * value >= low && sign * value <= high,
   };
