@@ -61,9 +61,16 @@ def test_the_page_on_the_physics_says_what_is_computed(slider, paper_run):
 
 def test_the_lecture_asks_for_the_right_angles(slider):
     damped, stable = angles_of(slider)
-    assert f"They differ: {damped:.1f} and {stable:.1f} degrees" in page_in_words(
-        "tutorials/lecture"
-    )
+    told = f"They differ: {damped:.1f}, 8.2 and {stable:.1f} degrees"
+    assert told in page_in_words("tutorials/lecture")
+
+
+def test_the_rig_sticks_and_slips_up_to_the_angle_that_the_pages_say(slider):
+    """Not up to where the slow motion is always overdamped, nor up to stable sliding."""
+    assert "still sticks and slips up to 8.16°" in page_in_words("explanation/physics")
+    for phi, sticks in (("8.16 deg", True), ("8.17 deg", False)):
+        run = st.simulate(slider.replace(phi=phi), "120 s", sample_rate=0)
+        assert bool((run.stick_intervals[:, 0] > 100.0).any()) is sticks
 
 
 def test_the_first_half_hour_repeats_what_the_audit_advises(slider):

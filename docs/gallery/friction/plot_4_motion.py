@@ -2,8 +2,8 @@
 One apparatus under every law
 =============================
 
-The force that a load cell reads, from rest, on the paper's apparatus under each law. Some stick and
-slip, others come to slide steadily, though friction falls by about as much in all of them.
+The force that a load cell reads, from rest, on the paper's apparatus under each law, which is made
+comparable as in `stiction compare`. Some stick and slip, others come to slide steadily.
 """
 
 import matplotlib.pyplot as plt

@@ -3,8 +3,8 @@ What looks like stick and slip
 ==============================
 
 Fig. 3 of the paper. The force along the drive is a sawtooth, as from any friction test. Across the
-drive the force jumps to the full friction and falls to zero. The magnitude of friction does not
-change until the slip: the force turns.
+drive the force jumps to the full friction at first, to four fifths of it after each slip, and falls
+to zero. The magnitude of friction does not change until the slip: the force turns.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 One number decides: A
 =====================
 
-Fig. 5 of the paper. The damping ratio of the slow motion is A sin³θ. In each cycle θ falls from 90
-deg towards φ. At φ = 1 deg the path crosses ζ = 1 and the mass slips; at 10 deg it does not.
+Fig. 5 of the paper. The damping ratio of the slow motion is A sin³θ. θ falls towards φ, from
+90 deg at first and from 54 deg after each slip. At φ = 1 deg the path crosses ζ = 1 and the mass
+slips; at 10 deg it does not.
 """
 
 import matplotlib.pyplot as plt

@@ -1,10 +1,10 @@
 """
-True rest, hundreds of times a second
-=====================================
+True rest, up to a thousand times a second
+==========================================
 
 At zero slip friction holds whatever it must, up to μ₀W. Solved exactly, the mass of Fig. 3 rests
-once in each transverse oscillation. The shaded intervals are true rest; their ends are known to
-rounding.
+once in each transverse oscillation, until 0.17 s before a slip. The shaded intervals are true rest;
+their ends are known to rounding.
 """
 
 import matplotlib.pyplot as plt

@@ -151,7 +151,7 @@ def _cycle(run: Trajectory) -> list[float]:
 
 @preset(
     _cycle,
-    shows="earthquakes: slip speed over seven decades, once an hour",
+    shows="earthquakes: slip speed over six decades, once an hour",
     reference="Bolotskaya et al., Geophys. J. Int. 240, 1538 (2025)",
     doi="",
     grade="solid",

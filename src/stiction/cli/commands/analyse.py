@@ -21,9 +21,10 @@ def analyse(
 ) -> None:
     """Analyse a result or a measured record: kind of motion, cycles, creep, oscillation, energy.
 
-    Prints a report and writes the tables: cycles.csv (a row for each cycle), summary.csv,
-    creep.csv, oscillation.csv, energy.csv, analysis.json, and a figure of each. There is nothing to
-    tune. Creep and oscillation need several samples per transverse period.
+    Prints a report and writes tables: cycles.csv (a row for each cycle), summary.csv, friction.csv,
+    creep.csv, creep-phases.csv, oscillation.csv, oscillation-phases.csv and energy.csv; numbers in
+    analysis.json; figures of cycles, creep, oscillation and energy. What was not found has no file.
+    There is nothing to tune. Creep and oscillation need several samples per transverse period.
 
     For example, after `stiction run my.toml -o my.nc`:
 
