@@ -426,6 +426,17 @@ def test_no_name_of_a_parameter_is_cut_off(page):
     assert cut == []
 
 
+def test_tooltips_are_plain_words_and_one_stick_is_one_interval(page):
+    """They had the backquotes of docstrings; a short run had "1 stick intervals"."""
+    titles = page.value("[...document.querySelectorAll('[title]')].map((each) => each.title)")
+    assert len(titles) > 30
+    assert [title for title in titles if "`" in title] == []
+    duration = page.row("run.duration").locator("input[type=text]")
+    duration.fill("10 ms")
+    page.done_after(lambda: duration.press("Enter"))
+    assert page.tab.inner_text("#status").startswith("1 stick interval, ")
+
+
 def test_ticks_of_a_study_have_the_prefix_of_its_axis(page):
     """0.0003 and 0.0095 m/s reached into the name of the axis."""
     made = page.value(

@@ -49,8 +49,8 @@ class Settings(Described):
         delta of the regularised law ``s/sqrt(|s|^2 + delta^2)``, m/s, at least 1e-11; by default
         the law is set-valued.
     smoothing : {"root", "arctan"}, optional
-        The shape of the regularised law: as above, or ``F (2/pi) atan(|s|/delta)``, for comparison
-        with other programs.
+        The shape of the regularised law: ``F s/sqrt(|s|^2 + delta^2)``, or, for comparison with
+        other programs, ``F (2/pi) atan(|s|/delta)``.
     multiscale : {"auto", True, False}, optional
         Whether to interpolate between cycles of stick and slip; see `stiction.simulate`.
 

@@ -188,9 +188,10 @@ class Slider(Apparatus):
     mass_y : float or str, optional
         The mass in motion along y, if it is another one than along x: where one stage rides on
         another, the upper moves with less. Then `mass` is that along x.
-    mass_angle, damping_angle : str, optional
-        From x, towards y, to the axis of `mass` and of `c_x`, where masses or dampers have axes
-        of their own.
+    mass_angle : str, optional
+        From x, towards y, to the axis of `mass`, where masses have axes of their own.
+    damping_angle : str, optional
+        From x, towards y, to the axis of `c_x`, where dampers have axes of their own.
     cell_angle : str, optional
         From the drive direction X, towards Y, to the axis of the load cell. By default ``mu`` is
         of the force along X, and a run is analysed by its force along x; else both are along the

@@ -157,7 +157,7 @@ export class Form {
     const value = () => read(this.tables, path);
     if (field.kind === "choice" || field.kind === "boolean") {
       const options = field.options ?? ["false", "true"];
-      const menu = choice(id, options, String(field.default ?? options[0]), field.meaning);
+      const menu = choice(id, options, String(field.default ?? options[0]), field.meaning.replaceAll("`", ""));
       menu.onchange = () => this.put(path, field.kind === "boolean" ? menu.value === "true" : menu.value);
       box.append(menu);
       return () => { menu.value = String(value() ?? field.default ?? options[0]); };
@@ -259,7 +259,7 @@ export class Form {
 }
 
 function labelOf(field, id) {
-  const label = element("label", { htmlFor: id, title: field.meaning });
+  const label = element("label", { htmlFor: id, title: field.meaning.replaceAll("`", "") });
   const own = field.label ? null : symbol(SYMBOLS[field.key] ?? field.key);
   if (own) {
     label.append(element("i", { textContent: own.head }));

@@ -126,7 +126,7 @@ function show(answer, asked) {
   if (!view) series.show("b", answer);
   for (const panel of panels) panel.refresh();
   const sticks = answer.facts.find((each) => each.name === "stick intervals"), rest = answer.facts.find((each) => each.name === "time at rest");
-  say(answer.ok ? `${sticks.text} stick intervals, ${rest.text} at rest` : `ended early: ${answer.status}`, !answer.ok);
+  say(answer.ok ? `${sticks.text} stick interval${sticks.text === "1" ? "" : "s"}, ${rest.text} at rest` : `ended early: ${answer.status}`, !answer.ok);
   page.shown = { asked, quick: answer.quick, arrived: performance.now() };
   page.redraw = asked;
   if (view) zoom(view, false);

@@ -150,7 +150,9 @@ export class Scene {
       const tip = turn(-scale * s.friction * Math.cos(theta), -scale * s.friction * Math.sin(theta));
       const end = add(mass, tip);
       arrow(context, mass, end, PURPLE, 4);
-      text(context, "F", ...add(mass, [1.13 * tip[0], 1.13 * tip[1]]), { font: SERIF, color: PURPLE, align: "center", halo: true });
+      const [across, down] = add(mass, [1.13 * tip[0], 1.13 * tip[1]]);
+      const low = height - 46; // below are words: there the name stands beside the arrow
+      text(context, "F", across + (down > low ? 16 : 0), Math.min(Math.max(down, 10), low), { font: SERIF, color: PURPLE, align: "center", halo: true });
     }
     const speed = Math.hypot(s.slip_x, s.slip_y);
     if (speed > SLOWEST && !s.sticking) {
@@ -186,8 +188,9 @@ export class Scene {
       symbols(context, name, 12, 15 + 18 * i, { color, halo: true });
       text(context, value, 88, 15 + 18 * i, { color: INK, halo: true });
     });
-    const above = width < BESIDE ? 20 : 0; // narrow: not over the ways
-    symbols(context, `${this.factors(M)};  slip arrow: logarithmic`, width - 10, height - 16 - above, { color: SOFT, align: "right", halo: true });
+    const lines = [this.factors(M), "slip arrow: logarithmic"], rest = { color: SOFT, align: "right", halo: true };
+    if (width >= BESIDE) symbols(context, lines.join(";  "), width - 10, height - 16, rest);
+    else lines.forEach((words, i) => symbols(context, words, width - 10, height - 52 + 18 * i, rest)); // not over the ways
     text(context, `φ = ${plain((this.scene.phi * 180) / Math.PI, 4)}°`, width - 10, 15, { color: INK, align: "right", halo: true });
   }
 

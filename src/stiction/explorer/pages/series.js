@@ -58,7 +58,7 @@ export class Series {
       this.boxes.push({ box, x });
       top += box.height + GAP;
     });
-    this.legend(context);
+    this.legend(context, width);
     text(context, "time t (s)", LEFT + inner / 2, height - 8, { align: "center", color: SOFT });
   }
 
@@ -128,7 +128,7 @@ export class Series {
   }
 
   // What the colours mean, above the strips.
-  legend(context) {
+  legend(context, width) {
     let left = LEFT;
     const add = (words, color, { dash = [], band = false } = {}) => {
       if (band) {
@@ -138,7 +138,9 @@ export class Series {
       left += 23 + symbols(context, words, left + 23, 11, { color: INK }) + 16;
     };
     for (const [, color, label] of [...STRIPS[0].curves].reverse()) add(label, color);
-    add("at rest (paler: for a part of the time)", "rgba(110,110,110,.3)", { band: true });
+    const rest = "at rest (paler: for a part of the time)";
+    const narrow = left + 23 + 7 * rest.length > width - RIGHT; // of letters some 6.5 px wide
+    add(narrow ? "at rest" : rest, "rgba(110,110,110,.3)", { band: true });
     if (this.a) add("A", "#444b53", { dash: [5, 3] });
     if (this.measured) add(this.measured.origin, SKY);
   }
