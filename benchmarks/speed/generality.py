@@ -28,7 +28,7 @@ NOTES = (
     f" to {PLAIN}. The laws are alike (0.20 at rest, 0.15 in fast slip, 10 mm/s), but the motion"
     " differs: compare the times a step, which hold its share of sticks, landings and the call."
     " Laws with internal state have another method, whose steps are larger and cost more.",
-    "Three earthquakes: rate and state with inertia, slip speed over seven decades in each cycle of"
+    "Three earthquakes: rate and state with inertia, slip speed over six decades in each cycle of"
     " 3778.0755 s, run without samples; the error is that of the last period.",
 )
 
@@ -93,7 +93,7 @@ def tables(progress: Progress, quick: bool) -> tuple[Table, Table, Table]:
 def earthquakes(progress: Progress, rounds: int) -> Table:
     """Return the cost and the error of three cycles of the preset `earthquake-cycle`.
 
-    Slip speed spans seven decades in each, and the state as many.
+    Slip speed spans six decades in each, and the state as many.
     """
     preset = find("earthquake-cycle")
     runs = {f"rtol={rtol:g}": _cycles(preset, rtol) for rtol in (1e-4, 1e-6, 1e-8, 1e-10)}

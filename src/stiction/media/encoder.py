@@ -17,7 +17,8 @@ KINDS = (*CODECS, "gif")
 OPTIONS = {"mp4": {"crf": "20", "preset": "veryfast"},
            "webm": {"crf": "32", "b": "0", "deadline": "realtime", "cpu-used": "8"}}  # fmt: skip
 HALF = 2  # of the width: a GIF is smaller
-COLORS = 64  # of a GIF
+COLORS, COMMON = 64, 32  # of a GIF: hues, and the commonest colours
+APART = 8  # of 255, colours of a palette
 MISSING = (
     "a film needs the package av; install stiction[film], or run: uv run --extra film stiction"
 )
@@ -55,6 +56,27 @@ def as_video(frames: Frames, rate: int, kind: str) -> bytes:
     return made.getvalue()
 
 
+def palette(picture: Any) -> Any:
+    """Return an image whose palette has the commonest colours of a picture and all its hues.
+
+    Areas keep their colours exactly: the mean of many is another one, and grey was pink. Thin lines
+    keep their hues: the library's default divides the colours of most pixels only.
+    """
+    from PIL import Image
+
+    counted = sorted(picture.getcolors(picture.width * picture.height), reverse=True)
+    flat = picture.quantize(COLORS, Image.Quantize.MAXCOVERAGE).getpalette()[: 3 * COLORS]
+    hues = np.reshape(flat, (-1, 3))
+    known = np.array([color for _, color in counted[:COMMON]])
+    chosen: list[NDArray[Any]] = []
+    for color in (*known, *hues):  # the library takes the nearest but for a few steps of 255
+        if all(np.abs(color - each).max() >= APART for each in chosen):
+            chosen.append(color)
+    found = Image.new("P", (1, 1))
+    found.putpalette([int(channel) for channel in np.ravel(chosen)])
+    return found
+
+
 def as_gif(frames: Frames, rate: int) -> bytes:
     """Return an animated GIF of half the size and half the rate."""
     from PIL import Image
@@ -65,9 +87,7 @@ def as_gif(frames: Frames, rate: int) -> bytes:
             continue
         image = Image.fromarray(np.ascontiguousarray(frame))
         small = image.resize((image.width // HALF, image.height // HALF))
-        # thin lines keep their hues: the default divides the colours of most pixels only
-        method, plain = Image.Quantize.MAXCOVERAGE, Image.Dither.NONE
-        pictures.append(small.quantize(COLORS, method, dither=plain))
+        pictures.append(small.quantize(palette=palette(small), dither=Image.Dither.NONE))
     made = BytesIO()
     pause = round(1e3 * HALF / rate)
     pictures[0].save(made, "GIF", save_all=True, append_images=pictures[1:], duration=pause, loop=0)

@@ -277,7 +277,7 @@ def microscope(figure: Figure, fine: ColumnTable, length: float) -> Line2D:
     rest = (fine["sticking"] > 0) | (fine["slip_speed"] < slowest_slip(fine))
     ax.fill_between(places, 0, 1, where=rest, transform=ax.get_xaxis_transform(), color="#D9D9D9")
     ax.set_xlim(places[0], places[-1])
-    ax.set_ylim(bottom=0.0)
+    ax.set_ylim(0.0, 1.0 if rests else 1.1 * factor * float(np.max(fine["slip_speed"])))
     if rests:
         ax.set_yticks([0.0])
     span = fine["time"][-1] - fine["time"][0]

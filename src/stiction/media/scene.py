@@ -37,7 +37,8 @@ from stiction.text.units import in_words
 ROOM = (7.2, 4.2)  # of the picture: its unit is the side of the mass
 BEHIND = {"facecolor": FLOOR, "edgecolor": "none", "alpha": 0.8, "pad": 1.0}  # words
 HOME = np.array([0.3, -0.45])  # of the mass, where the springs are relaxed
-WALLS = np.array([3.1, 2.2])  # along x and y from there
+WALLS = np.array([3.1, 2.2])  # along x and y from there, where the picture has this room
+MARGINS = np.array([[0.2, 0.2], [0.2, 0.4]])  # right and above, left and below: words
 DAMPER = 1.45  # length of one with an axis of its own
 LARGEST = np.array([1.2, 0.5])  # displacement of the mass in the picture
 RADIUS = 1.35  # of the largest friction force
@@ -56,6 +57,7 @@ class Scene:
         c, s = slider.direction
         self.turn = np.array([[c, s], [-s, c]])  # from x, y to X, Y
         self.dampers = [self.turn @ away(angle) for angle in dampers_askew(slider).values()]
+        self.walls = [wall_distance(self.turn[:, axis], far) for axis, far in enumerate(WALLS)]
         self.scale = magnification(samples)
         friction, load = samples["friction"], samples["normal_load"]
         self.limit = limit_coefficient(slider.law, friction, load)
@@ -89,7 +91,8 @@ class Scene:
         for axis, across in ((0, 1), (1, 0)):
             along, side = np.eye(2)[axis], np.eye(2)[across]
             reach = 0.45 + LARGEST[across]
-            ends = [HOME + self.turn @ (WALLS[axis] * along + r * side) for r in (-reach, 0.45)]
+            far = self.walls[axis] * along
+            ends = [HOME + self.turn @ (far + r * side) for r in (-reach, 0.45)]
             ax.plot(*np.transpose(ends), color=GREY, linewidth=4, solid_capstyle="butt")
         for way in self.dampers:
             normal = 0.22 * np.array([-way[1], way[0]])
@@ -167,7 +170,7 @@ class Scene:
             side = 1 - axis
             unit = np.eye(2)
             start = mass + self.turn @ (SIDE * unit[axis])
-            end = HOME + self.turn @ (WALLS[axis] * unit[axis] + away[side] * unit[side])
+            end = HOME + self.turn @ (self.walls[axis] * unit[axis] + away[side] * unit[side])
             line.set_data(*spring_path(start, end, 0.16, turns).T)
         for way, parts in zip(self.dampers, self.pistons, strict=True):
             paths = dashpot_paths(mass, HOME + DAMPER * way, 0.16)
@@ -214,3 +217,13 @@ def magnification(samples: ColumnTable) -> Floats:
 def slowest_slip(samples: ColumnTable) -> float:
     """Return the slip speed below which the mass is shown at rest, m/s."""
     return DEEPEST * float(np.nanmax(np.hypot(samples["drive_X"], samples["drive_Y"])))
+
+
+def wall_distance(way: Floats, most: float) -> float:
+    """Return how far a wall is from the home of the mass along a unit vector, within the picture.
+
+    A spring that is turned far would leave it.
+    """
+    back = way < 0.0
+    room = 0.5 * np.array(ROOM) - np.where(back, MARGINS[1] - HOME, MARGINS[0] + HOME)
+    return float(min(most, *(room / np.maximum(np.abs(way), 1e-9))))

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 import stiction as st
 from stiction.cli import main
-from stiction.media.encoder import as_gif
+from stiction.media.encoder import as_gif, palette
 from stiction.media.film import (
     FRAME_RATE,
     NAMES,
@@ -23,7 +23,7 @@ from stiction.media.film import (
     series,
     slowness,
 )
-from stiction.media.scene import ROOM, Scene, magnification
+from stiction.media.scene import HOME, ROOM, Scene, magnification, wall_distance
 from stiction.media.sound import LOUD, RATE, audible_speed
 from stiction.plotting.page.style import BLUE, GREEN, ORANGE, RED
 
@@ -312,3 +312,25 @@ def test_a_film_of_a_run_without_slip_says_so():
     figure = Figure(figsize=(12.8, 7.2), dpi=100)
     series(figure, in_window(description, times), times)
     assert [text.get_text() for text in figure.axes[2].texts] == ["no slip"]
+
+
+def test_areas_of_a_gif_keep_their_colours():
+    """Grey of rest was pink, the plate green: colours of a palette were means of many."""
+    Image = pytest.importorskip("PIL.Image")
+    frame = np.full((64, 64, 3), 255, np.uint8)
+    frame[:32], frame[40:50] = (245, 244, 240), (217, 217, 217)
+    frame[60, :, 0] = np.arange(64)  # hues beside the areas
+    small = palette(Image.fromarray(frame))
+    found = np.asarray(Image.fromarray(frame).quantize(palette=small, dither=0).convert("RGB"))
+    assert (found[:32] == (245, 244, 240)).all()
+    assert (found[40:50] == (217, 217, 217)).all()
+    assert (found[34:40] == 255).all()
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.7, 1.5, 3.0, -2.0])
+def test_walls_lie_in_the_picture(turn):
+    """At 40 degrees that of the soft spring was below it."""
+    for angle in (turn, turn + 0.5 * np.pi):
+        way = np.array([np.cos(angle), np.sin(angle)])
+        assert (np.abs(HOME + wall_distance(way, 3.1) * way) <= 0.5 * np.array(ROOM)).all()
+    assert wall_distance(np.array([1.0, 0.0]), 3.1) == pytest.approx(3.1)

@@ -25,7 +25,7 @@ def animate(
 
         stiction animate my.nc -o lecture.mp4
 
-        stiction animate my.nc -o slip.mp4 --window 1.9s 2.2s --length 15s
+        stiction animate my.nc -o slip.mp4 --window 1.5s 2.2s --length 15s
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def animate(
     output
         The film to write: .mp4, .webm or .gif. Example: -o lecture.mp4.
     window
-        Start and end in the run; all of it by default. Example: --window 1.9s 2.2s.
+        Start and end in the run; all of it by default. Example: --window 1.5s 2.2s.
     length
         Of the film, s: it decides how slowly the window passes. Example: --length 15s.
     at
