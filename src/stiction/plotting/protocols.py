@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 LOOKS = ((BLUE, "-"), (RED, (0, (4, 1.5))), (GREEN, (0, (1, 1.5))), (BLACK, (0, (6, 1.5, 1, 1.5))))
 REACH = 8.0  # D_c of slip that are drawn
+POINTS = 200  # of the data after a step: more would hide the line
 
 
 def plot_velocity_steps(found: VelocitySteps, ax: Axes | None = None) -> Axes:
@@ -38,8 +39,9 @@ def plot_velocity_steps(found: VelocitySteps, ax: Axes | None = None) -> Axes:
         for n, each in enumerate(found.steps):
             color, dashes = LOOKS[n % len(LOOKS)]
             label = f"{in_words(each.before, 'm/s', 3)} to {in_words(each.after, 'm/s', 3)}"
-            ax.plot(1e6 * each.slip, each.mu, ".", color=color, markersize=2.0, alpha=0.4)
-            ax.plot(1e6 * each.slip, each.fit, color=color, linestyle=dashes, label=label)
+            some = slice(None, None, max(1, len(each.slip) // POINTS))
+            ax.plot(1e6 * each.slip[some], each.mu[some], ".", color=color, ms=4.0, alpha=0.4)
+            ax.plot(1e6 * each.slip, each.fit, color=color, linestyle=dashes, label=label, zorder=3)
             ax.axhline(each.steady_before, color=color, linestyle=dashes, linewidth=0.4)
         if far is not None:
             ax.set_xlim(0.0, 1e6 * far)

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import MaxNLocator, NullFormatter
+from matplotlib.ticker import NullFormatter
 from numpy.typing import NDArray
 
-from stiction.arrays import xr
+from stiction.arrays import Floats, xr
 from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.style import (
     BLACK,
@@ -23,6 +23,7 @@ from stiction.plotting.page.style import (
     panel_letter,
     style,
 )
+from stiction.plotting.run.time_series import name_time
 from stiction.text.quantity_text import metric_prefix
 
 # terms of the budget: label, colour, hatch, whether dissipated
@@ -47,7 +48,7 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
     factor, prefix = metric_prefix(np.concatenate([*named.values(), budget["work"].values]))
     largest = max(float(np.abs(values).max()) for values in named.values())
     ax.use_sticky_edges = False  # a part of no height would hold the axis to the top of its bar
-    place = np.arange(1, budget.sizes["interval"] + 1)
+    place, wide = middles(budget)
     up, down = np.zeros(len(place)), np.zeros(len(place))
     for name, values in named.items():
         label, color, hatch = PARTS[name]
@@ -55,21 +56,28 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
             continue
         bottom = np.where(values >= 0.0, up, down)
         ax.bar(
-            place, factor * values, 0.7, factor * bottom, label=label, color=color,
+            place, factor * values, 0.7 * wide, factor * bottom, label=label, color=color,
             hatch=hatch, edgecolor="white", linewidth=0.0,
         )  # fmt: skip
         up, down = up + np.maximum(values, 0.0), down + np.minimum(values, 0.0)
     work = factor * budget["work"].values
+    half = 0.45 * wide
     ax.hlines(
-        work, place - 0.45, place + 0.45, color=BLACK, linewidth=1.6, label="work of the drive"
+        work, place - half, place + half, color=BLACK, linewidth=1.6, label="work of the drive"
     )
     ax.axhline(0.0, color=BLACK, linewidth=0.6)
     ax.set_ylabel(f"energy ({prefix}J)")
 
 
+def middles(budget: xr.Dataset) -> tuple[Floats, Floats]:
+    """Return the middle and the length of each interval, s."""
+    start, end = budget["start"].values, budget["end"].values
+    return 0.5 * (start + end), end - start
+
+
 def draw_closure(ax: Axes, budget: xr.Dataset) -> None:
     """Draw the residual of each interval as a share of the total work."""
-    place = np.arange(1, budget.sizes["interval"] + 1)
+    place, _ = middles(budget)
     whole = float(np.abs(budget["work"].values).sum()) or 1.0
     ax.semilogy(
         place, np.abs(budget["residual"].values) / whole, "o", color=BLACK, ms=3, label="residual"
@@ -107,6 +115,6 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
             panel_letter(ax, letter)
         panels[0].legend(loc="lower center", bbox_to_anchor=(0.5, 1.07), ncols=3)
         panels[1].legend(loc="best")
-        panels[1].xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
-        panels[1].set_xlabel("interval of the run")
+        panels[1].set_xlim(budget["start"].values[0], budget["end"].values[-1])
+        name_time(panels[1])
     return np.array(panels, dtype=object)

@@ -49,7 +49,10 @@ def plot_tolerance(budget: Budget, axes: Sequence[Axes] | None = None) -> NDArra
             factor, unit = in_unit(budget.drawn[np.isfinite(budget.drawn[:, i]), i], UNITS[i])
             ax.plot(angles, factor * budget.drawn[:, i], "o", color=BLUE, markersize=2.2)
             ends = factor * budget.at_ends[:, i]
-            ax.plot(np.degrees(budget.ends), ends, "_", color=BLACK, markersize=9.0)
+            ax.plot(
+                np.degrees(budget.ends), ends, "_", color=BLACK, markersize=9.0,
+                label="2.5, 50, 97.5 % of the angles",
+            )  # fmt: skip
             ax.set_ylabel(LABELS[i] + ("" if unit == "1" else f" ({unit})"))
         draw_limit(panels[0], budget)
         for ax in panels[2:]:
@@ -65,5 +68,8 @@ def draw_limit(ax: Axes, budget: Budget) -> None:
     reached = np.degrees(limit.angle)
     if np.isfinite(reached):
         side = np.sign(np.median(budget.angles)) or 1.0
-        ax.axvline(side * reached, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)))
+        ax.axvline(
+            side * reached, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)),
+            label=f"error of {percent(limit.allowed)} at {reached:.3g}°",
+        )  # fmt: skip
     ax.legend(loc="best")

@@ -52,6 +52,7 @@ NOTE = (
     "Rows below: share of time at zero slip.",
 )
 ROW = 0.8  # height of a filled row
+KEY = (-0.075, -0.01)  # in widths of the panel, the line beside a row that names its run
 IN_TIME, BY_FORCE = 300, 120  # bins of a row over time and over force
 
 
@@ -63,7 +64,7 @@ def plot_comparison(
     Slip speed is on a logarithmic axis: a line for the mean over a 500th of the time, a pale
     band up to the maximum, which stands out where slip comes in bursts. Zero slip has no place
     on that axis: below it, each run has a row that is filled as high as the share of time in
-    which the mass rests.
+    which the mass rests. The line beside a row is that of its run.
 
     Parameters
     ----------
@@ -221,6 +222,10 @@ def draw_rests(ax: Axes, curves: Sequence[RunCurve]) -> None:
     for row, curve in enumerate(curves):
         share = np.diff(stuck_until(edges, curve.run.stick_intervals)) / np.diff(edges)
         fill_row(ax, row, share, edges, curve)
+        ax.plot(
+            KEY, [-row - 1 + 0.5 * ROW] * 2, transform=ax.get_yaxis_transform(), clip_on=False,
+            **curve.look,
+        )  # fmt: skip
     finish_rows(ax, len(curves))
     ax.set_ylabel("zero\nslip", rotation=0, ha="right", va="center")
     ax.set_xlabel("time $t$ (s)")

@@ -15,6 +15,8 @@ from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.parameter import PLAIN, Scale, label_decades, scale_of
 from stiction.plotting.page.style import BLUE, GREY, ORANGE, UNSTABLE, style
 
+LARGE = 30.0  # times small growth rates, the largest: on a linear axis others look like zero
+FINEST = 1e-3  # of the largest, up to which the axis is linear then
 CLOSE = 0.13  # of the axis: closer numbers would overlap
 
 
@@ -69,9 +71,7 @@ def plot_modes(
         if log:
             below.xaxis.set_major_formatter(PLAIN)
         below.set_xlabel(scale.label)
-        above.legend(
-            loc="lower center", bbox_to_anchor=(0.5, 1.07 if len(marked) else 1.0), ncols=3
-        )
+        above.legend(loc="lower center", bbox_to_anchor=(0.5, 1.07), ncols=3)
     return np.array([above, below], dtype=object)
 
 
@@ -92,10 +92,15 @@ def sides(ax: Axes, values: Floats) -> list[str]:
 def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
     """Draw growth rates, dashed where a mode does not oscillate; the unstable half is tinted.
 
-    The axis fits the fastest growing mode; others may decay out of sight.
+    The axis fits the fastest growing mode; others may decay out of sight. Where these rates span
+    decades it is logarithmic on either side of zero.
     """
     growth, oscillates = modes["growth_rate"].values, modes["frequency"].values > 0
-    top = np.abs(growth.max(axis=1)).max()
+    fastest = np.abs(growth.max(axis=1))
+    top, least = fastest.max(), np.quantile(fastest, 0.1)
+    if top > LARGE * least:
+        thresh = max(least, FINEST * top)
+        ax.set_yscale("symlog", linthresh=10.0 ** np.floor(np.log10(thresh)))
     ax.set(ylim=(-2.5 * top, 1.25 * top), ylabel="growth rate (1/s)")
     ax.axhspan(0.0, 1.25 * top, color=UNSTABLE, linewidth=0, zorder=0, label="unstable")
     ax.axhline(0.0, color=GREY, linewidth=0.6)

@@ -58,6 +58,8 @@ def draw_onset(ax: Axes, onset: Onset, critical: float | None = None) -> None:
         ax.plot(at[known], size[known], label=f"swept {name}", clip_on=False, zorder=3, **look)
         unsure = {**look, "marker": "x", "linestyle": "none"}
         ax.plot(at[~known], size[~known], clip_on=False, zorder=4, **unsure)
+    if (outcome == UNDECIDED).any():
+        ax.plot([], [], "x", color=GREY, markersize=4.0, label="undecided")
     rests = (outcome == REST).all(axis=0)
     if rests.any():
         _write(ax, float(np.median(at[rests])), bottom, "rest")

@@ -36,6 +36,7 @@ from stiction.theory import damping_number_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 DAMPING = ("phi", "drive.velocity")  # coordinates that locate a run in the damping diagram
 
@@ -221,12 +222,19 @@ def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
         ax.set_axis_off()
     unique = {handle.get_label(): handle for handle in handles}
     if unique and axes is None:
-        whole_figure(panels[0]).legend(
-            handles=[*unique.values()], loc="outside upper center", ncols=2 * columns
-        )
+        write_legend(whole_figure(panels[0]), [*unique.values()], 2 * columns)
     elif unique:
         panels[0].legend(handles=[*unique.values()], loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return list(panels[: len(measures)])
+
+
+def write_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:
+    """Write a legend above the panels, in at most so many columns, not wider than the figure."""
+    for count in range(columns, 0, -1):
+        legend = figure.legend(handles=handles, loc="outside upper center", ncols=count)
+        if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return
+        legend.remove()
 
 
 def measure_in_unit(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
