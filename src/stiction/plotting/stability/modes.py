@@ -15,7 +15,7 @@ from stiction.plotting.page.canvas import stack
 from stiction.plotting.page.parameter import PLAIN, Scale, label_decades, scale_of
 from stiction.plotting.page.style import BLUE, GREY, ORANGE, UNSTABLE, style
 
-LARGE = 30.0  # times small growth rates, the largest: on a linear axis others look like zero
+LARGE = 3000.0  # times small growth rates, the largest: a linear axis shows no crossing of these
 FINEST = 1e-3  # of the largest, up to which the axis is linear then
 CLOSE = 0.13  # of the axis: closer numbers would overlap
 
