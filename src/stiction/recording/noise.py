@@ -18,6 +18,7 @@ LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
 ROUNDING_SPREAD = 12.0**-0.5  # of a step: standard deviation of the rounding to it
+TWO_CODES, FEW_CODES = 1.5, 8.0  # steps: values within 1.5 are of two codes at most
 HIDDEN = 1 / 3  # of a step of rounding: noise that does not average it away
 
 
@@ -78,9 +79,20 @@ def rounding_error(values: Floats, step: float) -> float:
 
 
 def dither_remainder(values: Floats, step: float) -> float:
-    """Return the share of the first harmonic of the rounding to a step that noise leaves."""
-    noise = white_noise(values, step) if len(values) > ORDER else 0.0
-    return exp(-2.0 * (pi * noise / step) ** 2)
+    """Return the share of the first harmonic of the rounding to a step that noise leaves.
+
+    Where a force stays within few steps, no median but the mean square of its differences tells the
+    noise, and between two codes nothing does: it seems to be half a step.
+    """
+    spans = float(np.ptp(values)) / step
+    if spans < TWO_CODES or len(values) <= ORDER:
+        return 1.0
+    if spans < FEW_CODES:
+        square = float(np.mean(np.diff(values / step, ORDER) ** 2)) / comb(2 * ORDER, ORDER)
+    else:
+        square = (white_noise(values, step) / step) ** 2
+    before = max(square - ROUNDING_SPREAD**2, 0.0)  # the variance that rounding has not added
+    return exp(-2.0 * pi**2 * before)
 
 
 def _median(values: Floats, step: float) -> float:

@@ -251,7 +251,7 @@ def test_the_figure_says_what_is_drawn(slider):
     budget = st.analysis.energy_budget(st.simulate(slider.replace(c_x=1.0), 0.1), [0.0, 0.05, 0.1])
     upper, lower = figure_of(plot_energy, budget).axes
     assert upper.get_ylabel() == "energy (µJ)"
-    assert lower.get_xlabel() == "interval of the run"
+    assert lower.get_xlabel() == "time $t$ (ms)"
     _, labels = upper.get_legend_handles_labels()
     assert {"work of the drive", "friction, $y$", "spring, $x$"} <= set(labels)
     heights = [bar.get_height() for each in upper.containers for bar in each]
@@ -266,5 +266,6 @@ def test_bars_end_below_the_frame():
     parts = {name: ("interval", np.zeros(2)) for name in PARTS}
     parts |= {"friction_x": ("interval", [1.0, 0.3]), "spring_y": ("interval", [0.0, 0.1])}
     work = {name: ("interval", [1.0, 0.4]) for name in ("work", "residual", "bound")}
-    top, _ = figure_of(plot_energy, xr.Dataset({**parts, **work})).axes
+    times = {"start": ("interval", [0.0, 1.0]), "end": ("interval", [1.0, 1.5])}
+    top, _ = figure_of(plot_energy, xr.Dataset({**parts, **work}, times)).axes
     assert top.get_ylim()[1] > 1.02

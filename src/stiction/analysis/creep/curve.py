@@ -8,9 +8,11 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
+from stiction.recording.noise import rounding_error
 from stiction.trajectory import Trajectory
 
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
@@ -171,9 +173,13 @@ def _position(record: Record) -> Floats:
 
 
 def _grain(record: Record, position: Floats) -> float:
-    """Return the rounding error of the position (m), mainly that of V t."""
+    """Return the rounding error of a distance (m), mainly that of V t or of a reading in steps."""
     travelled = (record.drive_velocity or 0.0) * np.abs(record.time).max(initial=0.0)
-    return float(4.0 * np.spacing(max(travelled, np.abs(position).max(initial=0.0))))
+    rounding = 4.0 * np.spacing(max(travelled, np.abs(position).max(initial=0.0)))
+    if record.position is None or record.slider is not None:
+        return float(rounding)
+    # of a place, twice as much in each half of a bin as in the whole
+    return float(np.fmax(rounding, 8.0**0.5 * rounding_error(position, resolution(position))))
 
 
 def _least_width(record: Record, position: Floats, length: Floats, exact: bool) -> float:

@@ -75,6 +75,8 @@ def find_creep(
     mean = None
     if curves is not None:
         mean = attempt(missing, "creep", lambda: _mean(curves, known, record))
+    if mean is not None and by_force is None:
+        mean = _with_base(mean, known, record)
     if run is not None and run.slider.misalignment == 0.0:
         return CreepFound(curves, mean, None, None, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
@@ -157,6 +159,18 @@ def _mean(curves: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
             "contradict this force"
         )
     return mean
+
+
+def _with_base(mean: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
+    """Return mean creep whose error has that of the stiffness which was taken from the loading.
+
+    If the stated stiffness is right, the mass creeps while it is loaded, by the difference.
+    """
+    if record.position is not None or not stated.stiffness or not record.stiffness:
+        return mean
+    base = (record.drive_velocity or 0.0) * abs(1.0 - record.stiffness / stated.stiffness)
+    error = mean["velocity_error"]
+    return mean.assign(velocity_error=error.copy(data=np.hypot(np.nan_to_num(error), base)))
 
 
 def _divergence(mean: xr.Dataset, loading: float) -> Divergence:

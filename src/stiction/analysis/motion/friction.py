@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
@@ -40,6 +41,9 @@ LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading
 FEWEST_SAMPLES = 32  # least number of samples
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
+# Standard deviations of white noise: by so much, and no more, the mean of peaks is too high where
+# each peak is sought among some samples; 0.4 in the median of random records
+ABOVE = 0.5
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
 BLOCKS = 20  # means, whose scatter gives the standard error for correlated samples
 
@@ -130,9 +134,12 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
     )
     static = None
-    rounding = rounding_error(record.force, resolution(record.force)) if count else 0.0
+    shared = 0.0  # error of all peaks alike
+    if count:
+        shared = rounding_error(record.force, resolution(record.force))
+        shared = hypot(shared, ABOVE * white_noise(record.force))
     if regime.loads and count:
-        static = _over(peak, peak / load_at_peak, load, rounding)
+        static = _over(peak, peak / load_at_peak, load, shared)
     else:
         missing["static"] = (
             f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
@@ -140,7 +147,7 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     kinetic = None
     if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR) and count:
         reduced = 0.5 * (peak / load_at_peak + trough / load_at_trough)
-        kinetic = _over(0.5 * (peak + trough), reduced, load, rounding)
+        kinetic = _over(0.5 * (peak + trough), reduced, load, shared)
     elif comes_to_rest(record.slip_speed) and kind != STUCK:
         missing["kinetic"] = "the mass comes to rest"
     elif "turns" in regime.evidence:
@@ -264,7 +271,8 @@ def _sliding(record: Record, slides: Sliding, kind: str, relative: Floats) -> Me
     if first or kind != STEADY:
         first = int(np.searchsorted(time, 0.5 * (time[first] + time[last - 1])))
     force, reduced = record.force[first:last], record.force[first:last] / relative[first:last]
-    blocks = _over(part_means(force, BLOCKS), part_means(reduced, BLOCKS), load)
+    rounding = rounding_error(force, resolution(record.force))
+    blocks = _over(part_means(force, BLOCKS), part_means(reduced, BLOCKS), load, rounding)
     mean, spread = mean_and_spread(force)
     mu, mu_spread = (each / load for each in mean_and_spread(reduced))
     return Measured(mean, blocks.error, spread, mu, blocks.coefficient_error, mu_spread)

@@ -5,6 +5,7 @@ Steps of the velocity of the drive, or of the load, make them.
 
 from __future__ import annotations
 
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,6 +13,7 @@ import numpy as np
 from stiction.analysis.motion.changes.cycles import parts_of
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.parts.wording import number
+from stiction.analysis.signals.robust import statistics
 from stiction.arrays import Floats, xr
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
@@ -118,9 +120,12 @@ def find(found: Analysis) -> xr.Dataset | None:
 
 
 def _mean(values: Floats) -> tuple[float, float]:
-    """Return the mean without the first value, in which the change may lie, and its error."""
-    inner = values[1:]
-    return float(inner.mean()), float(inner.std(ddof=1)) / len(inner) ** 0.5
+    """Return the mean without the first value, in which the change may lie, and its error.
+
+    Values that are all equal, as of a coarse clock or converter, tell no error.
+    """
+    mean, error, _ = statistics(values[1:])
+    return mean, error or nan
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

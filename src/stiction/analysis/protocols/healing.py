@@ -19,7 +19,7 @@ from stiction.analysis.protocols.friction_test import (
     say_left_out,
 )
 from stiction.analysis.protocols.peaks import Peak, peaks_of_run, peaks_of_samples
-from stiction.analysis.protocols.settling import ROUNDED, line
+from stiction.analysis.protocols.settling import ROUNDED, trend
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -191,7 +191,7 @@ def _line(holds: Floats, gains: Floats, errors: Floats) -> tuple[float, float, f
     """Return the line through resolved peaks over the decadic logarithm of the hold."""
     known = np.isfinite(errors)
     x, gains, errors = np.log10(holds[known]), gains[known], errors[known]
-    slope, scatter, offset = line(x, gains) if len(x) else (nan, nan, nan)
+    slope, scatter, offset = trend(x, gains) if len(x) else (nan, nan, nan)
     if isnan(scatter):
         return slope, scatter, offset
     away = x - x.mean()

@@ -16,7 +16,7 @@ from stiction.analysis.protocols.friction_test import (
     say_left_out,
     without_harmonics,
 )
-from stiction.analysis.protocols.settling import line
+from stiction.analysis.protocols.settling import trend
 from stiction.analysis.record import Record, as_record
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
@@ -118,7 +118,7 @@ def load_dependence(
         few = "fewer than two levels of the load are held while the mass slides"
         raise ResultError(" ".join([f"{few}; see st.protocols.load_ramp, with hold.", *left_out]))
     loads, forces = np.array(rows).T
-    return LoadDependence(loads, forces, *line(loads, forces), left_out)
+    return LoadDependence(loads, forces, *trend(loads, forces), left_out)
 
 
 def _test(source: Trajectory | Record, program: LoadProgram | None) -> FrictionTest:

@@ -6,6 +6,7 @@ from math import nan, sqrt
 
 import numpy as np
 
+from stiction.analysis.signals.robust import error_of_few
 from stiction.arrays import Floats
 
 SETTLED = 0.2  # of a stretch: its end, in which friction counts as steady
@@ -40,6 +41,12 @@ def _blocks(time: Floats, values: Floats) -> tuple[Floats, Floats]:
     parts = [np.array_split(each, count) for each in (time, values)]
     times, means = (np.array([float(part.mean()) for part in each]) for each in parts)
     return times, means
+
+
+def trend(x: Floats, y: Floats) -> tuple[float, float, float]:
+    """Return what `line` does, with a larger error of few points, see `error_of_few`."""
+    slope, error, offset = line(x, y)
+    return slope, error_of_few(error, len(x) - 2.0), offset
 
 
 def line(x: Floats, y: Floats) -> tuple[float, float, float]:

@@ -95,9 +95,26 @@ def mean_and_spread(values: Floats) -> tuple[float, float]:
 
 
 def statistics(values: Floats) -> tuple[float, float, float]:
-    """Return mean, standard error and spread of values, of which neighbours may be alike."""
+    """Return mean, standard error and spread of values, of which neighbours may be alike.
+
+    `error_of_few` makes that of few values larger.
+    """
     mean, spread = mean_and_spread(values)
-    return mean, float(spread * (correlation_time(values) / len(values)) ** 0.5), spread
+    independent = len(values) / correlation_time(values)
+    return mean, float(error_of_few(spread / independent**0.5, independent - 1.0)), spread
+
+
+def error_of_few(error: float, freedom: float) -> float:
+    """Return a standard error of which two hold 95 % where few values tell it.
+
+    The quantile of Student's t with so many degrees of freedom, over two, and 1 at least.
+
+    >>> round(error_of_few(1.0, 2), 2), error_of_few(1.0, 1000)
+    (2.15, 1.0)
+    """
+    from scipy.special import stdtrit
+
+    return error * max(1.0, 0.5 * float(stdtrit(max(freedom, 1.0), BOUNDS_95[1])))
 
 
 def standard_error(values: Floats) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import copysign, isfinite, sqrt
+from math import copysign, isfinite
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +14,7 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSITIONAL,
     UNDETERMINED,
 )
+from stiction.analysis.signals.robust import statistics
 from stiction.auditing.simulated_test import (
     OSCILLATES,
     SLIDES,
@@ -132,8 +133,7 @@ def describe_motion(seen: SimulatedTest) -> str:
 
 def mean_in_words(values: np.ndarray, unit: str) -> str:
     """Return a mean over cycles, with its standard error where they differ."""
-    mean = float(values.mean())
-    error = float(values.std(ddof=1)) / sqrt(len(values)) if len(values) > 1 else 0.0
+    mean, error, _ = statistics(values)
     return with_error(mean, error if error > SHOWN * mean else 0.0, unit)
 
 

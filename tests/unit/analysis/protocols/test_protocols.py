@@ -39,7 +39,8 @@ def test_friction_heals_by_b_per_e_fold():
     line = np.polyfit(np.log10(holds), found.gain, 1)
     assert [found.per_decade, found.at_one_second] == pytest.approx(line)
     assert found.per_decade == pytest.approx(B * log(10.0), rel=0.03)
-    assert 0.0 < found.per_decade_error < 0.03 * found.per_decade
+    # three holds leave one degree of freedom, for which Student's factor is 6.4
+    assert 0.0 < found.per_decade_error < 6.4 * 0.01 * found.per_decade
     assert "per decade" in str(found)
 
 

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from itertools import pairwise
+from math import hypot
 from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.motion.changes.sliding import NO_LOAD
 from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import median, part_means, standard_error
 from stiction.arrays import Floats
-from stiction.recording.noise import white_noise
+from stiction.recording.noise import rounding_error, white_noise
 
 PARTS = 200  # means of a record
 LONG = 12  # of them, in each level; levels take so much of the record together
@@ -60,6 +62,9 @@ def levels(record: Record) -> list[Level]:
     for run in runs:
         (force, error), (mu, mu_error) = _mean(raw[run]), _mean(means[run] / load)
         ends = float(times[run.start] - half), float(times[run.stop - 1] + half)
+        level = record.force[slice(*np.searchsorted(record.time, ends))]
+        rounding = rounding_error(level, resolution(record.force))
+        error, mu_error = hypot(error, rounding), hypot(mu_error, rounding / load)
         found.append(Level(*ends, force, error, mu, mu_error))
     least = NO_LOAD * max(abs(each.force) for each in found)
     return [each for each in found if abs(each.force) > least]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import inf
+
 import numpy as np
 
 from stiction.analysis.motion.course import BEGINS_UNLOADED, course, final_fall, lone_fall
@@ -26,6 +28,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import stops_with_drive
 from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Line, beat_frequency, narrow_lines, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
@@ -58,7 +61,7 @@ def by_course(record: Record, found: Swings) -> Regime:
         evidence["line_taken_off"] = found.lines[0].frequency
     if drive:
         evidence["rate_over_drive"] = way.late_rate / drive
-    late = way.late_span / way.span if way.span > 0.0 else 1.0
+    late = min(max(way.late_span, _toggles(record)) / way.span, 1.0) if way.span > 0.0 else 1.0
     rising = way.change > 0.0 and way.one_way >= ONE_WAY
     slides = not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive
     end = float(record.time[-1])
@@ -97,7 +100,7 @@ def by_course(record: Record, found: Swings) -> Regime:
         return _steady(record, found, least, sure * (1.0 - vibrates), evidence)
     if fall := final_fall(record.time, record.force):
         return Regime(UNDETERMINED, 0.0, evidence | dict(zip(FINAL_FALL, fall, strict=True)))
-    kept = way.late_rate / way.early_rate
+    kept = way.late_rate / way.early_rate if way.early_rate else inf
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept
     if loading >= LOADING:
@@ -106,6 +109,15 @@ def by_course(record: Record, found: Swings) -> Regime:
             return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
         return Regime(STUCK, sure, evidence)
     return Regime(UNDETERMINED, 0.0, evidence)
+
+
+def _toggles(record: Record) -> float:
+    """Return the step of the readings between which a force goes back and forth at the end, N.
+
+    Its medians there may be alike, though it changes by less than a step.
+    """
+    end = record.force[-(len(record) // 4) :]
+    return resolution(record.force) if np.ptp(end) > 0.0 else 0.0
 
 
 def _steady(
