@@ -159,7 +159,23 @@ def test_creep_by_jerks_implies_no_misalignment():
     )
     found = st.analyse(st.simulate(slider, "3 s", sample_rate="1 kHz"))
     assert found.misalignment is None
-    assert "creeps by jerks and rests between them" in found.missing["misalignment"]
+    assert "creeps by jerks, in which friction is" in found.missing["misalignment"]
+
+
+def test_jerks_that_are_slow_beside_what_weakens_friction_do_no_harm():
+    """The mass rests for 43 % of its creep, and friction is F_0 all the same."""
+    slider = st.Slider(
+        mass=0.25,
+        k_x=1e3,
+        k_y=10e6,
+        phi="1 deg",
+        normal_load=10.0,
+        friction=st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f=0.01),
+        drive=st.ConstantVelocity("20 um/s"),
+    )
+    found = st.analyse(st.simulate(slider, "120 s", sample_rate="100 Hz"))
+    assert found.misalignment is not None
+    assert abs(found.misalignment.phi - slider.misalignment) < 2.0 * found.misalignment.phi_error
 
 
 def test_the_misalignment_of_the_closed_form_is_exact():
