@@ -16,7 +16,12 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
+from stiction.analysis.signals.robust import (
+    correlation_time,
+    largest_magnitude,
+    standard_error,
+    trimmed_mean,
+)
 from stiction.arrays import TINY, Floats, xr
 from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
@@ -28,7 +33,7 @@ DRAWN_OUT = 0.4  # of a fall: two thirds of what half a cosine takes from 90 % t
 REACH = 3.0  # standard deviations of noise: a force that is nearer to a peak may be on it
 RESTED = 1.1  # times two falls: rest makes a period longer; less may be another asymmetry
 PARTS = 200  # of a record, for the speed of a drive that may turn
-TO_AND_FRO = 0.5  # of its reach: a drive that comes less far on the whole turns
+TO_AND_FRO = 0.8  # of its reach: a drive that comes less far on the whole turns
 NOISE = 20.0  # standard deviations, by which means of the displacement do not differ
 FEW = 6  # samples in a slip
 ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
@@ -243,33 +248,37 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
     if record.drive_position is None or len(record) < FEW:
         return None
     elapsed = record.time - record.time[0]  # of times from 1970 rounding leaves no error
-    line, square = np.polyfit(elapsed, record.drive_position, 1, cov=True)
-    found, error = abs(float(line[0])), float(np.sqrt(square[0, 0]))
-    stated = record.drive_velocity or nan
+    line = np.polyfit(elapsed, record.drive_position, 1)
+    found, stated = abs(float(line[0])), record.drive_velocity or nan
     how = "slope of the drive's displacement"
-    speeds, reach = _speeds_of_parts(record.time, record.drive_position)
-    if found * record.duration < TO_AND_FRO * reach:
+    speeds, net, reach = _speeds_of_parts(record.time, record.drive_position)
+    if min(found * record.duration, net) < TO_AND_FRO * reach:
         found, how = float(np.median(speeds)), "median speed of its displacement, to and fro"
         error = float(speeds.std()) / len(speeds) ** 0.5
+    else:
+        left = record.drive_position - np.polyval(line, elapsed)
+        error = standard_error(left) / float(elapsed.std())
     return StatedQuantity("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
 
 
-def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float]:
-    """Return the speed in equal parts of a record (m/s), and how far it goes beyond its noise (m).
+def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float, float]:
+    """Return the speed in equal parts of a record (m/s), and how far they go (m).
 
-    Parts in which the drive turns are the fewest: the median speed is that between the turns.
+    That is from the first to the last, and in all, beyond noise. Parts in which the drive turns are
+    the fewest: the median speed is that between the turns.
     """
     parts = min(PARTS, len(time) // FEW)
     times, positions = (np.array_split(each, parts) for each in (time, position))
-    slopes, middles, left = [], [], 0.0
+    slopes, middles, left = [], [], []
     for t, x in zip(times, positions, strict=True):
         from_middle = t - t.mean()
         slopes.append(float(from_middle @ x / (from_middle @ from_middle)))
         middles.append(float(x.mean()))
-        rest = x - middles[-1] - slopes[-1] * from_middle
-        left += float(rest @ rest)
-    noise = (left / len(time)) ** 0.5
-    return np.abs(slopes), float(np.ptp(middles)) - NOISE * noise
+        left.append(x - middles[-1] - slopes[-1] * from_middle)
+    rest = np.concatenate(left)
+    noise = float(rest.std()) * (correlation_time(rest) * parts / len(rest)) ** 0.5
+    reach = float(np.ptp(middles)) - NOISE * noise
+    return np.abs(slopes), abs(middles[-1] - middles[0]), reach
 
 
 def _normal_load(record: Record) -> StatedQuantity | None:
