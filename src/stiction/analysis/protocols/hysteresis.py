@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import nan, pi
+from math import isnan, nan, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +29,7 @@ NO_WAY = 1e-9  # of a drive's travel: no way there and back
 FEWEST_SAMPLES = 20  # samples of a loop: an ellipse through them has 1.6 % less area
 A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
 MOST = 1e6  # such times between two jumps
+LATE = 0.2  # of the width, for which the mass slides before the drive turns
 VARIES = 0.01  # of the load: where it varies by more, a force over it is no coefficient
 
 
@@ -45,7 +46,9 @@ class Loop:
     width : float
         Distance between both branches at the middle force, m.
     friction : float
-        Half of the span of the force over the normal load; NaN where the load varies.
+        Half of the distance between the mean forces of both branches where they end, over the
+        normal load; half of the span of the force if the loop is not closed. NaN where the load
+        varies.
     closed : bool
         Whether the drive ends where it began.
     """
@@ -89,7 +92,7 @@ class Hysteresis:
             )
             for n, each in enumerate(self.loops, 1)
         ]
-        headings = ("loop", "area", "width", "half span over load")
+        headings = ("loop", "area", "width", "half height over load")
         open_ones = [f"loop {n}" for n, each in enumerate(self.loops, 1) if not each.closed]
         sentences = [said, *self.left_out]
         if open_ones:
@@ -260,8 +263,15 @@ def _loop(test: FrictionTest, way: _Way, first: _Turn, middle: _Turn, second: _T
     ]
     area = abs(float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(travel))))
     mean = float(load.mean())
-    friction = 0.5 * float(np.ptp(force)) / mean if np.ptp(load) <= VARIES * mean else nan
-    return Loop(travel, force, area, abs(sides[1] - sides[0]), friction, closed)
+    width, height = abs(sides[1] - sides[0]), float(np.ptp(force))
+    if closed and not isnan(width):
+        ends = [
+            float(force[part][np.abs(travel[part] - travel[part][-1]) <= LATE * width].mean())
+            for part in (~turned, turned)
+        ]
+        height = abs(ends[0] - ends[1])
+    friction = 0.5 * height / mean if np.ptp(load) <= VARIES * mean else nan
+    return Loop(travel, force, area, width, friction, closed)
 
 
 def _crossing(travel: Floats, above: Floats) -> float:

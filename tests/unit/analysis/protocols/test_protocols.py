@@ -8,6 +8,7 @@ from math import log, log10
 
 import numpy as np
 import pytest
+from tests.drawn import inside
 
 import stiction as st
 from stiction.presets.preset import on_a_line
@@ -80,6 +81,26 @@ def reversed_test():
         driven="spring",
     )
     return st.simulate(slider, sample_rate=100.0)
+
+
+def test_the_friction_of_a_loop_is_no_extreme_of_noise():
+    """Half of the span was too high by three standard deviations of the noise."""
+    off = []
+    for number, (decades, noise) in enumerate(inside(40, (0.4, 1.7), (0.001, 0.05))):
+        elastic = 1e-3  # m, of the spring in sliding
+        length = 2.0 * elastic * 10.0**decades
+        program = st.protocols.reversal_loops(1e-3, length, loops=2)
+        time = np.linspace(0.0, st.protocols.end(program), 6000)
+        X, slid, force = program.travel(0.0, time)[0], 0.0, []
+        for x in X:
+            slid = min(max(slid, x - elastic), x + elastic)
+            force.append(2.0 * (x - slid) / elastic)
+        force += 2.0 * noise * np.random.default_rng(number).standard_normal(len(time))
+        record = st.Record(time=time, force=force, normal_load=10.0)
+        loop = st.analysis.hysteresis(record, program).loops[-1]
+        off.append((loop.friction / 0.2 - 1.0) / noise)
+    assert abs(np.median(off)) < 0.05
+    assert np.abs(off).max() < 0.5
 
 
 def test_a_loop_of_constant_friction():
