@@ -11,6 +11,7 @@ import numpy as np
 from stiction.analysis.protocols.settling import RESTS, SETTLED, has_settled, line
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.robust import part_means, standard_error
 from stiction.arrays import Floats, Indices
 from stiction.drive import (
     ConstantLoad,
@@ -29,6 +30,7 @@ from stiction.trajectory import Trajectory
 
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
+BLOCKS = 20  # of the end of a stretch: their means tell of slow noise, too
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 LISTED = 3  # times that a sentence lists
 
@@ -120,6 +122,11 @@ class FrictionTest(NamedTuple):
         """Return the mean friction in the end of a stretch, NaN without samples."""
         near = self.late(stretch)
         return float(self.mu[near].mean()) if len(near) else nan
+
+    def steady_error(self, stretch: ConstantStretch) -> float:
+        """Return the standard error of `steady`, NaN of a single sample."""
+        means = part_means(self.mu[self.late(stretch)], BLOCKS)
+        return float(np.hypot(standard_error(means), self.off / stretch.load))
 
     def is_sampled(self, stretch: ConstantStretch) -> bool:
         """Return whether a stretch, and its end, have enough samples to see a change there."""

@@ -32,6 +32,7 @@ Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
 
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0
+SURE = 2.0  # standard errors beyond which a - b has a sign
 
 
 @dataclass(frozen=True)
@@ -60,6 +61,8 @@ class VelocityStep:
         Standard errors.
     law : {"ageing", "slip", "perrin"}
         Whose curve is fitted.
+    a_minus_b_error : float
+        Standard error; NaN if a single sample shows steady friction on one side.
     """
 
     time: float
@@ -79,6 +82,7 @@ class VelocityStep:
     a_error: float = nan
     b_error: float = nan
     law: Law = "ageing"
+    a_minus_b_error: float = nan
 
 
 @dataclass(frozen=True)
@@ -120,21 +124,29 @@ class VelocitySteps:
 
     def _a_minus_b(self) -> str:
         """Return how steady friction depends on speed, in a sentence."""
-        known = [each.a_minus_b for each in self.steps if not isnan(each.a_minus_b)]
+        known = [each for each in self.steps if not isnan(each.a_minus_b)]
         if not known:
             return "Friction has not settled after any step: a - b is not known."
-        mean = float(np.mean(known))
-        way = "weakens" if mean < 0.0 else "strengthens"
+        mean = float(np.mean([each.a_minus_b for each in known]))
+        shared = min(len(known), 2)  # steps that steady friction between two of them counts in
+        errors = np.array([each.a_minus_b_error for each in known])
+        error = float(np.sqrt(shared * errors @ errors)) / len(known)
+        way = "depends on speed in an unknown way"
+        if abs(mean) > SURE * error:
+            way = f"{'weakens' if mean < 0.0 else 'strengthens'} with speed"
+        elif not isnan(error):
+            way = "does not depend on speed beyond its error"
         few = f" of {len(known)} steps: after the others it has not settled"
         where = few if len(known) < len(self.steps) else ""
-        return f"Steady friction {way} with speed: a - b = {mean:+.4f} on average{where}."
+        value = f"{mean:+.4f} +- {number_text(error, '.1g')}"
+        return f"Steady friction {way}: a - b = {value} on average{where}."
 
     def __str__(self) -> str:
         """Return the section as text."""
         return str(self.section)
 
 
-HEADINGS = ("from", "to", "a - b", "law", "a", "+-", "b", "+-", "D_c", "+-")
+HEADINGS = ("from", "to", "a - b", "+-", "law", "a", "+-", "b", "+-", "D_c", "+-")
 
 
 def _row(step: VelocityStep) -> tuple[str, ...]:
@@ -143,6 +155,7 @@ def _row(step: VelocityStep) -> tuple[str, ...]:
         in_words(step.before, "m/s"),
         in_words(step.after, "m/s"),
         number_text(step.a_minus_b, "+.4f"),
+        number_text(step.a_minus_b_error, ".1g"),
         "none" if isnan(step.D_c) else step.law,
         number_text(step.a, ".4f"),
         number_text(step.a_error, ".1g"),
@@ -295,6 +308,7 @@ def _step(
     before, by = one.way * test.steady(one), log(data.rig.ratio)
     steady = data.after if test.has_settled(two) else nan
     up = 1.0 if by > 0.0 else -1.0
+    error = float(np.hypot(test.steady_error(one), test.steady_error(two))) / abs(by)
     lag = test.lag[test.within(two.start, two.end)]
     return VelocityStep(
         two.start,
@@ -314,4 +328,5 @@ def _step(
         fit.a_error,
         fit.b_error,
         law,
+        error if test.has_settled(two) else nan,
     )

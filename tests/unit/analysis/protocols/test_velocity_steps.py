@@ -10,7 +10,7 @@ import pytest
 from benchmarks.explore.draw import Draw
 from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
-from tests.drawn import SEED
+from tests.drawn import SEED, inside
 
 import stiction as st
 from stiction.analysis.protocols.inversion import StepData, invert
@@ -153,10 +153,37 @@ def test_of_a_rig_of_unknown_stiffness_only_the_levels_are_known():
     """It gave a = 0.0056 +- nothing, b = 0.031, D_c = 3.55 um, without a word."""
     found = st.analysis.velocity_steps(*soft_record("ageing", noise=1e-4))
     assert "The stiffness of the rig is not known: a, b and D_c are not determined." in str(found)
-    assert [row[3] for row in found.section.table.rows] == ["none", "none"]
+    assert [row[4] for row in found.section.table.rows] == ["none", "none"]
     for each in found.steps:
         assert np.isnan([each.a, each.b, each.D_c]).all()
         assert each.a_minus_b == pytest.approx(A - B, abs=1e-4)
+
+
+def test_what_is_said_of_steady_friction_is_beyond_its_error():
+    """Of 60 small a - b under noise that is, or is not, white; five had the wrong sign, now two."""
+    wrong, told, beyond = 0, 0, []
+    program = st.protocols.velocity_steps([1e-6, 1e-5, 1e-6], distance=2e-4)
+    time = np.arange(0.0, 420.0, 0.05)
+    slow, fast = time < 200.0, (time >= 200.0) & (time < 220.0)
+    for number, (size, decade) in enumerate(inside(60, (-1e-3, 1e-3), (-3.0, -2.0))):
+        mu = MU + np.where(fast, size * log(10.0), 0.0)
+        mu -= np.where(slow, 0.0, size * np.exp(-(time - np.where(fast, 200.0, 220.0)) / 1.0))
+        white, linger = np.random.default_rng(number).normal(size=len(time)), 0.9 * (number % 2)
+        mu += 10.0**decade * lfilter([(1.0 - linger**2) ** 0.5], [1.0, -linger], white)
+        found = st.analysis.velocity_steps(
+            st.Record(time=time, force=W * mu, normal_load=W), program
+        )
+        beyond += [
+            abs(each.a_minus_b - size) > 2.0 * each.a_minus_b_error
+            for each in found.steps
+            if not np.isnan(each.a_minus_b)
+        ]
+        opposite = "strengthens" if size < 0.0 else "weakens"
+        wrong += opposite in str(found)
+        told += "strengthens" in str(found) or "weakens" in str(found)
+    assert wrong <= 3
+    assert told >= 20
+    assert np.mean(beyond) < 0.2
 
 
 def test_where_nothing_evolves_there_is_no_distance():
