@@ -47,10 +47,11 @@ BY_RISE, BY_SLIPS = "rate at which the force rises", "duration of its slips"
 class StatedQuantity(NamedTuple):
     """A quantity as the record shows it, with its standard error, and as it is stated.
 
-    NaN where it is not known. The error is that of the scatter; a value that is found in a rough
-    way, such as k/m by the duration of slips, may be farther off than that. `low` and `high` bound
-    the ratio of both where they agree. Where the cycles change once, it is of some of them, a
-    `part` of the record in words: those that start from `begin` on and before `end`, s.
+    NaN where it is not known. The error is that of the scatter, and for the duration of slips of
+    what samples and noise hide; slips that friction makes longer may be farther off than that.
+    `low` and `high` bound the ratio of both where they agree. Where the cycles change once, it is
+    of some of them, a `part` of the record in words: those that start from `begin` on and before
+    `end`, s.
     """
 
     quantity: str
@@ -194,15 +195,17 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
     if kind == HARMONIC:
         how = f"period of its swings{' less the rest' if rests else ''}"
     swing = float(np.median(swings))
-    lowest, highest = HEAVIER, LIGHTER
+    lowest, highest, off = HEAVIER, LIGHTER, 0.0
     if kind != HARMONIC:
         if _main_part(record, cycles) < DRAWN_OUT:
             return None
         longer, shorter = _unseen_ends(record, cycles)
         lowest, highest = SLOW_SLIP * shorter**2, LIGHTER * longer**2
+        unseen = max(longer - 1.0, 1.0 - shorter)
+        off = 0.5 * float(np.hypot(unseen, 2.0 / (record.sample_rate * swing)))  # or a sample
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
-    error = 2.0 * found * _error(swings) / swing
+    error = 2.0 * found * float(np.hypot(_error(swings) / swing, off))
     return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, highest, how)
 
 
