@@ -26,6 +26,9 @@ WIDTHS = (0.02, 1.5, 1.3)
 # Relative accuracy of phi at the best: the transverse oscillation lowers friction, too. Of 600 rigs
 # of `python -m benchmarks.explore.misalignment` the intervals hold 95 %, with 0.1 they held 94 %
 THEORY = 0.15
+# Accuracy of F_0 by this theory, of its excess over the peak and of the peak itself: where the fit
+# has next to no excess, the peak is 1 % or 2 % off
+EXCESS, PEAK = 0.5, 0.01
 KNOWN = 0.3  # relative standard error above which an angle is not determined
 EARLY = 0.5  # F_0 above the peak by this share
 SURELY = 20.0  # deg: a smaller upper limit is worth a word
@@ -88,7 +91,8 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     error = float(np.hypot(error, THEORY * phi))
     _refuse(phi, error, excess, misfit, off)
     F_0 = curve.peak * (1.0 + excess)
-    F_0_error = curve.peak * excess * float(covariance[1, 1]) ** 0.5
+    over = excess * float(np.hypot(covariance[1, 1] ** 0.5, EXCESS))
+    F_0_error = curve.peak * float(np.hypot(over, PEAK))
     stiffness = (record.stiffness or 0.0) / (1.0 + off)
     return Misalignment(phi, error, F_0, F_0_error, stiffness)
 

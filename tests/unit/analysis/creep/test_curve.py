@@ -111,7 +111,7 @@ def test_a_known_lag_is_kept():
 
 def test_the_exponent_of_the_paper_s_run(curves):
     found = st.analysis.fit_divergence(st.analysis.mean_creep(curves), L_X / V)
-    assert abs(found.exponent - 0.5) < 2 * found.exponent_error < 0.1
+    assert abs(found.exponent - 0.5) < 2 * found.exponent_error < 0.25
 
 
 @pytest.mark.parametrize("degrees", [1, 3])

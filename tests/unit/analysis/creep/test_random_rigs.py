@@ -1,0 +1,74 @@
+"""Errors of what creep tells, on runs of random rigs whose friction weakens."""
+
+from math import pi
+
+import numpy as np
+import pytest
+from benchmarks.explore.draw import Draw
+from tests.drawn import SEED
+
+import stiction as st
+
+MOST = 3e4  # transverse oscillations in a run
+
+
+def weakening_rig(draw):
+    """Return a random rig, and how long it takes for a slip and five cycles more."""
+    k, mu, v = draw.decades(1e2, 1e4), draw.between(0.15, 0.7), draw.decades(2e-3, 2e-2)
+    load, rest = draw.decades(2.0, 40.0), draw.between(0.5, 0.85)
+    slider = st.Slider(
+        mass=draw.decades(0.05, 0.5) * (k / 1e3) ** 0.5,
+        k_x=k,
+        k_y=k * draw.decades(300.0, 3e3),
+        phi=f"{draw.between(1.0, 5.0)} deg",
+        normal_load=load,
+        friction=st.ExponentialWeakening(mu_0=mu, mu_inf=rest * mu, v_f=v),
+        drive=st.ConstantVelocity(v * draw.decades(0.005, 0.3)),
+    )
+    loading = slider.F_0 / k / slider.motion.velocity
+    cycle = 2.0 * (1.0 - rest) * loading
+    return slider, loading + 5.0 * cycle, cycle
+
+
+@pytest.fixture(scope="module")
+def beyond():
+    """By how many errors F_0 by force, and the exponent, are off."""
+    forces, exponents = [], []
+    for number in range(100):
+        slider, duration, cycle = weakening_rig(Draw(SEED, number))
+        if duration * (slider.k_y / slider.mass) ** 0.5 / (2.0 * pi) > MOST:
+            continue
+        run = st.simulate(slider, duration, sample_rate=800.0 / cycle)
+        analysis = st.analyse(run)
+        if analysis.divergence:
+            n = analysis.divergence
+            exponents.append(abs(n.exponent - 0.5) / n.exponent_error)
+        time, force = (run.data[name].values for name in ("time", "spring_x"))
+        noise = 1e-5 * np.ptp(force) * np.random.default_rng(number).standard_normal(len(force))
+        record = st.Record(
+            time=time,
+            force=force + noise,
+            stiffness=slider.k_x,
+            drive_velocity=slider.motion.velocity,
+        )
+        try:
+            found = st.analysis.misalignment_from_force(record)
+        except st.ResultError:
+            continue
+        forces.append(abs(found.F_0 - slider.F_0) / found.F_0_error)
+    return np.array(forces), np.array(exponents)
+
+
+def test_the_error_of_friction_at_zero_slip_holds_that_the_oscillation_lowers_the_peak(beyond):
+    """With the error of the fit alone 10 of 33 were off by more than two errors."""
+    forces, _ = beyond
+    assert len(forces) >= 20
+    assert np.mean(forces > 2.0) < 0.22
+    assert forces.max() < 20.0
+
+
+def test_the_error_of_the_exponent_holds_that_friction_weakens(beyond):
+    """With the error of the fit alone 17 of 41 were off by more than two errors."""
+    _, exponents = beyond
+    assert len(exponents) >= 20
+    assert np.mean(exponents > 2.0) < 0.2
