@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from functools import lru_cache
 from math import hypot, inf, pi, sqrt
 from typing import Any, NamedTuple
@@ -14,6 +13,7 @@ from stiction.friction import has_state
 from stiction.solver.segments import Stretch, begin, fastest_swing, speeds, system_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.text.validation import distinct
 
 # Of the force, as the error of its rounding: slip that grows out of it is known no better
 ROUNDING = 1e-15
@@ -128,17 +128,21 @@ def accuracy(
     )  # fmt: skip
 
 
-@lru_cache(maxsize=256, typed=True)  # laws of different classes may be equal as tuples
-def steepest_weakening(law: Hashable, speed: float) -> float:
+def steepest_weakening(law: Any, speed: float) -> float:
     """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m.
 
     It is sought at ten speeds per decade, and again around the steepest.
     """
-    known: Any = law
+    return _steepest(law, distinct(law), speed)
+
+
+@lru_cache(maxsize=256)
+def _steepest(law: Any, _: object, speed: float) -> float:
+    """Return the steepest weakening; one law is told from another by what is `distinct` in it."""
 
     def weakening(v: float) -> float:
         try:
-            return -float(known.slope(v))
+            return -float(law.slope(v))
         except ArithmeticError:  # compiled code tells inf there, or zero over it
             return 0.0
 

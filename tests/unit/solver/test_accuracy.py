@@ -110,3 +110,19 @@ def test_the_steepest_weakening():
     assert steepest_weakening(Late(0.2), 1.0) == pytest.approx(5.0, rel=2e-2)
     assert steepest_weakening(Late(0.2), 1e4) == pytest.approx(5.0, rel=2e-2)
     assert steepest_weakening(st.ExponentialWeakening(0.2, 0.1, 1e-30), 1.0) == pytest.approx(1e29)
+
+
+class Early(st.Coulomb):
+    """A law that weakens at all speeds."""
+
+    __slots__ = ()
+
+    def slope(law, v):
+        return -1.0
+
+
+def test_laws_of_different_classes_are_told_apart_inside_another():
+    """A run took the tolerances of an equal law that ran before it in the process."""
+    for kind, wanted in ((st.Coulomb, 0.0), (Early, 1.0)):
+        law = st.laws.Anisotropic(kind(0.31), 1.5, "20 deg")
+        assert steepest_weakening(law, 1.0) == wanted
