@@ -104,7 +104,7 @@ def _equal(one: object, other: object) -> bool:
     """Return whether two fields are equal; arrays are if all of their values are."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return np.array_equal(one, other, equal_nan=True)  # type: ignore[arg-type]
-    return bool(one == other)
+    return bool(distinct(one) == distinct(other))
 
 
 def distinct(value: object) -> object:
@@ -343,6 +343,9 @@ def validate(kind: type[T]) -> type[T]:
     setattr(new, READS, True)
     setattr(new, "__signature__", _signature(plain, kind))  # noqa: B010
     setattr(kind, "__repr__", write_call)  # noqa: B010
+    setattr(kind, "__eq__", _same)  # noqa: B010
+    setattr(kind, "__ne__", _differs)  # noqa: B010
+    setattr(kind, "__hash__", _hash)  # noqa: B010
     kind.__new__ = staticmethod(new)  # type: ignore[method-assign,assignment]
     setattr(kind, "__reduce__", _reduce)  # noqa: B010
     return kind
@@ -365,6 +368,19 @@ def write_call(value: Any) -> str:
     """Return the call that makes an equal NamedTuple."""
     hints = hints_of(type(value))
     return _call(value, {name: hints.get(name) for name in value._fields}, value._field_defaults)
+
+
+def _same(one: Any, other: object) -> bool:
+    """Compare class and fields; tuples of two classes would be equal."""
+    return bool(distinct(one) == distinct(other))
+
+
+def _differs(one: Any, other: object) -> bool:
+    return not _same(one, other)
+
+
+def _hash(value: Any) -> int:
+    return hash(distinct(value))
 
 
 def _reduce(value: Any) -> tuple[Any, ...]:

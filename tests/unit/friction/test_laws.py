@@ -297,3 +297,45 @@ def test_a_law_with_state_keeps_the_contract():
 def test_the_contract_finds_a_broken_law_with_state(kind, check, words):
     law = kind(0.2, 1e4)
     assert words in "\n".join(checks_of(law)[check](law, speeds))
+
+
+def test_laws_of_different_classes_differ():
+    """They were equal, and had one hash, where their numbers are; so were their sliders."""
+    ageing = st.laws.RateStateAgeing(0.01, 0.015, "1 um", 0.6, "1 um/s")
+    slip = st.laws.RateStateSlip(*ageing)
+    assert ageing != slip
+    assert len({ageing, slip, ageing[:], st.laws.RateStateAgeing(*ageing)}) == 3
+    assert st.Coulomb(0.2) != (0.2, 0.0)
+    assert st.Coulomb(0.2) == st.Coulomb(0.2)
+    assert st.laws.Anisotropic(Own(0.2), 1.5) != st.laws.Anisotropic(Other(0.2), 1.5)
+    paper = st.presets.nakano_popov_2020()
+    assert paper.replace(friction=Own(0.2)) != paper.replace(friction=Other(0.2))
+    programs = [
+        st.protocols.DriveProgram(velocity="1 mm/s", program=[kind("1 s")])
+        for kind in (st.protocols.Hold, st.protocols.Reversal)
+    ]
+    assert programs[0] != programs[1]
+
+
+class Own(NamedTuple):
+    """A law that is not validated."""
+
+    mu: float
+
+    def coefficient(law, v):
+        return law.mu
+
+    def slope(law, v):
+        return 0.0
+
+
+class Other(NamedTuple):
+    """Another one, with the same numbers."""
+
+    mu: float
+
+    def coefficient(law, v):
+        return 0.5 * law.mu
+
+    def slope(law, v):
+        return 0.0
