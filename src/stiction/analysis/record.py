@@ -23,7 +23,7 @@ from stiction.recording.sensor import Sensor
 from stiction.recording.stored import KNOWN, write_stored
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
-from stiction.text.samples import as_numbers, samples_to_si, unit_on
+from stiction.text.samples import as_numbers, samples_to_si
 from stiction.text.units import (
     FORCE,
     LENGTH,
@@ -33,6 +33,7 @@ from stiction.text.units import (
     Mass,
     PositiveSpeed,
     Stiffness,
+    unit_on,
 )
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory

@@ -22,6 +22,7 @@ from stiction.text.units import (
     Number,
     Rate,
     Whole,
+    bare,
     split_uncertain,
     to_si,
 )
@@ -115,6 +116,7 @@ class Sensor(Described):
         read, wrong = _split(given)
         kinds = dict.fromkeys(LEVELS, KINDS[unit]) | dict.fromkeys(RATES, KINDS_OF_RATES[unit])
         for name, kind in kinds.items():
+            read |= {name: bare(read[name])} if name in read else {}
             if not isinstance(read.get(name), str):
                 continue
             try:

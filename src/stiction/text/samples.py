@@ -56,14 +56,6 @@ def as_numbers(values: Any) -> Floats:
     return numbers
 
 
-def unit_on(values: Any) -> str | None:
-    """Return the unit that a pint quantity or an xarray array carries."""
-    if hasattr(values, "magnitude") and hasattr(values, "units"):
-        return str(values.units)
-    stated = getattr(values, "attrs", {}).get("units")
-    return None if stated is None else str(stated)
-
-
 def samples_to_si(values: Any, unit: str, kind: Kind) -> Any:
     """Convert samples from a unit to SI."""
     plain = getattr(values, "magnitude", values)

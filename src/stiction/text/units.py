@@ -82,6 +82,7 @@ else:
 
 # the annotations of a class by field, with their quantities
 hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, include_extras=True))
+ONE, DIMENSIONLESS = {"", "1"}, "dimensionless"  # units of numbers: of xarray's, of pint's
 LARGE = 1e6  # a number below it is written without a power of ten
 FACTOR = 12  # digits of a factor that is exact, such as 0.45359237 of a pound
 LONGEST_QUANTITY = 200  # characters of a number and its unit
@@ -177,11 +178,20 @@ def as_float(value: Any) -> float:
         return inf
 
 
+def unit_on(values: Any) -> str | None:
+    """Return the unit that a pint quantity or an xarray array carries."""
+    if hasattr(values, "magnitude") and hasattr(values, "units"):
+        return str(values.units)
+    stated = getattr(values, "attrs", {}).get("units")
+    return None if stated is None else str(stated)
+
+
 def bare(value: object) -> object:
-    """Turn a NumPy number into a Python number and a pint quantity into text."""
-    if hasattr(value, "magnitude") and hasattr(value, "units"):
-        return f"{bare(value.magnitude)!r} {value.units}"
-    return plain(value)
+    """Turn a NumPy number into a Python number, and one that carries a unit into text."""
+    unit, number = unit_on(value), plain(getattr(value, "magnitude", value))
+    if unit is None or number is value or isinstance(number, str):
+        return number
+    return f"{number!r} {unit if unit not in ONE else DIMENSIONLESS}"
 
 
 def _parse(text: str, kind: Kind) -> float:
@@ -203,6 +213,8 @@ def _parse(text: str, kind: Kind) -> float:
         raise _uncertain(text, kind)
     if not unit:
         raise fault(f"{echo(text)} has no unit; write for example {kind.example!r}")
+    if not kind.unit and unit == DIMENSIONLESS:
+        return number
     if not kind.unit:
         raise fault(
             f"{echo(text)} must be a number without a unit; write for example {kind.example}"

@@ -1,6 +1,7 @@
 """Sensors and synthetic measurements."""
 
 import numpy as np
+import pint
 import pytest
 from tests.drawn import inside
 
@@ -225,3 +226,8 @@ def test_what_is_known_of_a_zero_is_less_later_in_the_record():
         assert twice.zero_uncertainty <= once.zero_uncertainty <= zero_error + 3.0 * drift_error
         assert once.zero_drift_uncertainty == drift_error
         assert sensor.later(0.0) == sensor
+
+
+def test_a_level_may_be_a_quantity():
+    unit = pint.UnitRegistry()
+    assert st.Sensor(noise=2 * unit.mN).noise == st.Sensor(noise="2 mN").noise

@@ -3,6 +3,7 @@
 import numpy as np
 import pint
 import pytest
+import xarray as xr
 
 from stiction.text.quantity_text import percent, quantity_text
 from stiction.text.unit_text import COMMON, LONGEST_UNIT, factor
@@ -19,6 +20,7 @@ from stiction.text.units import (
 DAMPING = Kind("a damping constant", "N*s/m", "0.5 N*s/m")
 ANGLE = Kind("an angle", "rad", "1 deg")
 FREQUENCY = Kind("a frequency", "Hz", "10 kHz")
+NUMBER = Kind("a number", "", "0.2")
 LENGTH = Kind("a length", "m", "0.1 mm")
 
 DAMPINGS = """
@@ -52,6 +54,11 @@ def test_a_damping_constant_is_read_however_it_is_written(text):
         (np.array(3.0), FORCE, 3.0),
         (pint.UnitRegistry().Quantity(3, "kN"), FORCE, 3e3),
         (pint.UnitRegistry().Quantity(np.float64(2.0), "mm / s"), VELOCITY, 2e-3),
+        (pint.UnitRegistry().Quantity(0.2, ""), NUMBER, 0.2),
+        (xr.DataArray(2.0, attrs={"units": "mm/s"}), VELOCITY, 2e-3),
+        (xr.DataArray(2.0, attrs={"units": "deg"}), ANGLE, np.pi / 90),
+        (xr.DataArray(2.0, attrs={"long_name": "speed"}), VELOCITY, 2.0),
+        (xr.DataArray(0.2, attrs={"units": "1"}), NUMBER, 0.2),
     ],
 )
 def test_other_quantities(text, kind, value):
@@ -107,6 +114,8 @@ def test_what_is_written_in_decimals_becomes_the_nearest_float():
         (True, LENGTH, "is not a length"),
         (None, LENGTH, "is not a length"),
         (np.array([1.0, 2.0]), LENGTH, "is not a length"),
+        (xr.DataArray(2.0, attrs={"units": "g"}), VELOCITY, "is in g, not a unit of a velocity"),
+        (xr.DataArray(2.0, attrs={"units": "1"}), VELOCITY, "is in no unit, not a unit"),
         (np.float64(1.0), ANGLE, "degree or radian"),
     ],
 )

@@ -12,7 +12,7 @@ from stiction.arrays import Floats
 from stiction.drive.recorded.resolution import advice, roughness
 from stiction.drive.recorded.spline import Recording, recording, spline
 from stiction.errors import echo
-from stiction.text.samples import FrozenColumn, as_numbers, samples_to_si, unit_on
+from stiction.text.samples import FrozenColumn, as_numbers, samples_to_si
 from stiction.text.units import (
     FORCE,
     LARGEST,
@@ -23,6 +23,7 @@ from stiction.text.units import (
     Number,
     fault,
     in_words,
+    unit_on,
 )
 from stiction.text.validation import validate
 
