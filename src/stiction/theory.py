@@ -36,8 +36,12 @@ from stiction.arguments import is_numeric, name_arguments
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, echo
 from stiction.system.slider import Slider
+from stiction.text.units import unit_on
 
 # Zeros and infinities below are limits (no misalignment, no end of creep), not accidents.
+SI = {None, "1", "kg", "m", "s", "m/s", "s/m", "N", "N/m", "N*s/m", "rad"}
+REMEDY = ".to_base_units().magnitude of a quantity, or the values of an array, in SI"
+
 _limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")
 
 
@@ -342,7 +346,7 @@ def damping_number_of(slider: Slider, V: float, phi: float | None = None) -> flo
     Examples
     --------
     >>> import stiction as st
-    >>> round(damping_number_of(st.presets.nakano_popov_2020(), 1e-3), 1)
+    >>> round(st.theory.damping_number_of(st.presets.nakano_popov_2020(), 1e-3), 1)
     3623.9
     """
     angle = abs(slider.misalignment if phi is None else phi)
@@ -499,8 +503,18 @@ def critical_stiffness(
     return (b - a) * W / D_c * (1.0 + m * V**2 / (a * W * D_c))
 
 
+def __dir__() -> list[str]:
+    """List the closed forms, without what they are made with."""
+    own = (getattr(each, "__module__", "") == __name__ for each in globals().values())
+    listed = (name for name, is_own in zip(globals(), own, strict=True) if is_own)
+    return sorted(name for name in listed if not name.startswith("_"))
+
+
 def _floats(*values: ArrayLike) -> tuple[Floats, ...]:
     for value in values:
+        if (unit := unit_on(value)) not in SI:
+            told = f"the theory takes numbers in SI, not in {unit}; write {REMEDY}"
+            raise DescriptionError.of("", told)
         if not is_numeric(value):
             told = f"the theory takes numbers in SI, or arrays of them, not {echo(value)}"
             raise DescriptionError.of("", told)

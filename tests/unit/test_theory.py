@@ -8,11 +8,14 @@ condition of what is computed, which is written out at each place.
 import math
 
 import numpy as np
+import pint
 import pytest
+import xarray as xr
 from scipy.integrate import quad, solve_ivp
 from tests.drawn import all_over
 
 from stiction import theory
+from stiction.errors import DescriptionError
 
 EPS = np.finfo(float).eps
 F_0, V, PHI, M, K_X, K_Y = 2.0, 1e-3, math.radians(1.0), 0.25, 1e3, 1e7  # the paper's Fig. 3
@@ -297,3 +300,23 @@ def test_sizes_have_no_sign_and_limits_no_warning():
     assert np.isinf(theory.critical_stiffness(0.01, 0.015, 0.0, 1.0, 1e-6, 1.0))
     assert np.isinf(theory.slip_length(1.0, 0.0))
     assert np.isinf(theory.natural_frequency(1.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "said"),
+    [
+        (pint.UnitRegistry().Quantity(1.0, "kN/m"), "not in kilonewton / meter"),
+        (pint.UnitRegistry().Quantity(np.ones(2), "N/m"), r"write .to_base_units\(\).magnitude"),
+        (xr.DataArray(1.0, attrs={"units": "kN/m"}), "not in kN/m"),
+    ],
+)
+def test_numbers_with_units_are_refused(stiffness, said):
+    """Their units were stripped: 1 kN/m was 1 N/m."""
+    with pytest.raises(DescriptionError, match=said):
+        theory.natural_frequency(stiffness, 0.25)
+    assert theory.natural_frequency(xr.DataArray(1.0, attrs={"units": "N/m"}), 0.25) == 2.0
+
+
+def test_the_closed_forms_are_listed_alone():
+    assert {"creep_time", "damping_number_of"} < {*dir(theory)}
+    assert not {"echo", "is_numeric", "np", "Slider", "Floats"} & {*dir(theory)}
