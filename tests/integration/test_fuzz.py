@@ -70,7 +70,7 @@ GOOD = st.Description(fuzz.PAPERS, st.Initial(), fuzz.SETTINGS).to_toml()
         ("0x" + "f" * 5000, "mass", "has at most 64 bits"),
         ("1e400", "mass", "inf is not finite"),
         ("-1e61", "mass", "is beyond 1e+60 kg"),
-        ("1e-320", "mass", "must be greater than 0"),
+        ("1e-320", "mass", "must be greater than 0 (in SI, below 1e-60 counts as 0)"),
         ("'1 N**9999999'", "mass", "'*' is in the place of a unit"),
         ("'1 N^2^9^9^9^9'", "mass", "'^9^9^9^9' is not a unit"),
         ("'1 kg" + " m" * 5000 + "'", "mass", "has 10004 characters"),

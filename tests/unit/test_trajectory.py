@@ -249,3 +249,12 @@ def test_the_largest_force_is_that_of_either_direction(slider, velocity, tmp_pat
     solution, table = motion.simulate(run.description, run.samples["time"], lambda: None)
     facts = motion.facts(run.description, solution, table, None)
     assert [each["value"] for each in facts[:2]] == [abs(force), time]
+
+
+def test_samples_are_a_mapping(run):
+    assert [*run.samples] == [*run.samples.columns]
+    assert len(run.samples) == len(VARIABLES) + 1
+    assert "u_x" in run.samples
+    assert "ux" not in run.samples
+    with pytest.raises(KeyError, match="unknown column 'ux'; did you mean 'u_x'"):
+        run.samples["ux"]

@@ -6,7 +6,7 @@ that only computes and writes does without them.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -16,6 +16,7 @@ from stiction.arrays import xr
 from stiction.friction import states
 from stiction.system.description import Description
 from stiction.system.slider import Slider
+from stiction.text.validation import equal, unknown_name
 
 # name: (unit, long name), as CF attributes
 VARIABLES = {
@@ -62,7 +63,7 @@ class Column(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ColumnTable:
+class ColumnTable(Mapping[str, np.ndarray]):
     """Columns by name, and attributes of the whole.
 
     Examples
@@ -71,6 +72,8 @@ class ColumnTable:
     >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="1 kHz")
     >>> run.samples["time"][-1], run.samples.columns["u_x"].attributes["units"]
     (np.float64(0.02), 'm')
+    >>> "u_x" in run.samples, list(run.samples)[:2]
+    (True, ['time', 'u_x'])
     """
 
     columns: Mapping[str, Column]
@@ -83,7 +86,27 @@ class ColumnTable:
 
     def __getitem__(self, name: str) -> np.ndarray:
         """Return the values of a column."""
+        if name not in self.columns:
+            raise KeyError(unknown_name("column", str(name), self.columns))
         return self.columns[name].values
+
+    def __iter__(self) -> Iterator[str]:
+        """Go through the names of the columns."""
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        """Return the number of columns."""
+        return len(self.columns)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare names and values; NaN equals NaN."""
+        return (
+            isinstance(other, ColumnTable)
+            and self.columns.keys() == other.columns.keys()
+            and all(equal(self[name], other[name]) for name in self)
+        )
+
+    __hash__ = None  # type: ignore[assignment]
 
 
 def as_dataset(table: ColumnTable) -> xr.Dataset:

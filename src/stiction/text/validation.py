@@ -18,7 +18,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.names import session_name
 from stiction.text.quantity_text import RIGID, angle_text
-from stiction.text.units import as_float, hints_of, kind_of, unit_of
+from stiction.text.units import QUANTITY, SMALLEST, as_float, bare, hints_of, kind_of, unit_of
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -67,11 +67,20 @@ class Described(BaseModel, metaclass=_Presented):
             raise DescriptionError.of(name, told)
         collect(name, super().__init__, known, values)
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuse to change a field: what was derived from it would remain."""
+        if name in type(self).model_fields:
+            remedy = "make another object"
+            if hasattr(self, "replace"):
+                remedy = f"write {type(self).__name__.lower()}.replace({name}={echo(value)})"
+            raise DescriptionError.of(f"{type(self).__name__}.{name}", f"is frozen; {remedy}")
+        super().__setattr__(name, value)
+
     def __eq__(self, other: object) -> bool:
         """Compare the fields; the library would compare what was derived from them, too."""
         names = type(self).model_fields
         return type(self) is type(other) and all(
-            _equal(getattr(self, name), getattr(other, name)) for name in names
+            equal(getattr(self, name), getattr(other, name)) for name in names
         )
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
@@ -100,7 +109,7 @@ class Described(BaseModel, metaclass=_Presented):
         return repr(self)
 
 
-def _equal(one: object, other: object) -> bool:
+def equal(one: object, other: object) -> bool:
     """Return whether two fields are equal; arrays are if all of their values are."""
     if isinstance(one, np.ndarray) or isinstance(other, np.ndarray):
         return np.array_equal(one, other, equal_nan=True)  # type: ignore[arg-type]
@@ -241,6 +250,9 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
         case "unexpected_keyword_argument":
             return unknown_name("parameter", str(detail["loc"][-1]), known)
         case "greater_than":
+            if limit["gt"] == 0.0 and _is_positive(value):
+                rule = f"must be greater than 0 (in SI, below {SMALLEST:g} counts as 0)"
+                return f"{rule}, is {echo(value)}"
             return f"must be greater than {limit['gt']:g}, is {echo(value)}"
         case "greater_than_equal":
             return f"must not be below {limit['ge']:g}, is {echo(value)}"
@@ -254,6 +266,13 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
             return detail["msg"].removeprefix("Value error, ")
         case _:
             return f"{detail['msg']}, is {echo(value)}"
+
+
+def _is_positive(value: object) -> bool:
+    """Return whether a value, perhaps with a unit, is a number above 0."""
+    found = QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    number = float(found[1].replace("−", "-")) if found else bare(value)
+    return isinstance(number, int | float) and number > 0.0
 
 
 def unknown_name(what: str, name: str, known: Iterable[str]) -> str:

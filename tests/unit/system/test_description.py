@@ -169,7 +169,7 @@ def test_round_trip_and_pickle(tmp_path):
 
 
 def test_a_slider_is_frozen(slider):
-    with pytest.raises(Exception, match="frozen"):
+    with pytest.raises(st.DescriptionError, match=r"frozen; write slider.replace\(mass=1.0\)"):
         slider.mass = 1.0
 
 
