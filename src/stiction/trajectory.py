@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -69,7 +69,7 @@ class Statistics:
     mapped: int = 0
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
     """The result of a run; data only.
 
@@ -96,7 +96,7 @@ class Trajectory:
 
     description: Description
     arrays: Callable[[], ColumnTable]
-    stick_intervals: np.ndarray = field(compare=False)
+    stick_intervals: np.ndarray
     status: Status
     statistics: Statistics
 
@@ -105,6 +105,19 @@ class Trajectory:
         n, end = len(self.samples["time"]), float(self.samples["time"][-1])
         sticks = self.statistics.stick_count
         return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
+
+    def __eq__(self, other: object) -> bool:
+        """Compare description, status, statistics, sticks and samples."""
+        return isinstance(other, Trajectory) and (
+            (self.description, self.status, self.statistics)
+            == (other.description, other.status, other.statistics)
+            and np.array_equal(self.stick_intervals, other.stick_intervals)
+            and self.samples == other.samples
+        )
+
+    def __hash__(self) -> int:
+        """Agree with equality."""
+        return hash((self.status, self.statistics))
 
     def _repr_html_(self) -> str:
         head = Section("Run", [str(self), f"Status: {self.status.value}."], self._facts())

@@ -1,5 +1,7 @@
 """Results: the contract's variables, units, stick intervals, files."""
 
+import pickle
+
 import h5netcdf
 import numpy as np
 import pytest
@@ -249,6 +251,16 @@ def test_the_largest_force_is_that_of_either_direction(slider, velocity, tmp_pat
     solution, table = motion.simulate(run.description, run.samples["time"], lambda: None)
     facts = motion.facts(run.description, solution, table, None)
     assert [each["value"] for each in facts[:2]] == [abs(force), time]
+
+
+def test_a_run_equals_itself_again_loaded_and_copied(run, slider, tmp_path):
+    again = st.simulate(slider, "50 ms", sample_rate="10 kHz")
+    assert run == again
+    assert hash(run) == hash(again)
+    assert run == st.load(run.save(tmp_path / "a.nc"))
+    assert run == pickle.loads(pickle.dumps(run))
+    assert run != st.simulate(slider, "50 ms", sample_rate="20 kHz")
+    assert run != st.simulate(slider.replace(mass="251 g"), "50 ms", sample_rate="10 kHz")
 
 
 def test_samples_are_a_mapping(run):

@@ -113,6 +113,16 @@ class Analysis(NamedTuple):
     warnings: tuple[str, ...]
     parts: dict[str, Any]
 
+    def __eq__(self, other: object) -> bool:
+        """Compare source, record and report: what was found follows from them."""
+        return isinstance(other, Analysis) and (
+            (self.source, self.record, str(self)) == (other.source, other.record, str(other))
+        )
+
+    def __ne__(self, other: object) -> bool:
+        """Return the opposite; a tuple has its own."""
+        return not self == other
+
     @property
     def energy(self) -> xr.Dataset | None:
         """The energy budget of each cycle (`stiction.analysis.energy_budget`); for runs only."""

@@ -31,6 +31,7 @@ from stiction.names import warn_renamed
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mobility_tensor
+from stiction.text.validation import equal
 
 STABLE, UNSTABLE = "stable", "unstable"
 BOUNDARY = "on the boundary of stability within its uncertainty"
@@ -78,6 +79,16 @@ class Linearisation:
     state: Floats
     matrix: Floats
     error: Floats
+
+    def __eq__(self, other: object) -> bool:
+        """Compare slider and matrix."""
+        return isinstance(other, Linearisation) and (
+            self.slider == other.slider and equal(self.matrix, other.matrix)
+        )
+
+    def __hash__(self) -> int:
+        """Agree with equality."""
+        return hash(self.names)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

@@ -20,6 +20,7 @@ from stiction.linear_stability.eigenvalues import (
 from stiction.linear_stability.linear import BOUNDARY, disturbance, steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
+from stiction.text.validation import equal
 
 POINTS = 65  # in the first scan of a range
 STEEPER = 100.0  # times as steep between two points as around them may a growth rate be
@@ -59,6 +60,14 @@ class Critical(NamedTuple):
     frequencies: Floats
     stable: tuple[bool, ...]
     neutral: bool = False
+
+    def __eq__(self, other: object) -> bool:
+        """Compare the fields, of arrays the values."""
+        return isinstance(other, Critical) and all(map(equal, self, other))
+
+    def __ne__(self, other: object) -> bool:
+        """Return the opposite; a tuple has its own."""
+        return not self == other
 
     @property
     def stretches(self) -> list[tuple[float, float, bool]]:

@@ -1,5 +1,6 @@
 import csv
 import json
+import pickle
 from math import degrees
 
 import numpy as np
@@ -289,3 +290,9 @@ def test_the_motion_agrees_with_the_oscillation_in_noise(samples, period, noise,
     if "hidden" in found.regime.evidence:
         assert 1e-3 * period * found.regime.evidence["hidden"] == pytest.approx(1.0, rel=0.01)
         assert found.regime.evidence["hidden_height"] == pytest.approx(2.0, rel=0.4)
+
+
+def test_an_analysis_equals_its_copy(slider):
+    found = st.analyse(st.simulate(slider, "1 s", sample_rate="1 kHz"))
+    assert found == pickle.loads(pickle.dumps(found))
+    assert found != st.analyse(st.simulate(slider, "1.1 s", sample_rate="1 kHz"))

@@ -1,6 +1,7 @@
 """Linearised steady sliding: against closed forms, analytic derivatives, and simulation."""
 
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -572,3 +573,14 @@ def test_the_disturbed_mode_is_a_whole_number_of_one_that_there_is(slider):
     for mode, says in ((1.5, "a whole number, is 1.5"), (True, "is True"), (4, "below 4, the")):
         with pytest.raises(st.DescriptionError, match=says):
             linear.disturbed_start(mode=mode)
+
+
+def test_examinations_and_their_copies_are_equal(slider):
+    """Of critical values the comparison was a ValueError: the truth of an array."""
+    found = st.stability(slider, over="phi")
+    again = pickle.loads(pickle.dumps(found))
+    assert again.criticals[0] == found.criticals[0]
+    assert again.sliding == found.sliding
+    assert again == found
+    assert found.criticals[0] != found.criticals[0]._replace(values=np.zeros(1))
+    assert found != st.stability(slider.replace(mass=1.0), over="phi")
