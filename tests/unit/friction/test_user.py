@@ -234,6 +234,27 @@ class Table(NamedTuple):
         return law.way * law.values[1] * math.exp(-v / 0.05) / 0.05
 
 
+class Falling(NamedTuple):
+    """Friction that falls below zero beyond a speed."""
+
+    mu_0: float
+    end: float
+
+    def coefficient(law, v):
+        return law.mu_0 * (1.0 - v / law.end)
+
+    def slope(law, v):
+        return -law.mu_0 / law.end
+
+
+@pytest.mark.parametrize(("end", "v"), [(2e-3, "0.01"), (5.0, "10")])
+def test_friction_that_is_negative_at_any_speed_is_refused(slider, end, v):
+    """Beyond 1 mm/s it was not seen, and such runs ended as completed."""
+    with pytest.raises(st.DescriptionError, match=rf"coefficient\(law, {v}\) of 'Falling' is -"):
+        slider.replace(friction=Falling(0.2, end))
+    assert slider.replace(friction=Falling(0.2, 20.0))
+
+
 @pytest.mark.parametrize("of", [lambda law: law, lambda law: st.laws.Anisotropic(law, ratio=1.5)])
 def test_a_law_made_in_python_is_checked_as_one_from_a_file(slider, of):
     """A list ended runs with "unhashable type"; with the slope's sign turned they were wrong."""

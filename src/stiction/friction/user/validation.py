@@ -35,6 +35,7 @@ WRITE = (
 ENDING = "bound each loop: for _ in range(50)"
 RESERVED = {"law", "source"}  # keys of [friction] that are not parameters
 PROBED = (0.0, 1e-3)  # m/s
+DECADES = (0.0, *(10.0**power for power in range(-9, 2)))  # m/s: where friction is not negative
 SLOPES = (1.3e-6, 1.7e-4, 1.1e-2, 0.23)  # m/s: at such numbers no law has a kink
 WRONG = 0.01  # of two slopes: by so much they may differ beside the difference's error
 
@@ -201,7 +202,7 @@ def _wrong(law: Any, _: object) -> tuple[str, str] | None:
 
     Where Python cannot tell a value, compiled code may: then nothing is known to be wrong.
     """
-    for v in PROBED:
+    for v in DECADES:
         if (mu := _value(law.coefficient, v)) < 0.0:
             what = f"is {mu:g}; it must not be negative: friction would push the mass on"
             return f"coefficient(law, {v:g})", what
