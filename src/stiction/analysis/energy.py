@@ -118,6 +118,11 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
 def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
     """Return the edges, if they are valid."""
     first, last = (float(run.samples["time"][i]) for i in (0, -1))
+    if first == last:
+        raise ResultError(
+            f"the run has one sample, at {first:g} s, and no time between samples; simulate it "
+            "with a higher sample_rate"
+        )
     if edges is None:
         return np.array([first, last])
     try:

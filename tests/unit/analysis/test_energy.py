@@ -269,3 +269,11 @@ def test_bars_end_below_the_frame():
     times = {"start": ("interval", [0.0, 1.0]), "end": ("interval", [1.0, 1.5])}
     top, _ = figure_of(plot_energy, xr.Dataset({**parts, **work}, times)).axes
     assert top.get_ylim()[1] > 1.02
+
+
+@pytest.mark.filterwarnings("error")
+def test_one_sample_is_drawn_but_has_no_energy_budget(slider):
+    one = st.simulate(slider, "50 ms", sample_rate=0.1)
+    one.plot()
+    with pytest.raises(st.ResultError, match="one sample, at 0 s"):
+        st.analysis.energy_budget(one)

@@ -461,7 +461,8 @@ def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
     """
     times = run.samples["time"]
     edges = np.linspace(times[0], max(times[-1], np.nextafter(times[0], np.inf)), bins + 1)
-    share = 100.0 * np.diff(stuck_until(edges, run.stick_intervals)) / np.diff(edges)
+    widths = np.diff(edges)  # zero in a run of one sample
+    share = 100.0 * np.diff(stuck_until(edges, run.stick_intervals)) / np.where(widths, widths, 1.0)
     ax.set_ylabel("stuck (%)")
     whole = float(share.mean())
     if whole < HARDLY:
