@@ -285,9 +285,12 @@ def reader(name: str, unit: str, example: str) -> BeforeValidator:
     return BeforeValidator(partial(to_si, kind=Kind(name, unit, example)))
 
 
-def _as_list(value: object) -> object:
+def _as_list(value: Any) -> object:
     """Return an array as a list; refuse a single value."""
-    value = value.tolist() if hasattr(value, "tolist") else value
+    if hasattr(value, "tolist"):
+        value = value.tolist()
+    elif getattr(value, "ndim", 0) == 1:  # of xarray: each value carries the unit
+        value = [*value]
     if not isinstance(value, list | tuple):
         raise fault(f"{echo(value)} is not a list of values; write them in brackets: [..., ...]")
     return value

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+import xarray as xr
 from tests.drawn import inside
 
 import stiction as st
@@ -339,3 +340,9 @@ class Other(NamedTuple):
 
     def slope(law, v):
         return 0.0
+
+
+def test_a_table_and_an_axis_take_arrays_with_units():
+    speeds = xr.DataArray([0.0, 5.0], dims="v", attrs={"units": "mm/s"})
+    assert st.laws.Table(v=speeds, mu=[0.2, 0.1]) == st.laws.Table(v=[0.0, 5e-3], mu=[0.2, 0.1])
+    assert st.Values(speeds).values == ("0.0 mm/s", "5.0 mm/s")

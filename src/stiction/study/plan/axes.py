@@ -20,7 +20,7 @@ MOST = 1_000_000_000  # values of an axis
 
 def _list(value: Any) -> Any:
     value = value.tolist() if hasattr(value, "tolist") else value
-    if not is_list(value) or not value:
+    if not is_list(value) or len(value) == 0:
         raise ValueError(
             f"{echo(value)} is not a list of values; write them in brackets: [..., ...]"
         )
