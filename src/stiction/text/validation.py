@@ -127,7 +127,11 @@ def distinct(value: object) -> object:
     >>> distinct(st.protocols.Hold(1.0)) == distinct(st.protocols.Reversal(1.0))
     False
     """
-    return (type(value), *map(distinct, value)) if isinstance(value, tuple) else value
+    if not isinstance(value, tuple):
+        return value
+    if any(issubclass(kind, tuple) for kind in {*map(type, value)}):
+        return type(value), *map(distinct, value)
+    return type(value), tuple(value)  # quick, of a table with many points
 
 
 def _own_names(cls: Any, names: Iterable[str]) -> list[str]:
