@@ -11,6 +11,7 @@ from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
+from stiction.analysis.signals.robust import error_of_few
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.quantity_text import percent
@@ -186,13 +187,10 @@ def _fit(curve: LoadingCurve) -> _Fit:
 
 def _over_cycles(curve: LoadingCurve, gain: Floats) -> float:
     """Return the standard error of phi from the shift that each cycle causes."""
-    from scipy.special import stdtrit  # the quantile of Student's t
-
     count = len(curve.apart)
     if count < 2:
         return 0.0
-    wide = max(1.0, 0.5 * float(stdtrit(count - 1, 0.975)))
-    return float(wide * (curve.apart @ gain).std(ddof=1) / count**0.5)
+    return error_of_few(float((curve.apart @ gain).std(ddof=1)) / count**0.5, count - 1)
 
 
 def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) -> None:
