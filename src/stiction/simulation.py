@@ -54,13 +54,13 @@ def simulate(
     duration : float or str, optional
         How long to simulate, s; until the programs of drive and load end, if they do.
     sample_rate : float or str, optional
-        Output samples per second, at start, start + 1/rate, ... up to and including the
-        end; 0 for the first and last state only. When left out, 20 in each period of the
-        faster natural oscillation, or of what shakes drive or load if that is faster still,
-        while these are no more than 200 000; then so many, but 32 in each period of the slower
-        natural oscillation at least, up to a million in all; and 1000 in the shortest run. With
-        ``multiscale=True`` the first and last state only. Samples never influence the steps, and
-        stick intervals are all recorded anyway.
+        Output samples per second, at start, start + 1/rate, ... as far as the end, which is
+        one if it falls on it; 0 for the first and last state only. When left out, 20 in each
+        period of the faster natural oscillation, or of what shakes drive or load if that is
+        faster still, while these are no more than 200 000; then so many, but 32 in each period of
+        the slower natural oscillation at least, up to a million in all; and 1000 in the shortest
+        run. With ``multiscale=True`` the first and last state only. Samples never influence the
+        steps, and stick intervals are all recorded anyway.
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error of u_x
         is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the default), relative

@@ -199,7 +199,8 @@ class Trajectory:
         times = self.samples["time"]
         first, last = float(times[0]), float(times[-1])
         if not first <= wanted <= last:
-            raise ResultError(f"the run goes from {first:g} s to {last:g} s, not to {wanted:g} s")
+            sampled = f"the run is sampled from {first:g} s to {last:g} s"
+            raise ResultError(f"{sampled}, not at {wanted:g} s")
         at = len(times) - 1 - int(np.argmin(np.abs(times[::-1] - wanted)))  # of two, the later one
         names = ("u_x", "u_y", "v_x", "v_y", "time")
         values: dict[str, Any] = {name: float(self.samples[name][at]) for name in names}

@@ -123,3 +123,23 @@ def test_a_position_in_steps_does_not_rest():
     assert curve is not None
     off = np.abs(curve["velocity"] - creep * V)
     assert float((off < 3.0 * curve["velocity_error"]).mean()) > 0.9
+
+
+@pytest.mark.parametrize("drifts", [False, True])
+def test_the_rate_of_loading_of_few_cycles(drifts):
+    """A load cell that drifts seems to be loaded; of few rates the scatter tells little."""
+    random, V, k, found = np.random.default_rng(7), 1e-3, 1e3, []
+    for _ in range(40):
+        count, rise = int(random.integers(4, 10)), 200
+        one = np.r_[np.linspace(0.0, 1.0, rise), np.linspace(1.0, 0.0, 12)[1:-1]]
+        force = 1.0 + k * V * (rise - 1) * 5e-3 * np.tile(one, count)
+        time = 5e-3 * np.arange(len(force))
+        force += 0.02 * alike(random, len(force)) + drifts * random.uniform(-0.05, 0.05) * time
+        seen = st.analyse(
+            st.Record(time=time, force=force, normal_load=W, stiffness=k, drive_velocity=V)
+        )
+        rate = [x for x in seen.parts["metadata"] if x.quantity == "stiffness times drive velocity"]
+        found += [(each.found, each.error) for each in rate[:1]]
+    assert len(found) > 30
+    values, errors = np.transpose(found)
+    assert np.mean(np.abs(values - k * V) > 2.0 * errors) < MOST

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import inf, isfinite, nan, pi
+from math import hypot, inf, isfinite, nan, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -18,6 +18,7 @@ from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import (
     correlation_time,
+    error_of_few,
     largest_magnitude,
     standard_error,
     trimmed_mean,
@@ -117,7 +118,12 @@ def _loading_rates(record: Record, kind: str, cycles: xr.Dataset) -> list[Stated
         return []
     slopes, starts = cycles["stick_slope"].values, cycles["start"].values
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
-    whole = StatedQuantity(LOADING_RATE, "N/s", *_typical(slopes), stated, SLOWER, FASTER, BY_RISE)
+    drift = find_drift(record, cycles)  # of the load cell, it loads, too; of friction, it does not
+    off = abs(drift.rate) if isfinite(drift.error) else 0.0
+    found, error = _typical(slopes)
+    whole = StatedQuantity(
+        LOADING_RATE, "N/s", found, hypot(error, off), stated, SLOWER, FASTER, BY_RISE
+    )
     places = parts_of(cycles["period"].values)
     if len(places) < 2:
         if steady_change(slopes) is None:
@@ -132,6 +138,7 @@ def _loading_rates(record: Record, kind: str, cycles: xr.Dataset) -> list[Stated
     for place, begin, end in zip(places, at[:-1], at[1:], strict=True):
         found, error = _typical(slopes[place])
         when = _part_in_words(begin, end)
+        error = hypot(error, off)
         parts.append(whole._replace(found=found, error=error, part=when, begin=begin, end=end))
     agree = [each for each in parts if _is_same(each)] or [x for x in parts if x.agrees]
     if not agree:
@@ -243,7 +250,8 @@ def _unseen_ends(record: Record, cycles: xr.Dataset) -> tuple[float, float]:
 
 
 def _error(values: np.ndarray) -> float:
-    return trimmed_mean(np.asarray(values, dtype=np.float64)).error
+    error = trimmed_mean(np.asarray(values, dtype=np.float64)).error
+    return error_of_few(error, len(values) - 1.0)
 
 
 def _drive_velocity(record: Record) -> StatedQuantity | None:
