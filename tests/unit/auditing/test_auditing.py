@@ -594,6 +594,7 @@ def test_the_shares_of_a_report_are_one_definition():
     found = short(clutch)
     slow = percent(found.observation.shares.rest + found.observation.shares.creep)
     assert f"slower than the drive for {slow} of a cycle" in " ".join(verdict(found))
+    assert f"the mass is slower than the drive for {slow} of it" in str(found.observation.regime)
     assert f"For {slow} of each cycle the mass is slower" in stick(found)[0]
 
 

@@ -46,6 +46,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "cycles": ("complete cycles: {}", _whole),
     "rise_share": ("the force rises for {} of a cycle (a sine: 50 %, a sawtooth: 100 %)", percent),
     "rest_share": ("by this shape the mass rests or creeps for {} of it", percent),
+    SLOWER: ("the mass is slower than the drive for {} of it", percent),
     "backward": (
         "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
         percent,
