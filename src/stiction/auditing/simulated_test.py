@@ -233,7 +233,7 @@ def outcome(run: Trajectory, growth: float = nan) -> str:
     in the slips of a mass that comes to rest are cut to that. What dies out as a small disturbance
     does, by its `growth` rate (1/s), lasts no longer than that, however slowly it does.
     """
-    times, speed = run.samples["time"], run.samples["V_X"] / run.slider.motion.rate(0.0)[0]
+    times, speed = run.samples["time"], relative_speed(run)
     late = times - times[0] >= 0.5 * (times[-1] - times[0])
     last = times - times[0] >= 0.75 * (times[-1] - times[0])
     third = late & ~last
@@ -257,13 +257,17 @@ def coarse_rate(prediction: Prediction) -> float:
     return COARSE * prediction.f_x
 
 
+def relative_speed(run: Trajectory) -> Floats:
+    """Return the speed of the mass along the drive over that of the drive, (n,)."""
+    return np.asarray(run.samples["V_X"] / run.slider.motion.rate(0.0)[0])
+
+
 def shares(run: Trajectory, force: Floats, cycles: CycleTable) -> Shares:
     """Return the shares of time in whole cycles, or in the loading if there are none.
 
     The loading ends where the force comes close to its largest value.
     """
-    times, (drive, _) = run.samples["time"], run.slider.motion.rate(0.0)
-    speed = run.samples["V_X"] / drive
+    times, speed = run.samples["time"], relative_speed(run)
     loaded = int(np.argmax(force >= ALMOST * force.max()))
     begin, end = float(times[0]), float(times[loaded])
     if len(cycles):

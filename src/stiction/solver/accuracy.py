@@ -13,7 +13,6 @@ from stiction.friction import has_state
 from stiction.solver.segments import Stretch, begin, fastest_swing, speeds, system_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.text.validation import distinct
 
 # Of the force, as the error of its rounding: slip that grows out of it is known no better
 ROUNDING = 1e-15
@@ -128,17 +127,12 @@ def accuracy(
     )  # fmt: skip
 
 
+@lru_cache(maxsize=256, typed=True)  # a user's laws of different classes are equal as tuples
 def steepest_weakening(law: Any, speed: float) -> float:
     """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m.
 
     It is sought at ten speeds per decade, and again around the steepest.
     """
-    return _steepest(law, distinct(law), speed)
-
-
-@lru_cache(maxsize=256)
-def _steepest(law: Any, _: object, speed: float) -> float:
-    """Return the steepest weakening; one law is told from another by what is `distinct` in it."""
 
     def weakening(v: float) -> float:
         try:

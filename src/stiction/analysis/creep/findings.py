@@ -11,7 +11,7 @@ import numpy as np
 from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.force_curve import misalignment_from_force
-from stiction.analysis.creep.misalignment import Misalignment, fit_misalignment
+from stiction.analysis.creep.misalignment import RESTS, SURE, Misalignment, fit_misalignment
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
@@ -24,10 +24,8 @@ from stiction.trajectory import Trajectory
 T = TypeVar("T")
 
 KNOWN = 0.25  # largest useful standard error, of the exponent, or of the angle relative to it
-SURE = 2.0  # standard errors
 MISSED = 0.1  # of the creep: Eq. (7) does not describe curves with a larger misfit
 SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by more
-RESTS = 1e-6  # of the drive velocity: slower motion, most of the time, counts as rest
 # Of the creep: rest between jerks; of F_0: what friction in them is less by. With more of both the
 # angle comes out up to 10 % low; a jerk that is slow beside what friction weakens by does no harm
 JERKS, LOST = 0.2, 0.02
@@ -200,10 +198,12 @@ def _refuse_jerks(run: Trajectory, curves: xr.Dataset) -> None:
     jerks = (ends - starts < AT_ONCE * length[its]) & (ends <= slips[its])
     jerks &= starts >= (slips - length)[its]
     share = float((ends - starts)[jerks].sum() / np.nansum(length))
+    if share < JERKS:
+        return
     samples = run.samples
     time, its = samples["time"], phase(samples["time"])
     creeps = (time <= slips[its]) & (time >= (slips - length)[its]) & (samples["slip_speed"] > 0.0)
-    if share < JERKS or not creeps.any():
+    if not creeps.any():
         return
     lost = 1.0 - float(samples["friction"][creeps].mean()) / run.slider.F_0
     if lost > LOST:

@@ -18,7 +18,7 @@ TURNS = 6  # of the iteration for theta: the weakening is small, so each gains a
 OFF = 0.1  # of the velocity: largest common error of the theory that is tried
 NEAR_ZERO = 1e-3, 1e-6  # rad, of theta: while it is sought, and as found
 RESTS, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
-SURE = 2.0  # standard errors by which an angle must differ from zero
+SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
 
 
 class Misalignment(NamedTuple):

@@ -34,7 +34,7 @@ class Drift(NamedTuple):
 def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
     """Fit a line to the middles between peaks and troughs, or to a force without cycles.
 
-    The standard error assumes scatter that is independent from cycle to cycle.
+    The standard error allows for neighbours that deviate alike.
     """
     if cycles.sizes["cycle"] >= FEWEST_CYCLES:
         at = 0.5 * (cycles["peak_time"].values + cycles["trough_time"].values)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import parts_of, steady_change
 from stiction.analysis.motion.changes.levels import levels
-from stiction.analysis.motion.drift import find_drift
+from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
@@ -95,19 +95,22 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Sta
     cycles : Dataset
         From `stiction.analysis.find_cycles`.
     """
+    drift = find_drift(record, cycles)
     found = (
         _stiffness_over_mass(record, kind, cycles),
-        *_loading_rates(record, kind, cycles),
+        *_loading_rates(record, kind, cycles, drift),
         _drive_velocity(record),
         _normal_load(record),
         _transverse_frequency(record),
         _zero(record),
-        _drift(record, kind, cycles),
+        _drift(record, kind, cycles, drift),
     )
     return tuple(each for each in found if each is not None)
 
 
-def _loading_rates(record: Record, kind: str, cycles: xr.Dataset) -> list[StatedQuantity]:
+def _loading_rates(
+    record: Record, kind: str, cycles: xr.Dataset, drift: Drift
+) -> list[StatedQuantity]:
     """Compare the rate of loading while the mass sticks with stiffness times drive velocity.
 
     Where the cycles change, as after a step of the velocity, each part has its own rate. If one of
@@ -118,7 +121,7 @@ def _loading_rates(record: Record, kind: str, cycles: xr.Dataset) -> list[Stated
         return []
     slopes, starts = cycles["stick_slope"].values, cycles["start"].values
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
-    drift = find_drift(record, cycles)  # of the load cell, it loads, too; of friction, it does not
+    # a drift of the load cell seems to load the spring; one of friction does not
     off = abs(drift.rate) if isfinite(drift.error) else 0.0
     found, error = _typical(slopes)
     whole = StatedQuantity(
@@ -337,11 +340,10 @@ def _zero(record: Record) -> StatedQuantity | None:
     return StatedQuantity("zero", "N", read, spread, stated, nan, nan, "reading at its beginning")
 
 
-def _drift(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
+def _drift(record: Record, kind: str, cycles: xr.Dataset, drift: Drift) -> StatedQuantity | None:
     """Return the steady change of the force."""
     if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
         return None
-    drift = find_drift(record, cycles)
     if not isfinite(drift.error) or (not cycles.sizes["cycle"] and levels(record)):
         return None
     how = "line through the middles of cycles" if cycles.sizes["cycle"] else "its second half"

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.analysis.creep.findings import RESTS, drive_speed
+from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.first_slip import slips
+from stiction.analysis.creep.misalignment import RESTS
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import SLIGHT, number
 from stiction.analysis.signals.robust import without_outliers

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from stiction.analysis.record import cell_axis
-from stiction.auditing.simulated_test import CALM, SLIDES, SimulatedTest
+from stiction.auditing.simulated_test import CALM, SLIDES, SimulatedTest, relative_speed
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.friction import Anisotropic
 from stiction.friction.law import static_coefficient
@@ -155,8 +155,7 @@ def _part(seen: SimulatedTest, friction: FrictionBeside) -> str:
 
 def _slides(seen: SimulatedTest, first: int, last: int) -> bool:
     """Return whether the mass is as fast as the drive from one sample to another."""
-    drive = seen.run.slider.motion.rate(0.0)[0]
-    speed = seen.run.samples["V_X"][first : last + 1] / drive
+    speed = relative_speed(seen.run)[first : last + 1]
     return seen.comes_to == SLIDES and bool(np.abs(speed - 1.0).max() < CALM)
 
 

@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
+from stiction.auditing.simulated_test import SimulatedTest, relative_speed
 from stiction.friction import has_state
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
-    from stiction.auditing.simulated_test import SimulatedTest
 
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 NEVER = 1e-3  # of the time: a smaller share is a matter of samples
@@ -27,9 +27,9 @@ def stick(found: Audit) -> list[str]:
     whole = "of each cycle" if len(seen.table) else "of the loading"
     vibrates, state = seen.motion in VIBRATES, has_state(s.law)
     inertia = _share_of_inertia(found)
+    hastens = inertia > 0.5 * seen.shares.creep
     slowly = "creeps" if s.misalignment or state else "slides slowly"
-    if inertia > 0.5 * seen.shares.creep:
-        slowly = "gains or loses speed"
+    slowly = "gains or loses speed" if hastens else slowly
     slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)
     how = " and ".join(f"{verb} for {percent(share)}" for verb, share in slow if share > NEVER)
     lines = [
@@ -61,7 +61,7 @@ def stick(found: Audit) -> list[str]:
             f"of the misalignment. The mass covers {far}. The largest force shows how far "
             f"friction has turned; it is no evidence of static friction."
         )
-    elif inertia > 0.5 * seen.shares.creep > 0.5 * seen.shares.rest:
+    elif hastens and seen.shares.creep > seen.shares.rest:
         lines.append(
             "The drive is too fast for creep: the mass takes as long to gain its speed, and to "
             "lose it, as to swing on its spring."
@@ -80,8 +80,7 @@ def _faster(seen: SimulatedTest) -> str:
     """Return how long, or by how much, the mass is faster than the drive."""
     if seen.shares.slip:
         return f"For {percent(seen.shares.slip)} it is faster than the drive."
-    drive, _ = seen.run.slider.motion.rate(0.0)
-    fastest = float(np.nanmax(seen.run.samples["V_X"] / drive))
+    fastest = float(np.nanmax(relative_speed(seen.run)))
     if fastest <= 1.0 + HARDLY:
         return "It is never faster than the drive."
     times = float(f"{fastest:.3g}")

@@ -20,7 +20,7 @@ from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.law import has_state
 from stiction.friction.user.derivative import derivative
 from stiction.friction.user.source import member
-from stiction.text.validation import distinct, unknown_name
+from stiction.text.validation import unknown_name
 
 LINES = 100_000  # a method has about ten
 SPEEDS = (0.0, 1e-9, 1e-6, 1e-3, 1.0, inf, nan)  # m/s; the last two may occur in failed steps
@@ -190,14 +190,14 @@ def sound(law: Any, name: str) -> Any:
                 f"{key} of {echo(name)} is a {type(value).__name__}, which may change; let each "
                 "parameter be a number, or a tuple of numbers"
             ) from None
-    if not has_state(law) and (said := _wrong(law, distinct(law))):
+    if not has_state(law) and (said := _wrong(law)):
         method, rest = said
         raise fault(f"{method} of {echo(name)} {rest}")
     return law
 
 
-@lru_cache(maxsize=256)  # equal laws of different classes are told apart by what is distinct
-def _wrong(law: Any, _: object) -> tuple[str, str] | None:
+@lru_cache(maxsize=256, typed=True)  # laws of different classes are equal as tuples
+def _wrong(law: Any) -> tuple[str, str] | None:
     """Return what is wrong with a set-valued law at a few speeds: of which method, and what.
 
     Where Python cannot tell a value, compiled code may: then nothing is known to be wrong.

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from stiction.analysis.creep.findings import RESTS, drive_speed
+from stiction.analysis.creep.findings import drive_speed
+from stiction.analysis.creep.misalignment import RESTS
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep

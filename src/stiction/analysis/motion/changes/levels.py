@@ -58,12 +58,12 @@ def levels(record: Record) -> list[Level]:
     if not all(_changes(means, noise, *pair) for pair in pairwise(runs)):
         return []
     half, load = 0.5 * (times[1] - times[0]), record.normal_load or np.nan
-    found = []
+    found, step = [], resolution(record.force)
     for run in runs:
         (force, error), (mu, mu_error) = _mean(raw[run]), _mean(means[run] / load)
         ends = float(times[run.start] - half), float(times[run.stop - 1] + half)
         level = record.force[slice(*np.searchsorted(record.time, ends))]
-        rounding = rounding_error(level, resolution(record.force))
+        rounding = rounding_error(level, step)
         error, mu_error = hypot(error, rounding), hypot(mu_error, rounding / load)
         found.append(Level(*ends, force, error, mu, mu_error))
     least = NO_LOAD * max(abs(each.force) for each in found)
