@@ -137,6 +137,8 @@ def plot_load_dependence(found: LoadDependence, ax: Axes | None = None) -> Axes:
         ax.plot(found.load, found.force, "o", color=BLACK, markersize=3.0, label="each level")
         loads = np.array([0.0, found.load.max()])
         label = f"slope {found.coefficient:.4g}"
+        if found.error > 0.0:
+            label += rf" $\pm$ {found.error:.1g}"
         ax.plot(loads, found.adhesion + found.coefficient * loads, color=BLUE, label=label)
         ax.set_xlabel("normal load (N)")
         ax.set_ylabel("friction (N)")

@@ -143,3 +143,51 @@ def test_the_rate_of_loading_of_few_cycles(drifts):
     assert len(found) > 30
     values, errors = np.transpose(found)
     assert np.mean(np.abs(values - k * V) > 2.0 * errors) < MOST
+
+
+@pytest.mark.parametrize("share", [0.0, 0.9])
+@pytest.mark.parametrize("levels", [(20.0, 40.0, 30.0), (5.0, 10.0, 20.0, 40.0, 80.0)])
+def test_friction_over_the_load(levels, share):
+    """Adhesion had no error: it was told as if it were exact."""
+    random, found = np.random.default_rng(len(levels)), []
+    program = st.protocols.load_ramp(list(levels), ramp="1 s", hold="5 s")
+    time = np.arange(0.0, 6.0 * len(levels), 5e-3)
+    knots = [6.0 * k + part for k in range(len(levels)) for part in (1.0, 6.0)]
+    load = np.interp(time, knots, np.repeat(levels, 2))
+    for _ in range(40):
+        mu, adhesion = random.uniform(0.1, 0.6), random.uniform(0.0, 2.0)
+        noise = 0.1 * (alike(random, len(time), share) if share else random.normal(size=len(time)))
+        record = st.Record(time=time, force=adhesion + mu * load + noise, normal_load=levels[0])
+        seen = st.analysis.load_dependence(record, program)
+        found.append((seen.coefficient - mu, seen.error, seen.adhesion - adhesion,
+                      seen.adhesion_error))  # fmt: skip
+    slope_off, slope_error, off, error = np.transpose(found)
+    assert not beyond(slope_off, slope_error, 0.0)
+    assert not beyond(off, error, 0.0)
+
+
+@pytest.mark.parametrize("count", [3, 6])
+def test_the_line_of_healing(count):
+    """Its value at 1 s had no error."""
+    random, found = np.random.default_rng(count), []
+    holds = [10.0**power for power in np.linspace(0.5, 2.5, count)]
+    program = st.protocols.slide_hold_slide(1.0, holds, slide=50.0)
+    ends = np.cumsum([50.0 + hold for hold in holds])
+    time = np.arange(0.0, ends[-1] + 50.0, 0.1)
+    for _ in range(40):
+        slope, offset = random.uniform(0.01, 0.03), random.uniform(0.0, 0.02)
+        mu = np.where(program.rate(time)[0] == 0.0, 0.55, 0.6)
+        for end, hold in zip(ends, holds, strict=True):
+            gain = offset + slope * np.log10(hold) + 1e-3 * random.normal()
+            since = time - end
+            rise = np.clip(since, 0.0, 1.0) * (0.05 + gain) - 0.05
+            fall = gain * np.exp(-np.maximum(since - 1.0, 0.0) / 3.0)
+            mu = np.where((since > 0.0) & (since < 40.0), 0.6 + np.where(since < 1, rise, fall), mu)
+        record = st.Record(time=time, force=mu, normal_load=1.0)
+        seen = st.analysis.healing(record, program)
+        assert seen.resolved.all()
+        found.append((seen.per_decade - slope, seen.per_decade_error, seen.at_one_second - offset,
+                      seen.at_one_second_error))  # fmt: skip
+    slope_off, slope_error, off, error = np.transpose(found)
+    assert not beyond(slope_off, slope_error, 0.0)
+    assert not beyond(off, error, 0.0)

@@ -140,7 +140,7 @@ class FrictionTest(NamedTuple):
         if not stretch.velocity:
             return False
         late = self._latest(stretch)
-        loading = stretch.way * line(self.time[late], self.lag[late])[0]
+        loading = stretch.way * line(self.time[late], self.lag[late]).slope
         return loading < RESTS * abs(stretch.velocity)
 
     def has_settled(self, stretch: ConstantStretch) -> bool:

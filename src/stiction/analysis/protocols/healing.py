@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
-from math import hypot, isnan, nan
+from math import isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from stiction.analysis.protocols.friction_test import (
     say_left_out,
 )
 from stiction.analysis.protocols.peaks import Peak, peaks_of_run, peaks_of_samples
-from stiction.analysis.protocols.settling import ROUNDED, trend
+from stiction.analysis.protocols.settling import ROUNDED, StraightLine, trend
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -44,8 +44,8 @@ class Healing:
     per_decade, per_decade_error : float
         Slope of peak less steady friction over the decadic logarithm of the hold, and its standard
         error by scatter and the errors of peaks; NaN with fewer than two, or three, resolved peaks.
-    at_one_second : float
-        The line at a hold of 1 s.
+    at_one_second, at_one_second_error : float
+        The line at a hold of 1 s, and its standard error, as above.
     left_out : tuple of str
         Which holds are left out, and why, in sentences.
     peak_error : ndarray, optional
@@ -62,6 +62,7 @@ class Healing:
     at_one_second: float
     left_out: tuple[str, ...] = ()
     peak_error: Floats | None = None
+    at_one_second_error: float = nan
 
     @property
     def resolved(self) -> NDArray[np.bool_]:
@@ -91,7 +92,7 @@ class Healing:
                 self.hold, self.steady, self.relaxed, self.peak, errors, self.resolved, strict=True
             )
         ]
-        headings = ("hold", "steady before", "at its end", "peak after", "gain", "+-")
+        headings = ("hold", "steady before", "at its end", "peak after", "gain", "±")
         return Section("Healing", [*self._sentences(), *self.left_out], Table(headings, rows))
 
     def _sentences(self) -> list[str]:
@@ -108,7 +109,7 @@ class Healing:
         if abs(self.per_decade) < least:
             zero = f"Healing is zero within its error, {least:.1g} per decade of hold time."
             return [zero, *said]
-        known = f", +- {error:.1g}" if error > 0.0 else ""
+        known = f", ± {error:.1g}" if error > 0.0 else ""
         heals = f"Friction heals by {self.per_decade:.3g} per decade of hold time{known}."
         return [heals, *said]
 
@@ -173,8 +174,11 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
         raise ResultError(" ".join([f"{missing}; see st.protocols.slide_hold_slide.", *said]))
     hold_times, steady, relaxed = np.array(rows).T
     peaks, errors = np.array(_peaks(source, test, slides)).T
-    slope, error, offset = _line(hold_times, peaks - steady, errors)
-    return Healing(hold_times, steady, peaks, relaxed, slope, error, offset, said, errors)
+    found = _line(hold_times, peaks - steady, errors)
+    return Healing(
+        hold_times, steady, peaks, relaxed, found.slope, found.slope_error, found.offset,
+        said, errors, found.offset_error,
+    )  # fmt: skip
 
 
 def _peaks(
@@ -187,15 +191,12 @@ def _peaks(
     return peaks_of_samples(test, slides)
 
 
-def _line(holds: Floats, gains: Floats, errors: Floats) -> tuple[float, float, float]:
+def _line(holds: Floats, gains: Floats, errors: Floats) -> StraightLine:
     """Return the line through resolved peaks over the decadic logarithm of the hold."""
     known = np.isfinite(errors)
-    x, gains, errors = np.log10(holds[known]), gains[known], errors[known]
-    slope, scatter, offset = trend(x, gains) if len(x) else (nan, nan, nan)
-    if isnan(scatter):
-        return slope, scatter, offset
-    away = x - x.mean()
-    return slope, hypot(scatter, float(np.linalg.norm(away * errors) / (away @ away))), offset
+    if not known.any():
+        return StraightLine(nan, nan)
+    return trend(np.log10(holds[known]), gains[known], errors[known])
 
 
 def _fault(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf
+from math import inf, nan
 
 import numpy as np
 
@@ -18,11 +18,12 @@ from stiction.analysis.protocols.friction_test import (
 )
 from stiction.analysis.protocols.settling import trend
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.robust import statistics
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
 from stiction.errors import ResultError
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 
@@ -35,9 +36,10 @@ class LoadDependence:
     load, force : ndarray
         (n,), level of the load, N, and mean force along the drive in its last fifth, N.
     coefficient, error : float
-        Slope of the line, and its standard error; NaN where it is unknown.
-    adhesion : float
-        Force at zero load, N: of Amontons' law it is zero.
+        Slope of the line, and its standard error by scatter and by the errors of forces; NaN with
+        fewer than three levels.
+    adhesion, adhesion_error : float
+        Force at zero load, N, and its standard error: of Amontons' law it is zero.
     left_out : tuple of str
         Which levels are left out, and why, in sentences.
     """
@@ -48,14 +50,15 @@ class LoadDependence:
     error: float
     adhesion: float
     left_out: tuple[str, ...] = ()
+    adhesion_error: float = nan
 
     @property
     def section(self) -> Section:
         """The line in words, and the levels as a table."""
-        error = f" +- {self.error:.1g}" if self.error > 0.0 else ""
+        error = f" ± {self.error:.1g}" if self.error > 0.0 else ""
         said = (
             f"Friction rises by {self.coefficient:.4g}{error} of the load, from "
-            f"{in_words(self.adhesion, 'N')} at zero load."
+            f"{with_error(self.adhesion, self.adhesion_error, 'N')} at zero load."
         )
         rows = [
             (in_words(W, "N"), in_words(F, "N"), f"{F / W:.4f}")
@@ -113,12 +116,21 @@ def load_dependence(
             (in_words(each.load, "N"), "The drive has another speed") for each in other
         )
         good = [each for each in good if each not in other]
-    rows = [(each.load, abs(float(test.force[test.late(each)].mean()))) for each in good]
+    rows = [(each.load, *_friction(test, each)) for each in good]
     if all(alike(each.load, good[0].load) for each in good):
         few = "fewer than two levels of the load are held while the mass slides"
         raise ResultError(" ".join([f"{few}; see st.protocols.load_ramp, with hold.", *left_out]))
-    loads, forces = np.array(rows).T
-    return LoadDependence(loads, forces, *trend(loads, forces), left_out)
+    loads, forces, errors = np.array(rows).T
+    found = trend(loads, forces, errors)
+    return LoadDependence(
+        loads, forces, found.slope, found.slope_error, found.offset, left_out, found.offset_error
+    )
+
+
+def _friction(test: FrictionTest, level: ConstantStretch) -> tuple[float, float]:
+    """Return mean friction in the end of a level, N, and its standard error."""
+    mean, error, _ = statistics(test.force[test.late(level)])
+    return abs(mean), error
 
 
 def _test(source: Trajectory | Record, program: LoadProgram | None) -> FrictionTest:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import nan, sqrt
+from math import hypot, isnan, nan, sqrt
+from typing import NamedTuple
 
 import numpy as np
 
@@ -29,10 +30,10 @@ def has_settled(time: Floats, force: Floats, late: int) -> bool:
     It has not if it still changes there, for sure and by more than a small share of all its change
     in the stretch. While a spring is loaded that is a fifth.
     """
-    slope, error, _ = line(*_blocks(time[-late:], force[-late:]))
-    change = abs(slope) * float(time[-1] - time[-late])
+    rise = line(*_blocks(time[-late:], force[-late:]))
+    change = abs(rise.slope) * float(time[-1] - time[-late])
     least = max(CHANGES * float(np.ptp(force)), ROUNDED * float(np.abs(force).max()))
-    return not (abs(slope) > CERTAIN * error and change > least)
+    return not (abs(rise.slope) > CERTAIN * rise.slope_error and change > least)
 
 
 def _blocks(time: Floats, values: Floats) -> tuple[Floats, Floats]:
@@ -43,20 +44,43 @@ def _blocks(time: Floats, values: Floats) -> tuple[Floats, Floats]:
     return times, means
 
 
-def trend(x: Floats, y: Floats) -> tuple[float, float, float]:
-    """Return what `line` does, with a larger error of few points, see `error_of_few`."""
-    slope, error, offset = line(x, y)
-    return slope, error_of_few(error, len(x) - 2.0), offset
+class StraightLine(NamedTuple):
+    """A straight line through points, and the standard errors of its two numbers."""
+
+    slope: float
+    offset: float
+    slope_error: float = nan
+    offset_error: float = nan
 
 
-def line(x: Floats, y: Floats) -> tuple[float, float, float]:
-    """Return slope, its standard error, and offset of the least-squares line; NaN where unknown."""
-    spread = float(((x - x.mean()) ** 2).sum())
+def trend(x: Floats, y: Floats, errors: Floats) -> StraightLine:
+    """Return the line through few points, with errors by their scatter and by their own.
+
+    Scatter tells two numbers by few values, see `error_of_few`; with fewer than three points the
+    errors are NaN.
+    """
+    found = line(x, y)
+    if isnan(found.slope_error):
+        return found
+    away = x - x.mean()
+    share = away / (away @ away)
+    weights = share, 1.0 / len(x) - x.mean() * share
+    by_scatter = (error_of_few(each, len(x) - 2.0) for each in found[2:])
+    by_points = (float(np.linalg.norm(each * errors)) for each in weights)
+    return StraightLine(*found[:2], *map(hypot, by_scatter, by_points))
+
+
+def line(x: Floats, y: Floats) -> StraightLine:
+    """Return the least-squares line; NaN where a number is unknown."""
+    away = x - x.mean()
+    spread = float((away**2).sum())
     if len(x) < 2 or spread == 0.0:
-        return nan, nan, nan
-    slope = float(((x - x.mean()) * (y - y.mean())).sum()) / spread
+        return StraightLine(nan, nan)
+    slope = float((away * (y - y.mean())).sum()) / spread
     offset = float(y.mean() - slope * x.mean())
     if len(x) < 3:
-        return slope, nan, offset
-    left = y - offset - slope * x
-    return slope, sqrt(float((left**2).sum()) / (len(x) - 2) / spread), offset
+        return StraightLine(slope, offset)
+    left = float(((y - offset - slope * x) ** 2).sum()) / (len(x) - 2)
+    return StraightLine(
+        slope, offset, sqrt(left / spread), sqrt(left * (1.0 / len(x) + x.mean() ** 2 / spread))
+    )

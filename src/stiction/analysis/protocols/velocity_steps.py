@@ -138,7 +138,7 @@ class VelocitySteps:
             way = "does not depend on speed beyond its error"
         few = f" of {len(known)} steps: after the others it has not settled"
         where = few if len(known) < len(self.steps) else ""
-        value = f"{mean:+.4f} +- {number_text(error, '.1g')}"
+        value = f"{mean:+.4f} ± {number_text(error, '.1g')}"
         return f"Steady friction {way}: a - b = {value} on average{where}."
 
     def __str__(self) -> str:
@@ -146,7 +146,7 @@ class VelocitySteps:
         return str(self.section)
 
 
-HEADINGS = ("from", "to", "a - b", "+-", "law", "a", "+-", "b", "+-", "D_c", "+-")
+HEADINGS = ("from", "to", "a - b", "±", "law", "a", "±", "b", "±", "D_c", "±")
 
 
 def _row(step: VelocityStep) -> tuple[str, ...]:
