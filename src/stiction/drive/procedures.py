@@ -10,11 +10,13 @@
 
 from __future__ import annotations
 
+from typing import Any, NamedTuple
+
 from stiction.arguments import is_list
 from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
-from stiction.errors import DescriptionError, echo
+from stiction.errors import DescriptionError, Faults, echo
 from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantities, Quantity, to_si
 
 
@@ -42,13 +44,14 @@ def velocity_steps(
     >>> [round(piece.duration, 9) for piece in program.program]
     [100.0, 10.0, 100.0]
     """
-    speeds = _read_all("velocities", velocities, VELOCITY)
     if (duration is None) == (distance is None):
         raise _fault("duration", "give either the duration or the distance of each speed")
+    several = Argument("velocities", velocities, VELOCITY, is_list=True)
     if duration is not None:
-        times = [_positive("duration", duration, TIME)] * len(speeds)
+        speeds, [time] = _read(several, Argument("duration", duration, TIME, positive=True))
+        times = [time] * len(speeds)
     else:
-        far = _positive("distance", distance, LENGTH)
+        speeds, [far] = _read(several, Argument("distance", distance, LENGTH, positive=True))
         if 0.0 in speeds:
             raise _fault("velocities", "a drive at rest covers no distance; give a duration")
         times = [far / abs(speed) for speed in speeds]
@@ -77,10 +80,14 @@ def slide_hold_slide(velocity: Quantity, holds: Quantities, *, slide: Quantity) 
     >>> st.protocols.end(test)
     125.0
     """
-    V, between = _read("velocity", velocity, VELOCITY), _positive("slide", slide, TIME)
+    [V], [between], times = _read(
+        Argument("velocity", velocity, VELOCITY),
+        Argument("slide", slide, TIME, positive=True),
+        Argument("holds", holds, TIME, positive=True, is_list=True),
+    )
     pieces: list[Constant | Hold] = [Constant(duration=between)]
-    for i, each in enumerate(_at_least_one("holds", holds), 1):
-        pieces += [Hold(_positive(f"holds.{i}", each, TIME)), Constant(duration=between)]
+    for time in times:
+        pieces += [Hold(time), Constant(duration=between)]
     return DriveProgram(velocity=V, program=pieces)
 
 
@@ -103,8 +110,11 @@ def reversal_loops(velocity: Quantity, travel: Quantity, *, loops: int = 3) -> D
     >>> [piece.duration for piece in program.program]
     [5.0, 10.0, 10.0]
     """
-    V = _positive("velocity", velocity, VELOCITY)
-    leg = _positive("travel", travel, LENGTH) / V
+    [V], [way] = _read(
+        Argument("velocity", velocity, VELOCITY, positive=True),
+        Argument("travel", travel, LENGTH, positive=True),
+    )
+    leg = way / V
     turns = [Reversal(duration=leg)] * (2 * loops)
     return DriveProgram(velocity=V, program=[Constant(duration=0.5 * leg), *turns])
 
@@ -128,12 +138,15 @@ def load_ramp(levels: Quantities, *, ramp: Quantity, hold: Quantity | None = Non
     >>> st.protocols.end(load)
     6.0
     """
-    time = _positive("ramp", ramp, TIME)
-    pieces: list[Ramp | Hold] = []
-    for level in _read_all("levels", levels, FORCE):
-        pieces.append(Ramp(level, time))
-        if hold is not None:
-            pieces.append(Hold(_positive("hold", hold, TIME)))
+    held = [] if hold is None else [hold]
+    loads, [change], *rests = _read(
+        Argument("levels", levels, FORCE, is_list=True),
+        Argument("ramp", ramp, TIME, positive=True),
+        *(Argument("hold", each, TIME, positive=True) for each in held),
+    )
+    pieces = [
+        piece for load in loads for piece in (Ramp(load, change), *(Hold(time) for [time] in rests))
+    ]
     return LoadProgram(program=pieces)
 
 
@@ -160,32 +173,55 @@ def _end(program: DriveProgram | LoadProgram) -> float | None:
     return None if not times or None in times else program.repeat * float(sum(times))
 
 
-def _at_least_one(path: str, values: Quantities) -> Quantities:
+class Argument(NamedTuple):
+    """A number, or a list of numbers, as it was given, and what it must be."""
+
+    path: str
+    given: Any
+    kind: Kind
+    positive: bool = False
+    is_list: bool = False
+
+
+def _read(*asked: Argument) -> list[list[float]]:
+    """Return the numbers of each argument in SI.
+
+    Raises
+    ------
+    DescriptionError
+        With every fault at once.
+    """
+    faults = Faults()
+    found: list[list[float]] = [[] for _ in asked]
+    for numbers, each in zip(found, asked, strict=True):
+        with faults.of_part():
+            for path, value in _each(each):
+                with faults.of_part():
+                    numbers.append(_number(path, value, each.kind, each.positive))
+    faults.refuse()
+    return found
+
+
+def _each(asked: Argument) -> list[tuple[str, Any]]:
+    """Return each number as it was given, and its path."""
+    values = asked.given
+    if not asked.is_list:
+        return [(asked.path, values)]
     if not is_list(values) or not len(values):
-        raise _fault(path, f"{echo(values)} must be a list of at least one value")
-    return values
+        raise _fault(asked.path, f"{echo(values)} must be a list of at least one value")
+    return [(f"{asked.path}.{i}", value) for i, value in enumerate(values, 1)]
 
 
-def _read_all(path: str, values: Quantities, kind: Kind) -> list[float]:
-    return [
-        _read(f"{path}.{i}", each, kind) for i, each in enumerate(_at_least_one(path, values), 1)
-    ]
-
-
-def _positive(path: str, value: Quantity | None, kind: Kind) -> float:
-    number = _read(path, value, kind)
-    if not number > 0.0:
-        raise _fault(path, f"must be greater than 0, is {echo(value)}")
-    return number
-
-
-def _read(path: str, value: Quantity | None, kind: Kind) -> float:
+def _number(path: str, value: Any, kind: Kind, positive: bool) -> float:
     from pydantic_core import PydanticCustomError
 
     try:
-        return to_si(value, kind)
+        number = to_si(value, kind)
     except PydanticCustomError as error:
         raise _fault(path, error.message()) from None
+    if positive and not number > 0.0:
+        raise _fault(path, f"must be greater than 0, is {echo(value)}")
+    return number
 
 
 def _fault(path: str, message: str) -> DescriptionError:

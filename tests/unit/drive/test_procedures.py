@@ -62,6 +62,21 @@ def test_a_fault_names_the_remedy(call, words):
         call()
 
 
+def test_all_faults_of_a_procedure_come_at_once():
+    """The first one hid the others."""
+    with pytest.raises(st.DescriptionError) as refused:
+        p.slide_hold_slide("-1 kg", ["1 s", "-1 s", "3 m"], slide=0)
+    assert [each.path for each in refused.value.faults] == [
+        "velocity",
+        "slide",
+        "holds.2",
+        "holds.3",
+    ]
+    with pytest.raises(st.DescriptionError) as refused:
+        p.load_ramp("20 N", ramp="-1 s", hold="1 m")
+    assert [each.path for each in refused.value.faults] == ["levels", "ramp", "hold"]
+
+
 def test_a_step_to_a_value_is_one_by_the_difference():
     by = p.DriveProgram(velocity=1e-3, program=[p.Constant(duration=1), p.Step("2 mm/s")])
     to = p.DriveProgram(velocity=1e-3, program=[p.Constant(duration=1), p.Step(to="3 mm/s")])
