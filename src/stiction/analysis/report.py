@@ -8,33 +8,21 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiction.analysis.assessment import assess_record, assess_run
 from stiction.analysis.creep.divergence import Divergence
 from stiction.analysis.creep.findings import attempt, find_creep
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
-from stiction.analysis.motion.changes.cycles import cycles_apart
-from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import summary
-from stiction.analysis.motion.cycles import Swings, swings
+from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts.warnings import (
     subtracted_lines,
-    turns_round,
-    warnings,
-    warnings_of_run,
-    why_no_friction,
 )
-from stiction.analysis.motion.friction import Friction, find_friction, without_loading
-from stiction.analysis.motion.metadata import (
-    LOADING_RATE,
-    StatedQuantity,
-    compare_metadata,
-    other_velocity,
-)
+from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
-from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.analysis.oscillation import (
     apart,
     oscillation_by_phase,
@@ -189,66 +177,36 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     >>> found.regime.kind, found.cycles.sizes["cycle"]
     ('stick-slip', 3)
     """
-    missing: dict[str, str] = {}
     if isinstance(source, str | Path):
         source = read_source(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
     found = swings(record)
-    cycles, regime = found.cycles, regime_of(record, found)
-    sticking = cycles.isel(cycle=slice(0))
-    oscillation = attempt(missing, "oscillation", lambda: _oscillation(record, run, cycles))
-    turns = _turns_round(run, regime)
-    apart = cycles_apart(cycles) if run is None else np.zeros(cycles.sizes["cycle"], bool)
-    friction = _friction(record, found, cycles.isel(cycle=~apart), regime, turns)
-    # a run is what it states
-    stated = compare_metadata(record, regime.kind, cycles) if run is None else ()
-    alike = cycles.isel(cycle=slice(0)) if turns else cycles  # those of two strokes are none
-    doubts = (
-        warnings(record, regime.kind, alike, friction, stated)
-        if run is None
-        else warnings_of_run(run, record, cycles)
-    ) + subtracted_lines(found.lines, found.ringing)
-    unreal = why_no_friction(friction, cycles) if run is None else ""
-    if unreal:
-        friction = friction.without_static(unreal).without_kinetic(unreal)
-    other = other_velocity(stated, cycles)
-    if other.any() and record.position is None:
-        given = {name: cycles[name].where(~other) for name in ("stiffness", *BY_STIFFNESS)}
-        cycles = cycles.assign(given)
-    if regime.loads:
-        sticking = cycles.isel(cycle=~(other | apart))
-    cycles = _blank_meaningless(record, cycles, regime, stated, missing)
-    if (turns or unreal) and cycles.sizes["cycle"]:
-        names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
-        missing |= dict.fromkeys(names, turns or unreal)
-        cycles = cycles.assign({name: cycles[name].where(False) for name in names})
-    width = _free_of_hum(oscillation, sticking) if run is None else None
-    creep = find_creep(source, record, sticking, width)
-    missing |= creep.missing
+    regime = regime_of(record, found)
+    missing: dict[str, str] = {}
+    oscillation = attempt(missing, "oscillation", lambda: _oscillation(record, run, found.cycles))
+    its = assess_run(run, record, found, regime) if run else assess_record(record, found, regime)
+    width = _free_of_hum(oscillation, its.sticking) if run is None else None
+    creep = find_creep(source, record, its.sticking, width)
     phases = None
     if run is not None and oscillation is not None and creep.curves is not None:
-        phases = oscillation_by_phase(oscillation, run, _phases(run, creep.curves, sticking))
+        phases = oscillation_by_phase(oscillation, run, _phases(run, creep.curves, its.sticking))
     analysis = Analysis(
-        source,
-        record,
-        regime,
-        cycles,
-        summary(cycles.isel(cycle=~apart)),
-        creep.curves,
-        creep.mean,
-        creep.divergence,
-        creep.misalignment,
-        oscillation,
-        phases,
-        missing,
-        friction,
-        doubts,
-        {"metadata": stated},
-    )
-    for name, find in functions("find"):
-        analysis.parts[name] = attempt(missing, name, partial(find, analysis))
-    return analysis
+        source, record, regime, its.cycles, summary(its.usual),
+        creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
+        missing | its.missing | creep.missing, its.friction,
+        its.warnings + subtracted_lines(found.lines, found.ringing), {"metadata": its.stated},
+    )  # fmt: skip
+    return _with_parts(analysis)
+
+
+def _with_parts(analysis: Analysis) -> Analysis:
+    """Return an analysis with what each of its parts finds."""
+    missing = {**analysis.missing}
+    found = {
+        name: attempt(missing, name, partial(find, analysis)) for name, find in functions("find")
+    }
+    return analysis._replace(parts=analysis.parts | found, missing=missing)
 
 
 analyze = analyse
@@ -259,70 +217,6 @@ def _oscillation(record: Record, run: Trajectory | None, cycles: xr.Dataset) -> 
     if run is not None:
         return apart(transverse_oscillation(run), cycles)
     return strongest_line(record, _above(record, cycles), cycles=cycles)
-
-
-def _friction(
-    record: Record, found: Swings, usual: xr.Dataset, regime: Regime, turns: str
-) -> Friction:
-    """Find the friction without hum and ringing, as far as what `turns` round leaves any."""
-    changed = found.lines or found.ringing
-    clean = record.model_copy(update={"force": found.force}) if changed else record
-    if "levels" in regime.evidence:
-        first = clean.before(levels(clean)[0].end)
-        several = "the force stays at several levels, each with its own: see the parts"
-        return find_friction(first, regime, usual).without_kinetic(several)
-    friction = find_friction(clean, regime, usual)
-    if "forth" in regime.evidence or "straight" in regime.evidence:
-        return friction.without_any(turns)
-    return friction.without_kinetic(turns) if turns else friction
-
-
-def _turns_round(run: Trajectory | None, regime: Regime) -> str:
-    """Return what goes back and forth, so that no mean is a kinetic friction; empty if nothing."""
-    if run is not None and turns_round(run):
-        return "the drive goes back and forth"
-    if "forth" in regime.evidence:
-        return "the force goes back and forth between both signs"
-    if "plateaus" in regime.evidence:
-        return "the force goes back and forth between two levels"
-    if "straight" in regime.evidence:
-        return "the force rises and falls evenly, as where the mass sticks"
-    return ""
-
-
-def _blank_meaningless(
-    record: Record,
-    cycles: xr.Dataset,
-    regime: Regime,
-    stated: tuple[StatedQuantity, ...],
-    missing: dict[str, str],
-) -> xr.Dataset:
-    """Blank the columns of a table that are meaningless for a motion, or as things are stated."""
-    if not cycles.sizes["cycle"]:
-        return cycles
-    if regime.loads:
-        wrong = any(each.quantity == LOADING_RATE and each.agrees is False for each in stated)
-        if wrong and record.position is None:
-            missing |= dict.fromkeys(
-                BY_STIFFNESS, "stiffness or drive velocity contradict the force"
-            )
-            return cycles.assign({name: cycles[name].where(False) for name in BY_STIFFNESS})
-        if not float(cycles["creep_distance"].median()) < 0.0:
-            return cycles
-        agrees = any(each.quantity == LOADING_RATE and each.agrees for each in stated)
-        missing["creep_distance"] = (
-            "the force rises as fast as the stated stiffness and drive velocity allow, within "
-            "their errors"
-            if agrees
-            else "the force rises faster than the stated stiffness and drive velocity allow"
-        )
-        return cycles.assign(creep_distance=cycles["creep_distance"].where(False))
-    why = f"they are defined for stick-slip, and {without_loading(regime)}"
-    names: tuple[str, ...] = OF_STICKING
-    if regime.kind == UNDETERMINED and record.position is None:
-        names += OF_SLIDING
-    missing |= dict.fromkeys(names, why)
-    return cycles.assign({name: cycles[name].where(False) for name in names})
 
 
 def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | None:

@@ -1,0 +1,160 @@
+"""What of cycles and friction counts in an analysis, and why the rest does not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple
+
+from stiction.analysis.motion.changes.cycles import cycles_apart
+from stiction.analysis.motion.changes.levels import levels
+from stiction.analysis.motion.cycles import Swings
+from stiction.analysis.motion.doubts.warnings import (
+    turns_round,
+    warnings,
+    warnings_of_run,
+    why_no_friction,
+)
+from stiction.analysis.motion.friction import Friction, find_friction, without_loading
+from stiction.analysis.motion.metadata import (
+    LOADING_RATE,
+    StatedQuantity,
+    compare_metadata,
+    other_velocity,
+)
+from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.kinds import UNDETERMINED
+from stiction.analysis.record import Record
+from stiction.arrays import xr
+from stiction.trajectory import Trajectory
+
+OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
+OF_SLIDING = ("mu_kinetic", "slip_distance", "peak_slip_speed")  # and those of any known motion
+# columns that a force alone gives by stiffness and drive velocity
+BY_STIFFNESS = ("creep_distance", "slip_distance", "peak_slip_speed")
+
+
+class Assessment(NamedTuple):
+    """What of cycles and friction counts.
+
+    Parameters
+    ----------
+    cycles : Dataset
+        A row for each cycle; columns that mean nothing for its motion are blank.
+    usual, sticking : Dataset
+        Those of its cycles that belong together, and those that creep before they slip.
+    friction : Friction
+        Friction at the break-away, static and kinetic.
+    stated : tuple of StatedQuantity
+        What a record states of its apparatus, beside what its force says.
+    warnings : tuple of str
+        To be read first.
+    missing : dict
+        The reason for each column that is blank.
+    """
+
+    cycles: xr.Dataset
+    usual: xr.Dataset
+    sticking: xr.Dataset
+    friction: Friction
+    stated: tuple[StatedQuantity, ...]
+    warnings: tuple[str, ...]
+    missing: dict[str, str]
+
+
+def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -> Assessment:
+    """Return what counts of a run: it is what it states."""
+    cycles, turns = found.cycles, _turns_round(run, regime)
+    friction = _friction(record, found, cycles, regime, turns)
+    missing = _meaningless(record, cycles, regime)
+    if turns and cycles.sizes["cycle"]:
+        missing |= {"mu_kinetic": turns}
+    told = blank(cycles, missing)
+    sticking = cycles if regime.loads else cycles.isel(cycle=slice(0))
+    return Assessment(
+        told, told, sticking, friction, (), warnings_of_run(run, record, cycles), missing
+    )
+
+
+def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
+    """Return what counts of a record: what it states may contradict its force."""
+    cycles, turns = found.cycles, _turns_round(None, regime)
+    none, apart = cycles.isel(cycle=slice(0)), cycles_apart(cycles)
+    friction = _friction(record, found, cycles.isel(cycle=~apart), regime, turns)
+    stated = compare_metadata(record, regime.kind, cycles)
+    alike = none if turns else cycles  # those of two strokes are none
+    doubts = warnings(record, regime.kind, alike, friction, stated)
+    unreal = why_no_friction(friction, cycles)
+    if unreal:
+        friction = friction.without_static(unreal).without_kinetic(unreal)
+    other = other_velocity(stated, cycles)
+    if other.any() and record.position is None:
+        given = {name: cycles[name].where(~other) for name in ("stiffness", *BY_STIFFNESS)}
+        cycles = cycles.assign(given)
+    sticking = cycles.isel(cycle=~(other | apart)) if regime.loads else none
+    missing = _meaningless(record, cycles, regime, stated)
+    if (turns or unreal) and cycles.sizes["cycle"]:
+        names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
+        missing |= dict.fromkeys(names, turns or unreal)
+    told = blank(cycles, missing)
+    return Assessment(told, told.isel(cycle=~apart), sticking, friction, stated, doubts, missing)
+
+
+def blank(cycles: xr.Dataset, names: Iterable[str]) -> xr.Dataset:
+    """Return cycles of which some columns are NaN."""
+    return cycles.assign({name: cycles[name].where(False) for name in names})
+
+
+def _friction(
+    record: Record, found: Swings, usual: xr.Dataset, regime: Regime, turns: str
+) -> Friction:
+    """Find the friction without hum and ringing, as far as what `turns` round leaves any."""
+    changed = found.lines or found.ringing
+    clean = record.model_copy(update={"force": found.force}) if changed else record
+    if "levels" in regime.evidence:
+        first = clean.before(levels(clean)[0].end)
+        several = "the force stays at several levels, each with its own: see the parts"
+        return find_friction(first, regime, usual).without_kinetic(several)
+    friction = find_friction(clean, regime, usual)
+    if "forth" in regime.evidence or "straight" in regime.evidence:
+        return friction.without_any(turns)
+    return friction.without_kinetic(turns) if turns else friction
+
+
+def _turns_round(run: Trajectory | None, regime: Regime) -> str:
+    """Return what goes back and forth, so that no mean is a kinetic friction; empty if nothing."""
+    if run is not None and turns_round(run):
+        return "the drive goes back and forth"
+    if "forth" in regime.evidence:
+        return "the force goes back and forth between both signs"
+    if "plateaus" in regime.evidence:
+        return "the force goes back and forth between two levels"
+    if "straight" in regime.evidence:
+        return "the force rises and falls evenly, as where the mass sticks"
+    return ""
+
+
+def _meaningless(
+    record: Record,
+    cycles: xr.Dataset,
+    regime: Regime,
+    stated: tuple[StatedQuantity, ...] = (),
+) -> dict[str, str]:
+    """Return the columns that are meaningless for a motion, or as things are stated, and why."""
+    if not cycles.sizes["cycle"]:
+        return {}
+    if not regime.loads:
+        names: tuple[str, ...] = OF_STICKING
+        if regime.kind == UNDETERMINED and record.position is None:
+            names += OF_SLIDING
+        why = f"they are defined for stick-slip, and {without_loading(regime)}"
+        return dict.fromkeys(names, why)
+    rates = [each for each in stated if each.quantity == LOADING_RATE]
+    if any(each.agrees is False for each in rates) and record.position is None:
+        return dict.fromkeys(BY_STIFFNESS, "stiffness or drive velocity contradict the force")
+    if not float(cycles["creep_distance"].median()) < 0.0:
+        return {}
+    if any(each.agrees for each in rates):
+        agreeing = "the force rises as fast as the stated stiffness and drive velocity allow"
+        return {"creep_distance": f"{agreeing}, within their errors"}
+    faster = "the force rises faster than the stated stiffness and drive velocity allow"
+    return {"creep_distance": faster}
