@@ -8,11 +8,12 @@ from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
-from stiction.arrays import Floats, xr
+from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 from stiction.text.units import in_words
 
 EDGE = 0.01  # an exponent so near to the end of its range is none
+LAG = 1e-3  # of the loading time: a typical delay of the divergence after the slip
 THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 # Accuracy of the exponent: a mass slips because friction weakens, and that begins while it creeps;
 # Eq. (8) has constant friction. In noise-free runs of random rigs n scatters by 0.06 to 0.2
@@ -42,8 +43,11 @@ def fit_parameters(
     errors: Floats,
     start: tuple[float, ...],
     bounds: tuple[tuple[float, ...], tuple[float, ...]],
+    sizes: tuple[float, ...],
 ) -> tuple[list[float], list[float]]:
     """Return parameters and standard errors, which are scaled up if the misfit exceeds them.
+
+    Parameters are varied in units of their `sizes`: the optimiser's steps have no unit.
 
     Raises
     ------
@@ -52,26 +56,28 @@ def fit_parameters(
     """
     from scipy.optimize import OptimizeWarning, curve_fit
 
-    scale = np.maximum(np.abs(start), 1e-3 * np.abs(bounds[1]).clip(max=1.0))
+    def scaled(at: Floats, *shares: float) -> Floats:
+        return model(at, *np.multiply(shares, sizes))
+
     try:
         with catch_warnings():
             simplefilter("ignore", OptimizeWarning)  # then the standard errors are infinite
             found, covariance = curve_fit(  # type: ignore[no-untyped-call]
-                model,
+                scaled,
                 at,
                 values,
-                start,
+                np.divide(start, sizes),
                 sigma=errors,
                 absolute_sigma=True,
-                bounds=bounds,
-                x_scale=scale,
+                bounds=np.divide(bounds, sizes),
                 max_nfev=2000,
             )
     except RuntimeError:
         raise ResultError("the creep curve does not have the shape that is fitted") from None
-    missed = (values - model(at, *found)) / errors
+    missed = (values - scaled(at, *found)) / errors
     excess = max(1.0, float(np.sum(missed**2)) / (len(values) - len(found)))
-    return found.tolist(), np.sqrt(np.diag(covariance) * excess).tolist()
+    spread = np.sqrt(np.diag(covariance) * excess)
+    return (found * sizes).tolist(), (spread * sizes).tolist()
 
 
 class Divergence(NamedTuple):
@@ -173,12 +179,20 @@ def fit_divergence(
     tau = 1.0 - 0.5 * (begin + end) / loading_time
     scale = float(np.median(velocity * np.sqrt((1.0 - tau) * (1.0 + tau)) / tau))
     start, low_n, high_n = (scale, 0.49), (-np.inf, -3.0), (np.inf, 5.0)
+    sizes = max(float(np.abs(velocity).max()), TINY), 0.5
     if lag is None:
         bounds = ((*low_n, -0.9 * float(end.min())), (*high_n, loading_time))
-        found, errors = fit_parameters(mean, begin, velocity, error, (*start, 0.0), bounds)
+        more = *sizes, LAG * loading_time
+        found, errors = fit_parameters(mean, begin, velocity, error, (*start, 0.0), bounds, more)
     else:
         found, errors = fit_parameters(
-            lambda at, a, n: mean(at, a, n, lag), begin, velocity, error, start, (low_n, high_n)
+            lambda at, a, n: mean(at, a, n, lag),
+            begin,
+            velocity,
+            error,
+            start,
+            (low_n, high_n),
+            sizes,
         )
         found, errors = [*found, lag], [*errors, 0.0]
     (a, n, late), (a_error, n_error, late_error) = found, errors

@@ -16,6 +16,7 @@ WEAKENINGS = (-0.3, 1.0)  # from strengthening to half the friction at the drive
 ASSUMED = 0.1  # standard error of the weakening: its order is all that is known before
 TURNS = 6  # of the iteration for theta: the weakening is small, so each gains a digit or two
 OFF = 0.1  # of the velocity: largest common error of the theory that is tried
+NEAR = 1e-3  # of the peak, and of the largest common error: by so much they are varied at least
 NEAR_ZERO = 1e-3, 1e-6  # rad, of theta: while it is sought, and as found
 RESTS, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
 SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
@@ -146,6 +147,7 @@ def _fit(
         np.append(error, (ASSUMED, THEORY)),
         tuple(begin.tolist()),
         (low, high),
+        (START, max(begin[1], NEAR * peak), START, NEAR * OFF),
     )
     theory = creep(force, *found)
     off = np.abs(velocity - theory)
