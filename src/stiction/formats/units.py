@@ -9,13 +9,15 @@ from stiction.text.unit_text import UnitError, factor
 
 GRAVITY = 9.80665  # m/s^2, the standard acceleration of gravity (CGPM 1901): gram-force
 SPELLED = {
-    "sec": "s", "secs": "s", "sek": "s", "sekunden": "s", "msec": "ms", "millisec": "ms",
+    "sec": "s", "secs": "s", "second": "s", "seconds": "s", "sek": "s", "sekunden": "s",
+    "secondes": "s", "segundos": "s", "msec": "ms", "millisec": "ms", "milliseconds": "ms",
     "newton": "N", "newtons": "N", "volt": "V", "volts": "V", "gram": "g", "grams": "g",
     "millinewton": "mN", "micrometer": "um", "mikrometer": "um", "microns": "um", "micron": "um",
     "kp": "kgf", "pond": "gf", "gramm": "g", "gr": "g", "lbs": "lb",
 }  # fmt: skip
 COUNTS = {"count", "lsb", "digit", "bit", "step"}
 RATIOS = {"-", "1", "", "–", "--", "none", "n/a", "[-]", "ratio"}
+IN = re.compile(r"in (?!lb|oz)", re.I)  # "in kN" is no inch; "in lbf" is a moment
 BRACKETS = re.compile(r"\s*[\[({<]\s*([^\[\](){}<>]*?)\s*[\])}>]\s*")
 QUANTITY = re.compile(r"\s*([+−-]?\s*(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?|[+−-])\s*(.*)", re.S)
 NAMED = re.compile(r"(.*?)\s*[\[({]\s*([^\[\](){}]*?)\s*[\])}]\s*(.*)", re.S)
@@ -104,7 +106,7 @@ def spell(text: str) -> str:
     """Return a unit by the name that the registry knows."""
     text = text.strip().strip(".").replace("μ", "µ").replace("⋅", "*")
     inner = BRACKETS.fullmatch(text)
-    text = inner[1] if inner else text
+    text = IN.sub("", inner[1] if inner else text, count=1)
     return SPELLED.get(text.lower(), text)
 
 
@@ -129,7 +131,7 @@ def split_unit(heading: str) -> tuple[str, str]:
         plain = bool(at and name and unit) and not weight and not symbol and not is_ratio(unit)
         if plain and (len(unit) <= 4 or unit.lower() in SPELLED) and is_unit(unit):
             return name, spell(unit)
-    return heading, ""
+    return heading, SPELLED.get(heading.lower(), "")
 
 
 def _raw_units(stated: str, unit: str) -> float | None:

@@ -446,6 +446,66 @@ def test_time_repeated_for_each_channel(write):
     assert "1 sample outside its times" in notes(record)
 
 
+@pytest.mark.parametrize(
+    "form",
+    [
+        "2026-03-01T23:59:{s:06.3f}+01:00",
+        "2026-03-01 23:59:{s:06.3f}-0530",
+        "2026-03-01T23:59:{s:06.3f}Z",
+        "3/1/2026 11:59:{s:06.3f} PM",
+        "01-Mar-2026 23:59:{s:06.3f}",
+        "1 mars 2026 23:59:{s:06.3f}",
+    ],
+)
+def test_dates_of_all_sorts_are_times(write, form):
+    """Offsets from universal time, halves of the day and names of months were refused."""
+    rows = [f"{form.format(s=50.0 + t)};{f:.3f}" for t, f in zip(TIME, FORCE, strict=True)]
+    record = st.read_record(write("Time;Force [N]\n" + "\n".join(rows)))
+    assert record.time == pytest.approx(TIME)
+    assert record.origin.start.startswith(form[:4])
+
+
+def test_noon_and_midnight_of_half_days(write):
+    rows = [f"{hour}:00:00 {half},1.0" for hour, half in ((11, "AM"), (12, "PM"), (1, "PM"))]
+    rows += [f"{hour}:00:00 {half},1.5" for hour, half in ((11, "PM"), (12, "AM"), (1, "AM"))]
+    record = st.read_record(write("Time,Force [N]\n" + "\n".join(rows)))
+    assert record.time / 3600.0 == pytest.approx([0, 1, 2, 12, 13, 14])
+
+
+def test_what_an_instrument_writes_beyond_its_range_is_missing(write):
+    """Each had to be taken out of the file by hand."""
+    rows = lines().splitlines()
+    for at, word in ((2, "OVERLOAD"), (4, "#DIV/0!"), (6, "OL")):
+        rows[at] = f"{TIME[at]},{word}"
+    record = st.read_record(write("Time [s],Force [N]\n" + "\n".join(rows)))
+    assert len(record) == COUNT - 3
+    assert "3 samples without a force left out, the first at line 4" in notes(record)
+
+
+def test_a_unit_may_be_spelled_out(write):
+    said = "Zeit\tPrüfkraft\nin s\tin kN\n" + lines("\t", ",")
+    record = st.read_record(write(said), force=2)
+    assert record.force == pytest.approx(1e3 * FORCE)
+    record = st.read_record(write("Sekunden;Newton\n" + lines(";", ",")))
+    assert (record.time, record.force) == (pytest.approx(TIME), pytest.approx(FORCE))
+    with pytest.raises(st.ResultError):  # a moment
+        st.read_record(write("Zeit\tKraft\ns\tin lbf\n" + lines("\t", ",")))
+
+
+def test_a_remedy_names_a_column_that_may_serve(write):
+    """It was always the second one."""
+    days = 46082.5 + TIME / 86400.0
+    cases = {
+        "Date,Force [N]\n" + lines(columns=(days, FORCE), digits=9): "--time '1=d'",
+        "Force [N],stamp\n" + lines(columns=(FORCE[::-1], TIME)): "--time '2=ms'",
+        "Time [s],Ch1 [V],Ch2 [V]\n" + lines(columns=(TIME, FORCE[::-1], FORCE)): "2=2.5 N/V",
+        ",force\n" + lines(columns=(2.0 * TIME, FORCE[::-1])): "--force '2=mN'",
+    }
+    for text, remedy in cases.items():
+        with pytest.raises(st.ResultError, match=remedy.replace("'", ".")):
+            st.read_record(write(text))
+
+
 def test_times_of_day_past_midnight(write):
     clock = [f"23:59:5{s}.5" for s in range(6, 10)] + [f"00:00:0{s}.5" for s in range(4)]
     rows = "".join(f"{t},{f:.1f}\n" for t, f in zip(clock, FORCE, strict=True))

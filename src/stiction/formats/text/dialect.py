@@ -18,21 +18,19 @@ SAMPLE = 400  # lines by which they are found
 SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", "|": "a bar", " ": "spaces"}
 DECIMALS = {".": "point", ",": "comma"}
 MISSING = {
-    "",
-    "-",
-    "--",
-    "nan",
-    "na",
-    "n/a",
-    "null",
-    "none",
-    "#n/a",
-    "1.#qnan",
-    "-1.#ind",
-    "1.#inf",
+    *("", "-", "--", "---", "nan", "na", "n/a", "n.a.", "null", "none"),
+    *("#n/a", "#div/0!", "#value!", "#ref!", "#num!", "#name?", "1.#qnan", "-1.#ind", "1.#inf"),
+    # what instruments write where a signal leaves their range
+    *("overload", "overrange", "over range", "overflow", "ovld", "ovrld", "ovl", "ol", "invalid"),
 }
-CLOCK = re.compile(r"(\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[ T])?\d{1,2}:\d{2}(:\d{2}([.,]\d+)?)?Z?")
-DATE = re.compile(r"\d{4}-\d{2}-\d{2}|\d{1,2}[./]\d{1,2}[./]\d{2,4}")
+# 2026-03-01, 1.3.26 or 01-Mar-2026
+DAY = r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}|\d{1,2}[-. ][^\W\d]{3,}[-. ]\d{2,4}"
+CLOCK = re.compile(
+    rf"((?P<date>{DAY})[ T])?(?P<clock>\d{{1,2}}:\d{{2}}(:\d{{2}}([.,]\d+)?)?)"
+    r"( ?(?P<half>[AP])M|Z|(?P<offset>[+-]\d{2}:?\d{2}))?",
+    re.I,
+)
+DATE = re.compile(DAY)
 HALF_A_DAY = 43200.0  # s
 NUMBER = {
     ".": re.compile(r"[+−-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
@@ -233,13 +231,22 @@ def seconds_of(cells: Sequence[object]) -> Floats | None:
         text = str(cell).strip()
         if text.lower() in MISSING:
             continue
-        if not CLOCK.fullmatch(text):
+        time = CLOCK.fullmatch(text)
+        if time is None:
             return None
-        date, _, clock = text.rstrip("Z").replace("T", " ").rpartition(" ")
-        parts = [float(each.replace(",", ".")) for each in clock.split(":")]
-        value = sum(x * y for x, y in zip(parts, (3600.0, 60.0, 1.0), strict=False))
+        date, value = time["date"] or "", _since_midnight(time)
         midnight = date != day if date else value + days < last - HALF_A_DAY
         days += 86400.0 if midnight and last > -np.inf else 0.0
         last = found[at] = value + days
         day = date
     return found if np.isfinite(last) else None
+
+
+def _since_midnight(time: re.Match[str]) -> float:
+    """Return a time of day as seconds, less its offset from universal time."""
+    parts = [float(each.replace(",", ".")) for each in time["clock"].split(":")]
+    if half := time["half"]:
+        parts[0] = parts[0] % 12.0 + (12.0 if half in "Pp" else 0.0)
+    offset = (time["offset"] or "+0000").replace(":", "")
+    ahead = float(f"{offset[0]}1") * (3600.0 * float(offset[1:3]) + 60.0 * float(offset[3:5]))
+    return sum(x * y for x, y in zip(parts, (3600.0, 60.0, 1.0), strict=False)) - ahead

@@ -86,7 +86,8 @@ def _score(cells: Sequence[str], width: int) -> float:
         return 0.0
     amounts = sum(bool(AMOUNT.fullmatch(cell)) for cell in filled)
     known = sum(map(_is_known, filled))
-    if amounts or (width > 1 and len(filled) < 2):
+    index = len(cells) == width and known  # without a name, as pandas writes it
+    if amounts or (width > 1 and len(filled) < 2 and not index):
         return 0.0
     sentence = sum(":" in cell or "=" in cell for cell in filled)
     return known + (1.0 if len(cells) == width else 0.3) - sentence

@@ -7,10 +7,13 @@ from typing import NamedTuple, NoReturn
 
 import numpy as np
 
+from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError, echo
 from stiction.formats.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.formats.table import FileColumn, FileTable
 from stiction.formats.units import is_electric, is_ratio, size_of
+
+DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
 
 
 class UnclearColumns(ResultError):
@@ -346,8 +349,25 @@ def _refuse_lack(path: object, table: FileTable, name: str, remedy: str = "") ->
 def _with_columns(path: object, table: FileTable, name: str, why: str) -> str:
     """Return why a channel has no column, with the columns that there are."""
     columns = ", ".join(str(each) for each in table.columns) or "none"
-    unit = CHANNELS[name].example
     return (
         f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; say for example "
-        f"{_flag(name)} '2={unit}'"
+        f"{_flag(name)} '{_example(table, name)}'"
     )
+
+
+def _example(table: FileTable, name: str) -> str:
+    """Return number and unit of a column that may be a channel: times are what increases."""
+    channel, increasing = CHANNELS[name], name == "time"
+    likely = [x for x in table.columns if _increases(x.values) == increasing]
+    column = (likely or [*table.columns])[0] if table.columns else None
+    number = column.number if column else 2
+    if column and is_electric(column.unit):
+        return f"{number}=2.5 {channel.unit}/{column.unit}"
+    if increasing and column and DAYS[0] < float(np.nanmean(column.values)) < DAYS[1]:
+        return f"{number}=d"
+    return f"{number}={channel.example}"
+
+
+def _increases(values: Floats) -> bool:
+    known = values[np.isfinite(values)]
+    return len(known) > 1 and bool((np.diff(known) >= 0.0).all() and known[-1] > known[0])
