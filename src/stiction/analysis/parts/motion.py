@@ -151,6 +151,11 @@ def _describe_unclear_force(found: Analysis) -> str:
             f"Noise hides what the mass does. By its spectrum the force swings at {swings}, by "
             f"{by} from crest to trough: average neighbouring samples, or measure with less noise."
         )
+    if "late_sticks" in evidence:
+        return (
+            "The mass sticks and slips, too often for so few samples to show it: sample the run at "
+            f"{in_words(evidence['rate_needed'], 'Hz')} or more."
+        )
     if evidence.get("backward", 0.0) <= 0.5:
         return ""
     fast = "The force falls slowly and rises fast"

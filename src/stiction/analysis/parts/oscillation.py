@@ -14,6 +14,7 @@ from stiction.text.columns import Quantity, grid
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
+from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
@@ -34,7 +35,7 @@ def section(found: Analysis) -> Section:
         error = float(np.nanmax(found.oscillation["frequency_error"].values))
         pitch += f", each ± {in_words(error, 'Hz', 1)}"
     lines = [f"Seen in {share} of the time, {pitch}."]
-    if of_mains(float(np.median(seen))):
+    if not isinstance(found.source, Trajectory) and of_mains(float(np.median(seen))):
         lines[0] += " That is the frequency of the mains, or twice it: it is probably hum."
     if found.phases is None:
         return Section("Oscillation", lines)

@@ -23,7 +23,13 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSVERSE,
     UNDETERMINED,
 )
-from stiction.analysis.motion.rest import comes_to_rest, rests_throughout, stops_with_drive
+from stiction.analysis.motion.rest import (
+    TOUCHES,
+    comes_to_rest,
+    rests_throughout,
+    stops_with_drive,
+    stuck_share,
+)
 from stiction.analysis.motion.vibration import (
     COUPLED,
     FAST_PERIODS,
@@ -38,6 +44,9 @@ from stiction.drive.program import nominal_velocity
 from stiction.trajectory import Trajectory
 
 FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
+# A run sticks again and again if it does so by so many times in this part of the record, its end;
+# so many samples from stick to stick show the cycles, though their falls differ in size
+FEWEST_STICKS, LATE, SHOWN = 3, 0.25, 16.0
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
 MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it
@@ -121,11 +130,31 @@ def _or_transverse(record: Record, seen: Regime, *last: float) -> Regime:
 
     `last` is drop (N) and period (s) of the last swing, if swings die out.
     """
-    fast = _fast_oscillation(record)
-    if fast is None or seen.kind not in (SETTLING, STEADY) or not fast.goes_on(*last):
+    if seen.kind not in (SETTLING, STEADY):
         return seen
+    fast = _fast_oscillation(record)
+    if fast is None or not fast.goes_on(*last):
+        return _unless_it_sticks(record, seen)
     sure = 1.0 - 0.5 * OSCILLATES / fast.amplitude  # at the bound either is as likely
     return Regime(TRANSVERSE, sure, seen.evidence | {"across": fast.amplitude}, seen.kind)
+
+
+def _unless_it_sticks(record: Record, seen: Regime) -> Regime:
+    """Return that nothing is determined of a run that sticks again and again to its end.
+
+    Its samples are too few to show the cycles.
+    """
+    begin, end = float(record.time[-1]) - LATE * record.duration, float(record.time[-1])
+    if record.sticks is None or record.steady_until(begin) < end:
+        return seen
+    count = int(np.count_nonzero(record.sticks[:, 0] > begin))
+    share = stuck_share(begin, end, record.sticks)
+    if count < FEWEST_STICKS or share <= TOUCHES:
+        return seen
+    needed = SHOWN * count / (end - begin)
+    return Regime(
+        UNDETERMINED, 0.0, {"late_sticks": count, "stick_share": share, "rate_needed": needed}
+    )
 
 
 def _fast_oscillation(record: Record) -> FastOscillation | None:

@@ -122,6 +122,10 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
         "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
         _frequency,
     ),
+    "late_sticks": (
+        "in the last quarter of the time the mass sticks {} times, which the samples do not show",
+        _whole,
+    ),
     "samples_per_cycle": ("a cycle has {} samples, too few to show it", _three_digits),
     "rate_needed": ("sample at {} or more", _frequency),
     "samples": ("number of samples: {}, too few", _whole),

@@ -744,3 +744,33 @@ def test_noise_on_a_loading_is_no_fall(number: int) -> None:
     step = 10.0 ** random.uniform(-4, -2)
     for values in (force, step * np.rint(force / step), step * np.rint(time / step)):
         assert final_fall(time, values) is None
+
+
+@pytest.mark.parametrize("rate", [10.0, 20.0, 60.0])
+def test_a_run_that_sticks_between_its_samples_does_not_slide_steadily(rate: float) -> None:
+    """It was "settling (confidence 1.00)": the mass rested for 95 % of the time to the end."""
+    law = st.ExponentialWeakening(mu_0=0.1347, mu_inf=0.10616, v_f=0.112, mu_static=0.1413)
+    slider = st.Slider(
+        mass=0.0447, k_x=137.0, k_y=72800.0, phi="7.39 deg", normal_load=111.8,
+        friction=st.laws.Anisotropic(law, ratio=1.4126, angle="-70.5 deg"),
+        drive=st.ConstantVelocity("3.66 mm/s"),
+    )  # fmt: skip
+    found = st.analyse(st.simulate(slider, 60.0, sample_rate=rate))
+    if rate > 59.0:  # as the others ask for
+        assert found.regime.kind == "stick-slip"
+        return
+    assert found.regime.kind == "undetermined"
+    assert found.regime.evidence["rate_needed"] < 60.0
+    assert "sticks and slips, too often for so few samples" in str(found)
+    assert "steadily" not in str(found)
+
+
+def test_no_hum_is_suspected_in_a_run() -> None:
+    """A run on a rig that swings at 120 Hz was told that it "is probably hum"."""
+    slider = st.Slider(
+        mass=0.01824, k_x=1e4, k_y=1.489e5, phi="2.93 deg", normal_load=1504.5,
+        friction=st.Coulomb(0.206), drive=st.ConstantVelocity("55.5 mm/s"),
+    )  # fmt: skip
+    told = str(st.analyse(st.simulate(slider, 3.35, sample_rate=1791.0)))
+    assert "Oscillation\n  Seen in" in told
+    assert "hum" not in told
