@@ -2,9 +2,9 @@
 An earthquake cycle over six decades of slip speed
 ==================================================
 
-A spring-slider with rate and state and with inertia: an hour of creep at less than a tenth of a
-micrometre a second, then a slip at decimetres a second. One run, one solver, no switch between a
-quasi-static and a dynamic code.
+A spring-slider with rate and state and with inertia: an hour of creep, for ten minutes of it at
+less than a tenth of a micrometre a second, then a slip at decimetres a second. One run, one solver,
+no switch between a quasi-static and a dynamic code.
 """
 
 import matplotlib.pyplot as plt

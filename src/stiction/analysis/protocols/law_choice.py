@@ -9,6 +9,7 @@ from typing import NamedTuple
 from stiction.analysis.protocols.friction_test import FrictionTest, in_list
 from stiction.analysis.protocols.inversion import Inversion, StepData, invert, unknown
 from stiction.analysis.protocols.spring_slider import Law
+from stiction.friction.laws import RateStateAgeing2, RateStateSlip2
 from stiction.text.units import in_words
 
 CERTAIN = 13.8  # difference of sums of squares, in variances: likelihoods differ by a thousand
@@ -25,6 +26,7 @@ NAMES: dict[Law, str] = {
 NEITHER = (
     "Neither the ageing law nor the slip law is that of all steps; give law to fit one of them."
 )
+TWO_STATES = "The law of the run has two states; a law with one is fitted."
 UNDECIDED = "The points do not tell the ageing law from the slip law: the table has both."
 UNKNOWN_RIG = (
     "The stiffness of the rig is not known: a, b and D_c are not determined. Give the record its "
@@ -66,7 +68,10 @@ def choose(test: FrictionTest, steps: Sequence[StepData], law: Law | None) -> La
     if alone := law or own:
         fit = _fit(steps, alone)
         return LawChoice(fit, None, [_why(alone, own), *_reasons(steps, fit)])
-    return _better(steps, _fit(steps, "ageing"), _fit(steps, "slip"))
+    chosen = _better(steps, _fit(steps, "ageing"), _fit(steps, "slip"))
+    if isinstance(test.law, RateStateAgeing2 | RateStateSlip2):
+        return chosen._replace(said=[TWO_STATES, *(x for x in chosen.said if x != NEITHER)])
+    return chosen
 
 
 def _fit(steps: Sequence[StepData], law: Law) -> FittedLaw:

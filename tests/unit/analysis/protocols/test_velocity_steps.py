@@ -279,3 +279,15 @@ def test_a_fit_beside_slip_that_runs_away_ends(number):
         assert np.isnan(found.D_c)  # nothing is determined: it misses the samples, or is uncertain
     else:
         assert found.D_c == pytest.approx(D_c, rel=0.06)  # up to 2.4 of its errors
+
+
+def test_a_law_with_two_states_is_said_to_have_them():
+    """It was "Neither the ageing law nor the slip law is that of all steps"."""
+    law = st.laws.RateStateAgeing2(0.01, 0.008, 3e-6, 0.005, 30e-6, 0.6, 1e-6)
+    program = st.protocols.velocity_steps(["1 um/s", "10 um/s"], distance="300 um")
+    slider = st.Slider(
+        mass=1.0, k_x=1e7, k_y=1e7, phi="0 deg", normal_load=100.0, friction=law, drive=program
+    )
+    said = str(st.analysis.velocity_steps(st.simulate(slider, sample_rate="20 Hz")))
+    assert "The law of the run has two states; a law with one is fitted." in said
+    assert "Neither" not in said

@@ -12,5 +12,6 @@ doi:10.1029/2000JB900250), differs only at slip speeds below 2 V* exp(-psi/a):
 
     mu = a asinh[(V/2V*) exp(psi/a)],   psi = mu* + sum_i b_i ln(V* theta_i/D_i)
 
-The internal states of the solver are log_theta_i = ln(V* theta_i/D_i).
+The internal states of the solver are log_theta_i = ln(V* theta_i/D_i). A change of the normal load
+leaves them as they are: the coupling of Linker & Dieterich (1992, doi:10.1029/92JB00017) is not in.
 """
