@@ -296,3 +296,21 @@ def test_an_analysis_equals_its_copy(slider):
     found = st.analyse(st.simulate(slider, "1 s", sample_rate="1 kHz"))
     assert found == pickle.loads(pickle.dumps(found))
     assert found != st.analyse(st.simulate(slider, "1.1 s", sample_rate="1 kHz"))
+
+
+@pytest.mark.parametrize(
+    ("preset", "title"),
+    [
+        ("velocity_step_ageing", "Velocity steps"),
+        ("slide_hold_slide", "Healing"),
+        ("lugre_pre_sliding", "Hysteresis"),
+        ("earthquake_cycle", ""),
+    ],
+)
+def test_a_run_of_a_test_with_a_name_is_told_as_such(preset, title):
+    """A run of velocity steps was a "vibration", with a table of its cycles."""
+    found = st.analyse(st.run(getattr(st.presets, preset)()))
+    titles = [section.title for section in found.tables()]
+    assert titles[: 1 + bool(title)] == (["Warnings", title] if title else ["Motion"])
+    its = found.parts["procedure"]
+    assert str(its or "") == str(found.tables()[1] if title else "")

@@ -140,7 +140,7 @@ def warnings_of_run(run: Trajectory, record: Record, cycles: xr.Dataset) -> tupl
 
 def _unsteady(run: Trajectory) -> tuple[str, ...]:
     """Return a sentence if the drive or the load of a run varies, and which analysis suits it."""
-    varies = [name for name, of in IMPOSED.items() if _varies(run, of)]
+    varies = variations(run)
     if not varies:
         return ()
     remedy = "st.analysis.velocity_steps, healing or hysteresis suit such a test"
@@ -152,6 +152,11 @@ def _unsteady(run: Trajectory) -> tuple[str, ...]:
         f"The {' and the '.join(varies)} {'varies' if len(varies) == 1 else 'vary'}: kind of "
         f"motion, cycles and friction are those of a steady test, which this is not; {remedy}.",
     )
+
+
+def variations(run: Trajectory) -> list[str]:
+    """Return what varies in a run, drive or load or both, in words."""
+    return [name for name, of in IMPOSED.items() if _varies(run, of)]
 
 
 def turns_round(run: Trajectory) -> bool:
