@@ -8,7 +8,7 @@ of their cosine transform, and the errors are those of such a fit.
 
 from __future__ import annotations
 
-from math import exp, inf, log, nan, sqrt
+from math import exp, hypot, inf, log, nan, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -54,6 +54,10 @@ class StepData(NamedTuple):
         Where it is steady after the step, or its mean in the end of the data.
     noise : float
         What all samples may be off by together: rounding, or the tolerance of a run.
+    travel_before : float
+        Mean travel of the drive, since the step, of the samples before it, m: negative.
+    trend_error : float
+        Standard error of the trend over the travel that `mu` and `before` are freed of, 1/m.
     """
 
     time: float
@@ -63,6 +67,8 @@ class StepData(NamedTuple):
     before: Floats
     after: float
     noise: float
+    travel_before: float = 0.0
+    trend_error: float = 0.0
 
     @property
     def level(self) -> float:
@@ -129,6 +135,12 @@ class _Problem(NamedTuple):
         if found is None:
             return np.full(len(x), nan)
         return np.asarray(level + change * log(rig.ratio) + found)
+
+    @property
+    def tilt(self) -> Floats:
+        """Weighted deviations by the standard error of the trend."""
+        travel = np.concatenate([[self.data.travel_before], self.slip])
+        return np.asarray(self.data.trend_error * np.sqrt(self.weight) * travel)
 
     def residuals(self, at: Floats) -> Floats:
         """Return the weighted deviations of a curve with these parameters."""
@@ -230,7 +242,7 @@ def _verdict(problem: _Problem, at: Floats) -> Inversion:
     # what all samples are off by together is as any smooth curve of few parameters
     alone = variance + together * weight / PARAMETERS
     whole = alone + (AMISS**2 * variance if misses else 0.0)
-    a, D, b, errors = _with_errors(at, slopes, sqrt(whole))
+    a, D, b, errors = _with_errors(at, slopes, sqrt(whole), problem.tilt)
     seen = problem.shortest / E_FOLDS < D < problem.longest
     by = max(errors[0] / a, errors[1] / abs(b) if b else inf, errors[2] / D) / KNOWN
     far = misses and problem.largest(_slow_part(off[1:])) > MISSED
@@ -242,15 +254,16 @@ def _verdict(problem: _Problem, at: Floats) -> Inversion:
 
 
 def _with_errors(
-    at: Floats, slopes: Floats, deviation: float
+    at: Floats, slopes: Floats, deviation: float, tilt: Floats
 ) -> tuple[float, float, float, tuple[float, ...]]:
-    """Return a, D_c, b, and the standard errors of a, b, D_c."""
+    """Return a, D_c, b, and the standard errors of a, b, D_c: by scatter, and by a tilt."""
     a, D = exp(at[1]), exp(at[2])
     scale = np.linalg.norm(slopes, axis=0).clip(TINY)
-    _, sizes, rows = np.linalg.svd(slopes / scale, full_matrices=False)
+    left, sizes, rows = np.linalg.svd(slopes / scale, full_matrices=False)
     part = rows.T / np.maximum(sizes, 1e-150) / scale[:, None]
+    tilted = left.T @ tilt
     parts = a * part[1], a * part[1] - part[3], D * part[2]
-    errors = tuple(deviation * float(np.linalg.norm(each)) for each in parts)
+    errors = tuple(hypot(deviation * float(np.linalg.norm(x)), float(x @ tilted)) for x in parts)
     return a, D, a - float(at[3]), errors
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.protocols.friction_test import ConstantStretch, FrictionTest
-from stiction.analysis.protocols.settling import ROUNDED
+from stiction.analysis.protocols.settling import ROUNDED, line
 from stiction.analysis.quadrature import panels, states_at
 from stiction.arrays import Floats
 from stiction.recording.noise import ORDER, white_noise
@@ -43,14 +43,24 @@ def peaks_of_samples(test: FrictionTest, slides: Sequence[ConstantStretch]) -> l
 def _sampled_peak(mu: Floats) -> Peak:
     """Return the peak of one slide, which begins after the first sample."""
     top = 1 + int(mu[1:].argmax())
-    peak, level = float(mu[top]), float(mu[-max(len(mu) // 5, 1) :].mean())
-    noise = white_noise(mu) if len(mu) > ORDER else 0.0
+    late = mu[-max(len(mu) // 5, 1) :]
+    peak, level = float(mu[top]), float(late.mean())
+    noise = max(white_noise(mu) if len(mu) > ORDER else 0.0, _scatter(late))
     fall, unseen = peak - level, max(ROUNDED * abs(peak), 2.0 * CHANCE * noise)
     if peak - level <= unseen:
         missed = _missed_rise(mu, level - unseen)
     else:
         missed = _missed_fall(mu[top:], peak - 0.5 * fall, CHANCE * noise)
     return Peak(peak, hypot(missed / sqrt(3.0), CHANCE * noise))
+
+
+def _scatter(late: Floats) -> float:
+    """Return the scatter of friction about its trend: differences see no noise that is filtered."""
+    if len(late) <= ORDER:
+        return 0.0
+    x = np.arange(float(len(late)))
+    found = line(x, late)
+    return float((late - found.offset - found.slope * x).std())
 
 
 def _missed_rise(mu: Floats, level: float) -> float:

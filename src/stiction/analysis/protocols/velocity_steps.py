@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import isnan, log, nan
+from math import hypot, isnan, log, nan, sqrt
 
 import numpy as np
 
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
     FrictionTest,
+    SteadyLevels,
     alike,
     friction_test,
     in_list,
@@ -19,6 +20,7 @@ from stiction.analysis.protocols.friction_test import (
 )
 from stiction.analysis.protocols.inversion import Inversion, StepData
 from stiction.analysis.protocols.law_choice import FittedLaw, choose
+from stiction.analysis.protocols.settling import Trend
 from stiction.analysis.protocols.spring_slider import Law, SpringSlider
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
@@ -46,8 +48,8 @@ class VelocityStep:
     before, after : float
         Velocities, m/s.
     steady_before, steady_after, peak : float
-        Steady friction on both sides, and its extremum just after the jump. Friction that has not
-        settled after it is NaN, and so is a - b.
+        Steady friction on both sides, and its extremum just after the jump, all with the trend as
+        it is at the jump. Friction that has not settled after it is NaN, and so is a - b.
     a, b : float
         Direct effect and evolution effect, from the fit of the whole rig; NaN if not determined.
     a_minus_b : float
@@ -56,13 +58,16 @@ class VelocityStep:
         Distance over which friction evolves, with its standard error, m; NaN if not
         determined.
     slip, mu, fit : ndarray
-        (m,), slip since the jump (m), friction, and the fitted curve; NaN without a fit.
+        (m,), slip since the jump (m), friction as measured, and the fitted curve with the trend;
+        NaN without a fit.
     a_error, b_error : float
         Standard errors.
     law : {"ageing", "slip", "perrin"}
         Whose curve is fitted.
     a_minus_b_error : float
         Standard error; NaN if a single sample shows steady friction on one side.
+    trend_share : float
+        Part of that error, with its sign, by the trend that all steps have in common.
     """
 
     time: float
@@ -83,6 +88,7 @@ class VelocityStep:
     b_error: float = nan
     law: Law = "ageing"
     a_minus_b_error: float = nan
+    trend_share: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -101,6 +107,9 @@ class VelocitySteps:
         The same steps with the fit of another law, where the points do not tell which is right.
     fitted : tuple of str
         Which law is fitted, and where its parameters are not determined, in sentences.
+    trend, trend_error : float
+        Change of friction with the travel of the drive, which all steps are freed of, and its
+        standard error, 1/m; zero for a run, which has none.
     """
 
     steps: tuple[VelocityStep, ...]
@@ -108,11 +117,13 @@ class VelocitySteps:
     left_out: tuple[str, ...] = ()
     other: tuple[VelocityStep, ...] = ()
     fitted: tuple[str, ...] = ()
+    trend: float = 0.0
+    trend_error: float = 0.0
 
     @property
     def section(self) -> Section:
         """The steps in words and as a table."""
-        sentences = [self._a_minus_b(), *self.fitted]
+        sentences = [self._a_minus_b(), *self._trend(), *self.fitted]
         if self.stiffness < STIFF:
             sentences.append(
                 f"The rig is not stiff, k D_c/(b W) = {self.stiffness:.3g}: a, b and D_c are right "
@@ -130,7 +141,9 @@ class VelocitySteps:
         mean = float(np.mean([each.a_minus_b for each in known]))
         shared = min(len(known), 2)  # steps that steady friction between two of them counts in
         errors = np.array([each.a_minus_b_error for each in known])
-        error = float(np.sqrt(shared * errors @ errors)) / len(known)
+        shares = np.array([each.trend_share for each in known])
+        levels = max(float(errors @ errors - shares @ shares), 0.0)
+        error = hypot(sqrt(shared * levels) / len(known), float(shares.mean()))
         way = "depends on speed in an unknown way"
         if abs(mean) > SURE * error:
             way = f"{'weakens' if mean < 0.0 else 'strengthens'} with speed"
@@ -140,6 +153,14 @@ class VelocitySteps:
         where = few if len(known) < len(self.steps) else ""
         value = f"{mean:+.4f} ± {number_text(error, '.1g')}"
         return f"Steady friction {way}: a - b = {value} on average{where}."
+
+    def _trend(self) -> list[str]:
+        """Return how friction changes with the travel, in a sentence, if it does."""
+        if not Trend(self.trend, self.trend_error).stands_out:
+            return []
+        way = "rises" if self.trend > 0.0 else "falls"
+        by = f"{1e-3 * abs(self.trend):.2g} per mm of travel, ± {1e-3 * self.trend_error:.1g}"
+        return [f"Friction {way} by {by}: the steps are freed of this trend."]
 
     def __str__(self) -> str:
         """Return the section as text."""
@@ -181,6 +202,11 @@ def velocity_steps(
     The law of a run is known. To a record the ageing law and the slip law are fitted; the text says
     which fits better, or that the points do not tell, and then the table has both.
 
+    Friction of rock often changes with the travel, too: by wear, by gouge. The settled parts of all
+    stretches of a record show a slope that they have in common, and levels and curves are freed of
+    it; a - b is that of both levels at the jump. Where the slope cannot be told from an evolution
+    over a distance as long as the stretches, errors include that. A run has no trend.
+
     Errors are standard errors. They include that neighbouring residuals deviate together, and where
     a curve misses the points, how far off the parameters of a wrong law are. Parameters known to no
     more than a fifth are NaN, "none" in the text. So are those of a rig of unknown stiffness.
@@ -217,9 +243,10 @@ def velocity_steps(
     """
     test = friction_test(source, program)
     jumps, faults = [], []
+    levels = test.levels()
     for one, two in test.successions():
         if one.velocity * two.velocity > 0.0 and not alike(one.velocity, two.velocity):
-            why = _fault(test, one, two)
+            why = _fault(test, one, two, levels.trend)
             if not why:
                 jumps.append((one, two))
             faults.append((in_words(two.start, "s"), why))
@@ -227,12 +254,14 @@ def velocity_steps(
     if not jumps:
         missing = "the speed of the drive does not step from one constant value to another"
         raise ResultError(" ".join([f"{missing}; see st.protocols.velocity_steps.", *left_out]))
-    data = [step_data(test, *jump) for jump in jumps]
+    data = [step_data(test, levels, *jump) for jump in jumps]
     choice = choose(test, data, law)
-    steps = _steps(test, jumps, data, choice.best)
-    other = () if choice.other is None else _steps(test, jumps, data, choice.other)
+    steps = _steps(test, levels, jumps, data, choice.best)
+    other = () if choice.other is None else _steps(test, levels, jumps, data, choice.other)
     stiffness = _least_stiffness(test, jumps, steps)
-    return VelocitySteps(steps, stiffness, tuple(left_out), other, tuple(choice.said))
+    return VelocitySteps(
+        steps, stiffness, tuple(left_out), other, tuple(choice.said), *levels.trend
+    )  # fmt: skip
 
 
 def _least_stiffness(test: FrictionTest, jumps: Jumps, steps: Sequence[VelocityStep]) -> float:
@@ -254,7 +283,7 @@ def _varying(test: FrictionTest) -> list[str]:
     return [f"Velocity or load vary {times}: such changes, and jumps beside them, are left out."]
 
 
-def _fault(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> str:
+def _fault(test: FrictionTest, one: ConstantStretch, two: ConstantStretch, trend: Trend) -> str:
     """Return why a jump of the velocity shows no friction law; empty if it does."""
     if not alike(one.load, two.load):
         return "The load jumps with the velocity"
@@ -264,40 +293,52 @@ def _fault(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> st
         return "The mass does not slide before the step"
     if not test.slides(two):
         return "The mass does not slide after the step"
-    if not test.has_settled(one):
+    if not test.has_settled(one, trend):
         return "Friction has not settled before the step"
     return ""
 
 
-def step_data(test: FrictionTest, one: ConstantStretch, two: ConstantStretch) -> StepData:
-    """Return a step of the drive, from one stretch to the next, as it is fitted."""
-    way, after = one.way, test.within(two.start, two.end)
+def step_data(
+    test: FrictionTest, levels: SteadyLevels, one: ConstantStretch, two: ConstantStretch
+) -> StepData:
+    """Return a step of the drive, from one stretch to the next, as it is fitted: without trend."""
+    way, after, late = one.way, test.within(two.start, two.end), test.late(one)
     rig = SpringSlider(
         two.velocity / one.velocity,
         test.stiffness / two.load,
         test.damping * abs(two.velocity) / two.load,
     )
+    slope, error = levels.trend
+    travel = abs(two.velocity) * (test.time[after] - two.start)
+    before = abs(one.velocity) * (test.time[late] - one.end)
     return StepData(
         two.start,
         rig,
-        abs(two.velocity) * (test.time[after] - two.start),
-        way * test.mu[after],
-        way * test.mu[test.late(one)],
-        way * test.steady(two),
+        travel,
+        way * test.mu[after] - slope * travel,
+        way * test.mu[late] - slope * before,
+        levels.at_jump(two, two.start),
         test.off / two.load,
+        float(before.mean()),
+        error,
     )
 
 
 def _steps(
-    test: FrictionTest, jumps: Jumps, data: Sequence[StepData], fitted: FittedLaw
+    test: FrictionTest,
+    levels: SteadyLevels,
+    jumps: Jumps,
+    data: Sequence[StepData],
+    fitted: FittedLaw,
 ) -> tuple[VelocityStep, ...]:
     """Return all steps with the fit of a law."""
     each = zip(jumps, data, fitted.steps, strict=True)
-    return tuple(_step(test, *jump, step, fitted.law, fit) for jump, step, fit in each)
+    return tuple(_step(test, levels, *jump, step, fitted.law, fit) for jump, step, fit in each)
 
 
 def _step(
     test: FrictionTest,
+    levels: SteadyLevels,
     one: ConstantStretch,
     two: ConstantStretch,
     data: StepData,
@@ -305,11 +346,12 @@ def _step(
     fit: Inversion,
 ) -> VelocityStep:
     """Return a step with the fit of a law."""
-    before, by = one.way * test.steady(one), log(data.rig.ratio)
-    steady = data.after if test.has_settled(two) else nan
+    before, by = levels.at_jump(one, two.start), log(data.rig.ratio)
+    settled = test.has_settled(two, levels.trend)
+    steady = data.after if settled else nan
     up = 1.0 if by > 0.0 else -1.0
-    error = float(np.hypot(test.steady_error(one), test.steady_error(two))) / abs(by)
     lag = test.lag[test.within(two.start, two.end)]
+    trend = levels.trend.slope * data.slip
     return VelocityStep(
         two.start,
         abs(one.velocity),
@@ -323,10 +365,11 @@ def _step(
         fit.D_c,
         fit.D_c_error,
         data.slip - one.way * (lag - lag[0]),
-        data.mu,
-        fit.fit,
+        data.mu + trend,
+        fit.fit + trend,
         fit.a_error,
         fit.b_error,
         law,
-        error if test.has_settled(two) else nan,
+        levels.error_of_difference(one, two) / abs(by) if settled else nan,
+        levels.trend.error * levels.apart(one, two) / by,
     )
