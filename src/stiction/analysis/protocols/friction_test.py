@@ -13,7 +13,7 @@ from stiction.analysis.protocols.settling import (
     SETTLED,
     CorrelatedNoise,
     SettledPart,
-    Trend,
+    TravelTrend,
     common_trend,
     has_settled,
     line,
@@ -42,7 +42,7 @@ ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 SLOPE = 12.0**0.5  # error of a rise in a straight line, over that of its mean
 TAIL_MEAN = 0.5  # mean of what is left of an evolution in a part, over its first value, at most
-NO_TREND, NO_NOISE = Trend(), CorrelatedNoise()
+NO_TREND, NO_NOISE = TravelTrend(), CorrelatedNoise()
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 LISTED = 3  # times that a sentence lists
 
@@ -85,14 +85,14 @@ class SteadyLevels(NamedTuple):
 
     Attributes
     ----------
-    trend : Trend
+    trend : TravelTrend
         Over the travel of the drive.
     level, error, travel : dict
         Of each stretch: mean friction along the drive in its settled part, its standard error, and
         how far the drive has come there since the stretch began, m.
     """
 
-    trend: Trend
+    trend: TravelTrend
     level: dict[ConstantStretch, float]
     error: dict[ConstantStretch, float]
     travel: dict[ConstantStretch, float]
@@ -208,7 +208,7 @@ class FrictionTest(NamedTuple):
             errors.append(hypot(error, self.off / each.load) if count > 1 else nan)
         return errors
 
-    def _trend(self, sliding: list[ConstantStretch], parts: list[SettledPart]) -> Trend:
+    def _trend(self, sliding: list[ConstantStretch], parts: list[SettledPart]) -> TravelTrend:
         """Return the trend that settled parts have in common."""
         # of a line, the slope times the length is as uncertain as its mean times sqrt(12)
         errors = [
@@ -218,7 +218,7 @@ class FrictionTest(NamedTuple):
         return common_trend(np.array([each.slope for each in parts]), np.array(errors))
 
     def _levels(
-        self, sliding: list[ConstantStretch], parts: list[SettledPart], trend: Trend
+        self, sliding: list[ConstantStretch], parts: list[SettledPart], trend: TravelTrend
     ) -> SteadyLevels:
         """Return the levels of settled parts, and their errors."""
         errors = self._errors(sliding, parts)
@@ -245,7 +245,7 @@ class FrictionTest(NamedTuple):
         loading = stretch.way * line(self.time[late], self.lag[late]).slope
         return loading < RESTS * abs(stretch.velocity)
 
-    def has_settled(self, stretch: ConstantStretch, trend: Trend = NO_TREND) -> bool:
+    def has_settled(self, stretch: ConstantStretch, trend: TravelTrend = NO_TREND) -> bool:
         """Return whether friction, less a trend that is known, has settled in a stretch's end."""
         at, late = self.within(*stretch[:2]), self._latest(stretch)
         slope = stretch.velocity * trend.slope if trend.stands_out else 0.0

@@ -197,7 +197,7 @@ def noise_about(parts: Sequence[Floats]) -> CorrelatedNoise:
     return CorrelatedNoise(deviation, samples, error_of_few(1.0, free))
 
 
-class Trend(NamedTuple):
+class TravelTrend(NamedTuple):
     """Change of friction with the drive's travel, and its standard error in a stretch, 1/m."""
 
     slope: float = 0.0
@@ -209,7 +209,7 @@ class Trend(NamedTuple):
         return abs(self.slope) > SURE * self.error
 
 
-def common_trend(slopes: Floats, errors: Floats) -> Trend:
+def common_trend(slopes: Floats, errors: Floats) -> TravelTrend:
     """Return the trend that stretches have in common.
 
     Where their slopes scatter by more than their errors tell, the trend varies, and its error is
@@ -218,10 +218,10 @@ def common_trend(slopes: Floats, errors: Floats) -> Trend:
     known = np.isfinite(slopes) & np.isfinite(errors)
     slopes, weights = slopes[known], errors[known].clip(TINY) ** -2.0
     if not len(slopes):
-        return Trend()
+        return TravelTrend()
     total, free = float(weights.sum()), len(slopes) - 1
     slope = float(weights @ slopes) / total
     square, varies = float(weights @ (slopes - slope) ** 2), 0.0
     if square > SCATTERED * free:
         varies = (square - free) / (total - float(weights @ weights) / total)
-    return Trend(slope, sqrt(1.0 / total + varies))
+    return TravelTrend(slope, sqrt(1.0 / total + varies))

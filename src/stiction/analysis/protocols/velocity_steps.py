@@ -20,7 +20,7 @@ from stiction.analysis.protocols.friction_test import (
 )
 from stiction.analysis.protocols.inversion import Inversion, StepData
 from stiction.analysis.protocols.law_choice import FittedLaw, choose
-from stiction.analysis.protocols.settling import Trend
+from stiction.analysis.protocols.settling import TravelTrend
 from stiction.analysis.protocols.spring_slider import Law, SpringSlider
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
@@ -156,7 +156,7 @@ class VelocitySteps:
 
     def _trend(self) -> list[str]:
         """Return how friction changes with the travel, in a sentence, if it does."""
-        if not Trend(self.trend, self.trend_error).stands_out:
+        if not TravelTrend(self.trend, self.trend_error).stands_out:
             return []
         way = "rises" if self.trend > 0.0 else "falls"
         by = f"{1e-3 * abs(self.trend):.2g} per mm of travel, ± {1e-3 * self.trend_error:.1g}"
@@ -283,7 +283,9 @@ def _varying(test: FrictionTest) -> list[str]:
     return [f"Velocity or load vary {times}: such changes, and jumps beside them, are left out."]
 
 
-def _fault(test: FrictionTest, one: ConstantStretch, two: ConstantStretch, trend: Trend) -> str:
+def _fault(
+    test: FrictionTest, one: ConstantStretch, two: ConstantStretch, trend: TravelTrend
+) -> str:
     """Return why a jump of the velocity shows no friction law; empty if it does."""
     if not alike(one.load, two.load):
         return "The load jumps with the velocity"
