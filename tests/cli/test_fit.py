@@ -63,7 +63,7 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     assert inside("audit", rig, "--record", data, *units, *library, "-o", page) == 0
     assert {path: path.stat().st_mtime_ns for path in folder.glob("*/*.npz")} == made
     out = capsys.readouterr().out
-    titles = ("What the record says", "Warnings about the record", "Verdict")
+    titles = ("What the record says", "Warnings about the record", "The rig as it is described")
     places = [out.index(title) for title in titles]
     assert places == sorted(places)
     assert "What would change it" in out

@@ -77,7 +77,15 @@ class Onset(NamedTuple):
         unit, said = along["units"], ""
         if self.kind == "hard":
             pairs = zip(self.hysteresis, self.hysteresis_uncertainty, strict=True)
-            said = ", hysteresis from {} to {}".format(*(with_error(*x, unit) for x in pairs))
+            ends = [with_error(*each, unit) for each in pairs]
+            # where the sweep ends before, the end of hysteresis is not known
+            open_ends = map(isnan, self.hysteresis_uncertainty)
+            beyond = (" or less", " or more")
+            low, high = (
+                f"{end}{word * is_open}"
+                for end, word, is_open in zip(ends, beyond, open_ends, strict=True)
+            )
+            said = f", hysteresis from {low} to {high}"
         elif not isnan(self.threshold):
             said = f" at {with_error(self.threshold, self.uncertainty, unit)}"
         return f"<Onset along {along['long_name']}: {self.kind}{said}>"

@@ -30,8 +30,9 @@ from stiction.text.units import in_words
 
 DESCRIBED = (
     "The sections after the fit are of the apparatus as it is described, with uncertain values in "
-    "the middle of their priors: write the fitted values into the description, and audit again."
+    "the middle of their priors"
 )
+REPEAT = ": write the fitted values into the description, and audit again"
 BOTH_HOLD = (
     "Both hold, as the loading curve is compared with two sets of simulations: those with the "
     "fitted values have one like it, which is enough for an explanation; of those nearest to the "
@@ -133,12 +134,18 @@ def sections(found: RecordComparison) -> list[Section]:
     if found.fit is None:
         return [Section(RECORD, [f"No verdict: {found.reason}."])]
     parts = [
-        Section(RECORD, [verdict(found), DESCRIBED]),
+        Section(RECORD, [verdict(found), f"{DESCRIBED}{REPEAT * rotates(found)}."]),
         *([Section(WARNINGS, [*found.warnings])] if found.warnings else []),
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]
     return [*parts, *(found.odds.tables() if found.odds else ()), *found.fit.tables()]
+
+
+def rotates(found: RecordComparison) -> bool:
+    """Return whether the fit, which assumes that friction rotates, means something."""
+    claimed = UNDECIDED if found.odds is None else found.odds.decision
+    return found.like and claimed in (ROTATION, UNDECIDED)
 
 
 def verdict(found: RecordComparison) -> str:

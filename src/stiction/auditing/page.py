@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 import stiction
 from stiction.auditing import figures, tolerance
-from stiction.auditing.words.verdict import RECORD
+from stiction.auditing.words.verdict import AS_DESCRIBED, RECORD, VERDICT
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
 from stiction.text.sections import join_units
@@ -31,8 +31,10 @@ class Illustration(NamedTuple):
 
 
 # figures below each section, with captions
+TEST = (figures.test, "The simulated test as its load cell records it.")
 DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
-    "Verdict": ((figures.test, "The simulated test as its load cell records it."),),
+    VERDICT: (TEST,),
+    AS_DESCRIBED: (TEST,),
     "Is it stick?": (
         (figures.creep, "Creep before slip, averaged over the transverse motion."),
         (figures.damping, "How the friction force turns during creep, and where slow turns fast."),

@@ -30,7 +30,7 @@ from stiction.auditing.words.load_cell import load_cell
 from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
-from stiction.auditing.words.verdict import verdict
+from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
 from stiction.inference.library import SIMULATIONS
 from stiction.inference.priors import Rig, rig_of
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
@@ -233,7 +233,7 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
 def sections(found: Audit) -> list[Section]:
     """Return the sections of the report on the apparatus itself."""
     return [
-        Section("Verdict", verdict(found)),
+        Section(VERDICT if found.measured is None else AS_DESCRIBED, verdict(found)),
         Section("Predicted and simulated", violated_assumptions(found), numbers(found)),
         Section("Is it stick?", stick(found)),
         Section(LOAD_CELL, load_cell(found)),

@@ -15,6 +15,8 @@ SPELLED = {
     "millinewton": "mN", "micrometer": "um", "mikrometer": "um", "microns": "um", "micron": "um",
     "kp": "kgf", "pond": "gf", "gramm": "g", "gr": "g", "lbs": "lb",
 }  # fmt: skip
+BRIDGE = re.compile(r"[mµu]?V/V")  # the signal of strain gauges over their supply
+PER_BRIDGE = re.compile(rf"(.*?)/\(?({BRIDGE.pattern})\)?")
 COUNTS = {"count", "lsb", "digit", "bit", "step"}
 RATIOS = {"-", "1", "", "–", "--", "none", "n/a", "[-]", "ratio"}
 IN = re.compile(r"in (?!lb|oz)", re.I)  # "in kN" is no inch; "in lbf" is a moment
@@ -51,7 +53,9 @@ def size_of(text: str, unit: str, stated: str = "") -> Size | None:
     if times == 0.0 or not abs(times) < 1e60:
         return None
     if "/" in name:
-        upper, lower = (spell(part) for part in name.rsplit("/", 1))
+        per_bridge = PER_BRIDGE.fullmatch(name)
+        parts = per_bridge.groups() if per_bridge else name.rsplit("/", 1)
+        upper, lower = map(spell, parts)
         per = _raw_units(spell(stated) or lower, lower)
         if per and (one := size_of(upper, unit)) is not None:
             return Size(times * one.value * per, one.note)
@@ -138,7 +142,8 @@ def _raw_units(stated: str, unit: str) -> float | None:
     """Return how many of a unit of a raw signal one `stated` unit is; None if it is none."""
     if unit.lower().rstrip("s") in COUNTS:
         return 1.0 if stated.lower().rstrip("s") in COUNTS else None
-    if any(_factor(unit, one) is not None for one in ("V", "A")):
+    of_bridge = BRIDGE.fullmatch(stated) and BRIDGE.fullmatch(unit)
+    if of_bridge or any(_factor(unit, one) is not None for one in ("V", "A")):
         return _factor(stated, unit)
     return None
 

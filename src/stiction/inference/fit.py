@@ -140,7 +140,8 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
     refuse_too_few(
         "simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS,
         f" no longer than {LONGEST_CYCLE:g} times the record's",
-        "the priors, and stiffness and velocity, which decide how long a cycle lasts",
+        "the priors, and stiffness and velocity, which decide how long a cycle lasts, and whether "
+        "the record is stick-slip at all: `stiction analyse` tells",
     )  # fmt: skip
     observed = np.concatenate([each.features for each in seen])
     place = None if folder is None else folder / f"learned-{library.wanted}.npz"

@@ -10,6 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.motion.regime.classify import classify
+from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import MOST_MISSING, even_grid
 from stiction.arrays import Floats
@@ -31,6 +33,7 @@ from stiction.trajectory import Trajectory
 
 Source = Record | Trajectory | str | Path  # of a record: a run is taken as if measured
 
+NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 PER_CYCLE = 200  # samples: more are averaged
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
@@ -187,6 +190,11 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         if (values := getattr(record, each, None)) is not None
     }
     step = float(f"{grid.step:.{DIGITS}g}")
+    if (kind := classify(record).kind) in NO_CYCLES:
+        raise ResultError(
+            f"{name} shows no stick-slip, of which a fit needs {LEAST_CYCLES} cycles: it is "
+            f"{kind}; `stiction analyse` tells what that says of friction"
+        )
     found = find_cycles(channels["force"])
     count = len(found.peak)
     if count < LEAST_CYCLES:

@@ -170,7 +170,7 @@ def _cycle(run: Trajectory) -> list[float]:
 def earthquake_cycle() -> Description:
     """A block with inertia on a weakening fault, per square metre: one earthquake in 3778 s.
 
-    Between earthquakes the block creeps at 70 nm/s while the plate moves at 1 mm/s; in an
+    Between earthquakes the block slows to 74 nm/s while the plate moves at 1 mm/s; in an
     earthquake it slips 3.8 m at up to 0.2 m/s. Forces are stresses and stiffness is per area. The
     published values are of a run with a relative tolerance of 1e-6; the sharper period is known to
     ten digits. The start is a point of the cycle, 1500 s after an earthquake.

@@ -48,7 +48,7 @@ def test_the_report_says_what_it_rests_on_and_what_would_change_it(found):
     assert "simulated records" in parts["What that rests on"]
     assert "force across the drive and displacement of the mass" in parts["What would change it"]
     assert "turned by a known angle" in parts["What would change it"]
-    assert {"Fit", "Mechanism", "Verdict", "How well to align"} <= set(parts)
+    assert {"Fit", "Mechanism", "The rig as it is described", "How well to align"} <= set(parts)
 
 
 def test_the_page_has_the_figures_of_the_record(found):

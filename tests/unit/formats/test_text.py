@@ -492,6 +492,63 @@ def test_a_unit_may_be_spelled_out(write):
         st.read_record(write("Zeit\tKraft\ns\tin lbf\n" + lines("\t", ",")))
 
 
+def in_groups(values):
+    """Whole numbers as a spreadsheet writes them in German: 998, 1.009."""
+    return [f"{round(value):,}".replace(",", ".") for value in values]
+
+
+def test_points_that_group_thousands_are_no_decimal_signs(write):
+    """1.009 mN stood among 998 mN, and the record was analysed, at exit status 0."""
+    time, force = 0.93 + 0.01 * TIME, 990.0 + 10.0 * np.arange(COUNT)
+    text = "Zeit [s];Kraft [mN]\n" + "".join(
+        f"{t:.3f}".replace(".", ",") + f";{f}\n"
+        for t, f in zip(time, in_groups(force), strict=True)
+    )
+    record = st.read_record(write(text))
+    assert record.force == pytest.approx(1e-3 * force)
+    english = text.replace(".", "'").replace(",", ".").replace("'", ",")
+    assert st.read_record(write(english)).force == pytest.approx(1e-3 * force)
+
+
+# three decimals in every cell are English where tabs separate
+@pytest.mark.parametrize(("separator", "below"), [(";", 0), (";", 4), ("\t", 4)])
+def test_points_that_may_group_thousands_are_asked_for(write, below, separator):
+    """Whole numbers of both kinds: nothing in the file tells."""
+    time, force = 1500.0 + 10.0 * np.arange(COUNT), 1000.0 - below + np.arange(COUNT)
+    rows = zip(in_groups(time), in_groups(force), strict=True)
+    path = write(f"Zeit [ms]{separator}Kraft [mN]\n" + "".join(
+        f"{t}{separator}{f}\n" for t, f in rows
+    ))  # fmt: skip
+    with pytest.raises(st.ResultError, match="say --decimal point or --decimal comma"):
+        st.read_record(path)
+    record = st.read_record(path, decimal="comma")
+    assert record.force == pytest.approx(1e-3 * force)
+    assert record.time == pytest.approx(1e-3 * time)
+
+
+def test_three_decimals_are_decimals_where_one_number_begins_with_zero(write):
+    text = "t [s];F [N]\n" + lines(";", columns=(TIME, 1.0 + FORCE))
+    assert st.read_record(write(text)).force == pytest.approx(1.0 + FORCE)
+
+
+def test_a_bridge_has_a_scale_in_newtons_per_millivolt_per_volt(write):
+    """2.4 kN was read for 2.4 N."""
+    path = write("Time [s],Force [mV/V]\n" + lines(columns=(TIME, FORCE / 5.0), digits=6))
+    for scale in ("2=5 N/(mV/V)", "2=5000 N/(V/V)"):
+        assert st.read_record(path, force=scale).force == pytest.approx(FORCE)
+    with pytest.raises(st.ResultError, match=r"--force '2=2.5 N/\(mV/V\)'"):
+        st.read_record(path)
+
+
+def test_a_unit_that_contradicts_the_heading_is_told(write):
+    """24 kN were read for 24 N, without a word."""
+    path = write("Time [s],Force [mN]\n" + lines())
+    assert "is read in N, as asked, not in what its heading says" in notes(
+        st.read_record(path, force="N")
+    )
+    assert "heading" not in notes(st.read_record(path, force="-1 mN"))
+
+
 def test_a_remedy_names_a_column_that_may_serve(write):
     """It was always the second one."""
     days = 46082.5 + TIME / 86400.0

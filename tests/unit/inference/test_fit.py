@@ -370,3 +370,15 @@ def test_a_record_is_taken_from_its_file_and_from_a_run(record, rig, tmp_path):
         observe_all(run, rig.slider)
     with pytest.raises(st.StictionError, match="a record, a run or a path or a sequence, is 5"):
         st.fit(5, rig)
+
+
+def test_a_record_of_steady_sliding_is_not_said_to_be_too_short():
+    """The remedy was to record for longer, or slower: no stick-slip ever came."""
+    slider = st.presets.nakano_popov_2020().replace(phi="12 deg", friction=st.Coulomb(0.2))
+    run = st.simulate(slider, "10 s", sample_rate="200 Hz")
+    noise = 2e-3 * np.random.default_rng(1).normal(size=len(run.samples["time"]))
+    record = st.Record(
+        time=run.samples["time"], force=run.samples["spring_x"] + noise, normal_load=10.0
+    )
+    with pytest.raises(st.ResultError, match=r"shows no stick-slip.*it is settling"):
+        observe(record, slider)

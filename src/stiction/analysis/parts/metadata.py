@@ -34,6 +34,7 @@ ROUGH = {  # why a value may be farther from the truth than its error says
         "The force may rise more slowly than stiffness times drive velocity: the mass creeps."
     ),
 }
+NOT_SHOWN = "not shown"
 HEADINGS = ("quantity", "shown", "stated", "", "by the")
 
 
@@ -42,26 +43,31 @@ def section(found: Analysis) -> Section | None:
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
-    known = [word for word in map(verdict, its) if word]
-    wrong, those = known.count("contradicts"), f"{len(known)} stated values"
-    lines = [
-        f"{wrong} of {len(known)} stated values contradict the record."
-        if wrong
-        else f"The record agrees with the {'stated value' if len(known) == 1 else those}."
-        if ALLOWED not in known
-        else f"The record does not contradict the {'stated value' if len(known) == 1 else those}."
-    ]
+    known = [word for word in map(verdict, its) if word not in ("", NOT_SHOWN)]
+    lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
     rough = [x.how for x in its if verdict(x) in ((ALLOWED,) if x.part else (ALLOWED, ""))]
     lines += [ROUGH[how] for how in dict.fromkeys(rough) if how in ROUGH]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
 
+def _agreement(known: list[str]) -> str:
+    """Return how many stated values contradict the record, in a sentence."""
+    wrong, several = known.count("contradicts"), f"{len(known)} stated values"
+    if wrong:
+        return f"{wrong} of {several} contradict the record."
+    those = "stated value" if len(known) == 1 else several
+    if ALLOWED in known:
+        return f"The record does not contradict the {those}."
+    return f"The record agrees with the {those}."
+
+
 def verdict(each: StatedQuantity) -> str:
     """Return whether the record agrees with a stated value, only allows it, or contradicts it."""
-    if not each.agrees:
-        return "" if each.agrees is None else "contradicts"
     limit = isnan(each.error)  # of what the record can show, not a value of it
+    if not each.agrees:
+        beyond = NOT_SHOWN if limit and each.unit == "Hz" else "contradicts"
+        return "" if each.agrees is None else beyond
     apart = abs(each.found - each.stated)
     same = limit or apart <= max(SAME * abs(each.stated), SURE * each.error)
     return "agrees" if same else ALLOWED

@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
 RECORD = "What the record says"  # title of the verdict on a measured record
+# and of that on the apparatus: beside a record, the verdict is what the record says
+VERDICT, AS_DESCRIBED = "Verdict", "The rig as it is described"
 MEANS = ("period", "s"), ("drop", "N")  # over the cycles
 SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
 SEEN = {  # kinds of motion, in a sentence

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import pairwise, zip_longest
 from typing import NamedTuple
 
 import numpy as np
@@ -37,14 +37,11 @@ NUMBER = {
     ",": re.compile(r"[+−-]?(\d+(,\d+)?|,\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
 }
 GROUPS = {  # thousands in groups: 12,345.6 or 12'345.6
-    ".": re.compile(r"[+−-]?\d{1,3}([,'’ \u00a0\u202f]\d{3})+(\.\d*)?"),
-    ",": re.compile(r"[+−-]?\d{1,3}([.'’ \u00a0\u202f]\d{3})+(,\d*)?"),
+    ".": re.compile(r"[+−-]?[1-9]\d{0,2}([,'’ \u00a0\u202f]\d{3})+(\.\d*)?"),
+    ",": re.compile(r"[+−-]?[1-9]\d{0,2}([.'’ \u00a0\u202f]\d{3})+(,\d*)?"),
 }
-SURELY = {  # groups and a decimal sign, or two groups: nothing else
-    ".": re.compile(r"\d([,'’ \u00a0\u202f]\d{3})+\.\d|\d([,'’]\d{3}){2}"),
-    ",": re.compile(r"\d([.'’ \u00a0\u202f]\d{3})+,\d|\d([.'’]\d{3}){2}"),
-}
-GROUPED = re.compile(r"[+-]?[1-9]\d{0,2},\d{3}")  # one and a half, or fifteen hundred?
+GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")  # one and a half, or fifteen hundred?
+THOUSANDTHS, HUNDREDS = 0.1, re.compile(r"[+-]?[1-9]\d\d")  # share of cells below a thousand
 
 
 class Dialect(NamedTuple):
@@ -72,6 +69,10 @@ class Dialect(NamedTuple):
     def is_number(self, cell: str) -> bool:
         """Return whether a cell is a number."""
         return NUMBER[self.decimal].fullmatch(cell) is not None or self._has_groups(cell)
+
+    def has_other_sign(self, cell: str) -> bool:
+        """Return whether a cell has a point where the decimal sign is a comma, and no groups."""
+        return self.decimal == "," and "." in cell and not self.is_value(cell.strip())
 
     def _has_groups(self, cell: str) -> bool:
         return self.groups and GROUPS[self.decimal].fullmatch(cell) is not None
@@ -117,7 +118,7 @@ def find_dialect(path: object, lines: Sequence[str], layout: TextLayout) -> Dial
     some = filled[: SAMPLE // 2] + filled[SAMPLE // 2 :][:: max(1, len(filled) // SAMPLE)][-SAMPLE:]
     signs = [decimal] if decimal else list(DECIMALS)
     kinds = [(sign, False) for sign in signs]
-    kinds += [(sign, True) for sign in signs if any(SURELY[sign].search(line) for line in some)]
+    kinds += [(sign, True) for sign in signs if any(GROUPS[sign].search(line) for line in some)]
     choices = [
         Dialect(mark, sign, groups)
         for mark in ([separator] if separator else SEPARATORS)
@@ -131,6 +132,7 @@ def find_dialect(path: object, lines: Sequence[str], layout: TextLayout) -> Dial
         best = max(scores.values(), default=(0.0, 0))
         if best[0] > 0.0:
             near = [each for each in scores if scores[each][0] > 0.9 * best[0]]
+            near.sort(key=lambda each: -scores[each][0])
             return _settle(path, near, some, labels, layout)
     raise ResultError(_no_samples(path, filled))
 
@@ -171,7 +173,12 @@ def _settle(
 ) -> Dialect:
     """Return the one of several good readings that the file supports, or refuse to choose."""
     width = {each: _score(each, lines, labels)[1] for each in near}
-    chosen = min(near, key=lambda each: (-width[each], each.decimal != ".", each.groups))
+    # the first have the most lines of samples: with groups, if only so all cells are numbers
+    needed = near[0].groups and _score(near[0], lines, labels) > _score(
+        near[0]._replace(groups=False), lines, labels
+    )
+    fits = [each for each in near if each.groups == needed]
+    chosen = min(fits, key=lambda each: (-width[each], each.decimal != "."))
     headed = _header_width(chosen, lines, labels)
     samples = next(line for line in lines if chosen.has_samples(line, labels)).strip()
     # '0,5' is one number, or two integers: the first line tells how many columns there are
@@ -187,15 +194,31 @@ def _settle(
                 f"{path}: in {samples[:60]!r} commas separate {width[chosen]} columns, or are "
                 f"decimal signs; if they separate, say --decimal point; if not, {_remedy(commas)}"
             )
-    if chosen.decimal == "," and layout.decimal is None:
-        cells = [cell for cells in rows for cell in cells if "," in cell]
-        if cells and all(GROUPED.fullmatch(cell) for cell in cells):
-            raise ResultError(
-                f"{path}: in {echo(cells[0])} the comma is a decimal sign, or groups "
-                "thousands; say "
-                "--decimal comma, or write the numbers with points and without groups"
-            )
+    if layout.decimal is None and not chosen.groups:
+        _refuse_thousands(path, chosen, rows)
     return chosen
+
+
+def _refuse_thousands(path: object, dialect: Dialect, rows: Sequence[Sequence[str]]) -> None:
+    """Refuse numbers whose decimal sign may group thousands: all have three digits after it.
+
+    Of points that is so in a column that has hundreds without any, too, as `998` beside `1.009`,
+    and where semicolons separate columns: where commas are decimal signs.
+    """
+    sign = dialect.decimal
+    name, other = ("comma", "point") if sign == "," else ("point", "comma")
+    columns = [[*column] for column in zip_longest(*rows, fillvalue="")]
+    everywhere = sign == "," or dialect.separator == ";"
+    for column in [[cell for cells in columns for cell in cells], *columns]:
+        cells = [cell for cell in column if sign in cell]
+        hundreds = sum(HUNDREDS.fullmatch(cell) is not None for cell in column)
+        bare = not everywhere and hundreds < THOUSANDTHS * len(column)
+        everywhere = False
+        if cells and not bare and all(GROUPED.fullmatch(cell) for cell in cells):
+            raise ResultError(
+                f"{path}: in {echo(cells[0])} the {name} is a decimal sign, or groups thousands; "
+                f"say --decimal {name} or --decimal {other}"
+            )
 
 
 def _remedy(commas: list[Dialect]) -> str:

@@ -171,7 +171,10 @@ def _numbers_among(
         for x, yes in zip(texts, known, strict=True)
     ]
     numbers = np.array(pd.to_numeric(pd.Series(plain, dtype=object), errors="coerce"), float)
-    odd = [x.lower() in ("true", "false") or "_" in x or "x" in x for x in plain]
+    odd = [
+        x.lower() in ("true", "false") or "_" in x or "x" in x or dialect.has_other_sign(str(given))
+        for x, given in zip(plain, texts, strict=True)
+    ]
     numbers[odd] = np.nan
     missing = np.array([x.lower() in MISSING for x in plain])
     return numbers, known & np.isnan(numbers) & ~missing

@@ -297,6 +297,9 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
     size = size_of(text, channel.unit, column.unit) if text else None
     if size is not None:
         note = f"in column {column} {size.note}" if size.note else ""
+        headed = size_of(column.unit, channel.unit) if unit and column.unit else size
+        if "/" not in unit and (headed is None or abs(headed.value) != abs(size.value)):
+            note = f"column {column} is read in {unit}, as asked, not in what its heading says"
         return Chosen(column, size.value, text, note)
     example = f"{_flag(name)} '{column.number}={channel.example}'"
     if not text or (is_ratio(text) and not unit):
@@ -312,7 +315,7 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
         hint = f"; line {hints[0].line} says {hints[0].text.strip()[:60]!r}" if hints else ""
         raise ResultError(
             f"{path}: column {column} is in {text}, and its scale is needed; say "
-            f"{_flag(name)} '{column.number}=2.5 {channel.unit}/{text}'{hint}"
+            f"{_flag(name)} '{column.number}={_scale(channel.unit, text)}'{hint}"
         )
     raise ResultError(
         f"{path}: column {column} is in {echo(text)}, not a unit of "
@@ -362,10 +365,15 @@ def _example(table: FileTable, name: str) -> str:
     column = (likely or [*table.columns])[0] if table.columns else None
     number = column.number if column else 2
     if column and is_electric(column.unit):
-        return f"{number}=2.5 {channel.unit}/{column.unit}"
+        return f"{number}={_scale(channel.unit, column.unit)}"
     if increasing and column and DAYS[0] < float(np.nanmean(column.values)) < DAYS[1]:
         return f"{number}=d"
     return f"{number}={channel.example}"
+
+
+def _scale(unit: str, signal: str) -> str:
+    """Return an example of the scale of a raw signal."""
+    return f"2.5 {unit}/({signal})" if "/" in signal else f"2.5 {unit}/{signal}"
 
 
 def _increases(values: Floats) -> bool:

@@ -196,6 +196,8 @@ def test_a_transverse_oscillation_above_half_the_sample_rate_is_not_in_the_recor
     assert each.stated == pytest.approx((across / MASS) ** 0.5 / (2.0 * np.pi), rel=1e-12)
     assert each.agrees == shown
     assert ("The transverse oscillation, at 2.251 kHz, is not in this record" in said) != shown
+    assert ("not shown" in said) != shown
+    assert "contradict the record" not in said  # it did, of a stiffness that was right
 
 
 def test_the_cut_off_of_a_sensor_counts_too():
