@@ -70,9 +70,11 @@ def _spread(time: Floats) -> Floats:
     """Return times that increase, those of equal samples spread evenly up to the next."""
     first = np.flatnonzero(np.diff(time, prepend=time[0] - 1.0))
     count = np.diff(first, append=len(time))
-    ends = time[first]
+    ends = time[first]  # a copy
     typical = float(np.median(np.diff(ends))) / float(np.median(count[:-1]))
     length = np.append(np.diff(ends), typical * count[-1])
+    if typical * count[0] < length[0]:  # the record begins within a tick of its clock
+        ends[0], length[0] = ends[0] + length[0] - typical * count[0], typical * count[0]
     number = np.arange(len(time)) - np.repeat(first, count)
     return np.asarray(np.repeat(ends, count) + number * np.repeat(length / count, count))
 

@@ -285,7 +285,7 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
     if found.odds is None:
         lines.append(f"Other mechanisms were not compared: {found.incomparable}.")
     lines.append(
-        "A record of the same rig, turned by a known angle, would tell most: the fitted "
-        "misalignment must turn with it."
+        "A record of the same rig, turned by a known angle, would test the verdict: the fitted "
+        "misalignment must turn with it. What narrows its interval, `stiction design` tells."
     )
     return lines

@@ -85,8 +85,8 @@ class DriveProgram(Described):
     def simplest(self) -> ConstantVelocity | DriveProgram:
         """Return the constant velocity that this program keeps to, or itself if it varies."""
         first = self.stretches[0][1]
-        constant = len(self.stretches) == 1 and isinstance(first, ConstantVelocity)
-        return first if constant else self
+        constant = isinstance(first, ConstantVelocity)
+        return first if constant and all(each == first for _, each in self.stretches) else self
 
     def rate(self, t: Times) -> tuple[Any, Any]:
         """Return the velocity (X, Y) at `t`, in m/s; at a jump, the value before."""

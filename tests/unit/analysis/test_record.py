@@ -25,10 +25,16 @@ def test_arrays_belong_together_and_time_increases():
 
 
 def test_samples_of_one_time_are_spread_up_to_the_next():
-    record = Record(time=[0.0, 0.0, 3.0, 3.0, 3.0, 6.0], force=np.arange(6.0))
-    assert record.time.tolist() == [0.0, 1.5, 3.0, 4.0, 5.0, 6.0]
+    record = Record(time=[0.0, 0.0, 0.0, 3.0, 3.0, 6.0], force=np.arange(6.0))
+    assert record.time.tolist() == [0.0, 1.0, 2.0, 3.0, 4.5, 6.0]
     assert record.same_time == 3
     assert Record(time=[0.0, 1.0, 1.0], force=np.arange(3.0)).time.tolist() == [0.0, 1.0, 2.0]
+
+
+def test_a_record_may_begin_within_a_tick_of_its_clock():
+    """Its samples were spread over the whole tick, and the force rose too slowly there."""
+    clock = [0.0, 0.0, *[3.0] * 3, *[6.0] * 3, *[9.0] * 3, 12.0]
+    assert Record(time=clock, force=np.arange(12.0)).time.tolist() == [*np.arange(1.0, 13.0)]
 
 
 def test_an_empty_record_has_no_duration():

@@ -119,3 +119,12 @@ def test_a_description_s_duration_is_that_of_its_program():
     assert st.Description.from_toml(whole.to_toml()) == whole
     with pytest.raises(st.DescriptionError, match="run"):
         st.Description.from_toml(TOML.replace("LAST", ""))
+
+
+def test_pieces_of_one_velocity_are_that_velocity():
+    """`stability` refused the two as not steady."""
+    V = 1e-3
+    program = p.DriveProgram(velocity=V, program=[p.Constant(duration="5 s"), p.Constant(V)])
+    slider = st.presets.nakano_popov_2020().replace(drive=program)
+    assert slider.motion == st.ConstantVelocity(V)
+    assert str(st.stability(slider)) == str(st.stability(slider.replace(drive=slider.motion)))

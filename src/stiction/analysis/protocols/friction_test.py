@@ -39,6 +39,7 @@ from stiction.system.tensors import damping_tensor
 from stiction.trajectory import Trajectory
 
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
+BESIDE = 1e-3  # of the mean interval between samples: one so near to an end is at the end
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 SLOPE = 12.0**0.5  # error of a rise in a straight line, over that of its mean
 TAIL_MEAN = 0.5  # mean of what is left of an evolution in a part, over its first value, at most
@@ -157,7 +158,8 @@ class FrictionTest(NamedTuple):
 
     def within(self, start: float, end: float) -> Indices:
         """Return the indices of the samples from `start` to `end` (s)."""
-        first, after = np.searchsorted(self.time, [start - 1e-9, end + 1e-9])
+        rounding = BESIDE * float(self.time[-1] - self.time[0]) / len(self.time)
+        first, after = np.searchsorted(self.time, [start - rounding, end + rounding])
         return np.arange(first, after)
 
     def late(self, stretch: ConstantStretch) -> Indices:

@@ -23,14 +23,14 @@ MISSING = {
     # what instruments write where a signal leaves their range
     *("overload", "overrange", "over range", "overflow", "ovld", "ovrld", "ovl", "ol", "invalid"),
 }
-# 2026-03-01, 1.3.26 or 01-Mar-2026
-DAY = r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}|\d{1,2}[-. ][^\W\d]{3,}[-. ]\d{2,4}"
+NAMED_DAY = r"\d{1,2}[-. ][^\W\d]{3,}[-. ]\d{2,4}"  # 01-Mar-2026
+DAY = rf"\d{{1,4}}[-./]\d{{1,2}}[-./]\d{{1,4}}|{NAMED_DAY}"  # before a time of day
 CLOCK = re.compile(
     rf"((?P<date>{DAY})[ T])?(?P<clock>\d{{1,2}}:\d{{2}}(:\d{{2}}([.,]\d+)?)?)"
     r"( ?(?P<half>[AP])M|Z|(?P<offset>[+-]\d{2}:?\d{2}))?",
     re.I,
 )
-DATE = re.compile(DAY)
+DATE = re.compile(rf"\d{{4}}-\d{{2}}-\d{{2}}|\d{{1,2}}[./]\d{{1,2}}[./]\d{{2,4}}|{NAMED_DAY}")
 HALF_A_DAY = 43200.0  # s
 NUMBER = {
     ".": re.compile(r"[+−-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
