@@ -526,6 +526,13 @@ def test_points_that_may_group_thousands_are_asked_for(write, below, separator):
     assert record.time == pytest.approx(1e-3 * time)
 
 
+def test_commas_between_columns_are_no_decimal_signs_after_groups(write):
+    """`93.900,0` is a number in German, and two in English: the heading has two names."""
+    rows = "".join(f"{t:.3f},{f}\n" for t, f in zip(93.9 + TIME, range(COUNT), strict=True))
+    record = st.read_record(write("time [s],force [mN]\n" + rows))
+    assert record.time == pytest.approx(93.9 + TIME)
+
+
 def test_three_decimals_are_decimals_where_one_number_begins_with_zero(write):
     text = "t [s];F [N]\n" + lines(";", columns=(TIME, 1.0 + FORCE))
     assert st.read_record(write(text)).force == pytest.approx(1.0 + FORCE)

@@ -173,12 +173,14 @@ def _settle(
 ) -> Dialect:
     """Return the one of several good readings that the file supports, or refuse to choose."""
     width = {each: _score(each, lines, labels)[1] for each in near}
-    # the first have the most lines of samples: with groups, if only so all cells are numbers
-    needed = near[0].groups and _score(near[0], lines, labels) > _score(
-        near[0]._replace(groups=False), lines, labels
+    # of the widest the first has the most lines of samples: with groups, if only so all are numbers
+    widest = [each for each in near if width[each] == max(width.values())]
+    first = widest[0]
+    plain = _score(first._replace(groups=False), lines, labels)
+    groups = first.groups and _score(first, lines, labels) > plain
+    chosen = min(
+        (each for each in widest if each.groups == groups), key=lambda each: each.decimal != "."
     )
-    fits = [each for each in near if each.groups == needed]
-    chosen = min(fits, key=lambda each: (-width[each], each.decimal != "."))
     headed = _header_width(chosen, lines, labels)
     samples = next(line for line in lines if chosen.has_samples(line, labels)).strip()
     # '0,5' is one number, or two integers: the first line tells how many columns there are
