@@ -68,7 +68,7 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
     missing = _meaningless(record, cycles, regime)
     if turns and cycles.sizes["cycle"]:
         missing |= {"mu_kinetic": turns}
-    told = blank(cycles, missing)
+    told = _blank(cycles, missing)
     sticking = cycles if regime.loads else cycles.isel(cycle=slice(0))
     return Assessment(
         told, told, sticking, friction, (), warnings_of_run(run, record, cycles), missing
@@ -95,11 +95,11 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     if (turns or unreal) and cycles.sizes["cycle"]:
         names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
         missing |= dict.fromkeys(names, turns or unreal)
-    told = blank(cycles, missing)
+    told = _blank(cycles, missing)
     return Assessment(told, told.isel(cycle=~apart), sticking, friction, stated, doubts, missing)
 
 
-def blank(cycles: xr.Dataset, names: Iterable[str]) -> xr.Dataset:
+def _blank(cycles: xr.Dataset, names: Iterable[str]) -> xr.Dataset:
     """Return cycles of which some columns are NaN."""
     return cycles.assign({name: cycles[name].where(False) for name in names})
 

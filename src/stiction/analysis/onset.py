@@ -76,16 +76,15 @@ class Onset(NamedTuple):
         along = self.data["value"].attrs
         unit, said = along["units"], ""
         if self.kind == "hard":
-            pairs = zip(self.hysteresis, self.hysteresis_uncertainty, strict=True)
-            ends = [with_error(*each, unit) for each in pairs]
             # where the sweep ends before, the end of hysteresis is not known
-            open_ends = map(isnan, self.hysteresis_uncertainty)
             beyond = (" or less", " or more")
-            low, high = (
-                f"{end}{word * is_open}"
-                for end, word, is_open in zip(ends, beyond, open_ends, strict=True)
+            ends = zip(self.hysteresis, self.hysteresis_uncertainty, beyond, strict=True)
+            said = ", hysteresis from {} to {}".format(
+                *(
+                    with_error(value, error, unit) + more * isnan(error)
+                    for value, error, more in ends
+                )
             )
-            said = f", hysteresis from {low} to {high}"
         elif not isnan(self.threshold):
             said = f" at {with_error(self.threshold, self.uncertainty, unit)}"
         return f"<Onset along {along['long_name']}: {self.kind}{said}>"

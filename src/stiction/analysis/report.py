@@ -17,9 +17,7 @@ from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_columns import summary
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.doubts.warnings import (
-    subtracted_lines,
-)
+from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime

@@ -144,8 +144,7 @@ def sections(found: RecordComparison) -> list[Section]:
 
 def rotates(found: RecordComparison) -> bool:
     """Return whether the fit, which assumes that friction rotates, means something."""
-    claimed = UNDECIDED if found.odds is None else found.odds.decision
-    return found.like and claimed in (ROTATION, UNDECIDED)
+    return found.like and (found.odds is None or found.odds.decision in (ROTATION, UNDECIDED))
 
 
 def verdict(found: RecordComparison) -> str:

@@ -59,8 +59,7 @@ def _scatter(late: Floats) -> float:
     if len(late) <= ORDER:
         return 0.0
     x = np.arange(float(len(late)))
-    found = line(x, late)
-    return float((late - found.offset - found.slope * x).std())
+    return float(line(x, late).deviations(x, late).std())
 
 
 def _missed_rise(mu: Floats, level: float) -> float:

@@ -68,6 +68,10 @@ class StraightLine(NamedTuple):
     slope_error: float = nan
     offset_error: float = nan
 
+    def deviations(self, x: Floats, y: Floats) -> Floats:
+        """Return what points deviate by from the line."""
+        return y - self.offset - self.slope * x
+
 
 def trend(x: Floats, y: Floats, errors: Floats) -> StraightLine:
     """Return the line through few points, with errors by their scatter and by their own.
@@ -96,10 +100,10 @@ def line(x: Floats, y: Floats) -> StraightLine:
     offset = float(y.mean() - slope * x.mean())
     if len(x) < 3:
         return StraightLine(slope, offset)
-    left = float(((y - offset - slope * x) ** 2).sum()) / (len(x) - 2)
-    return StraightLine(
-        slope, offset, sqrt(left / spread), sqrt(left * (1.0 / len(x) + x.mean() ** 2 / spread))
-    )
+    found = StraightLine(slope, offset)
+    variance = float((found.deviations(x, y) ** 2).sum()) / (len(x) - 2)
+    of_offset = variance * (1.0 / len(x) + x.mean() ** 2 / spread)
+    return found._replace(slope_error=sqrt(variance / spread), offset_error=sqrt(of_offset))
 
 
 class SettledPart(NamedTuple):

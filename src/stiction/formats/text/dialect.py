@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise, zip_longest
 from typing import NamedTuple
 
@@ -127,13 +127,11 @@ def find_dialect(path: object, lines: Sequence[str], layout: TextLayout) -> Dial
     ]
     for labels in (False, True):
         scores = {each: _score(each, some, labels) for each in choices}
-        wide = {each: score for each, score in scores.items() if score[1] >= layout.columns}
-        scores = wide or scores
-        best = max(scores.values(), default=(0.0, 0))
-        if best[0] > 0.0:
-            near = [each for each in scores if scores[each][0] > 0.9 * best[0]]
-            near.sort(key=lambda each: -scores[each][0])
-            return _settle(path, near, some, labels, layout)
+        wide = [each for each, (_, width) in scores.items() if width >= layout.columns] or choices
+        best = max((scores[each][0] for each in wide), default=0.0)
+        if best > 0.0:
+            near = [each for each in wide if scores[each][0] > 0.9 * best]
+            return _settle(path, near, scores, some, labels, layout)
     raise ResultError(_no_samples(path, filled))
 
 
@@ -169,15 +167,19 @@ def first_samples(lines: Sequence[str], dialect: Dialect) -> int:
 
 
 def _settle(
-    path: object, near: list[Dialect], lines: Sequence[str], labels: bool, layout: TextLayout
+    path: object,
+    near: list[Dialect],
+    scores: Mapping[Dialect, tuple[float, int]],
+    lines: Sequence[str],
+    labels: bool,
+    layout: TextLayout,
 ) -> Dialect:
     """Return the one of several good readings that the file supports, or refuse to choose."""
-    width = {each: _score(each, lines, labels)[1] for each in near}
-    # of the widest the first has the most lines of samples: with groups, if only so all are numbers
+    width = {each: scores[each][1] for each in near}
     widest = [each for each in near if width[each] == max(width.values())]
-    first = widest[0]
-    plain = _score(first._replace(groups=False), lines, labels)
-    groups = first.groups and _score(first, lines, labels) > plain
+    # thousands are grouped, if only so most lines are samples
+    first = max(widest, key=lambda each: scores[each][0])
+    groups = first.groups and scores[first] > scores[first._replace(groups=False)]
     chosen = min(
         (each for each in widest if each.groups == groups), key=lambda each: each.decimal != "."
     )
