@@ -18,8 +18,9 @@ EDGES = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.91,
 # free periods of the mass after a peak and after a trough: the slip, and how the force rises again
 SLIP = np.array([1 / 12, 1 / 6, 1 / 3, 1 / 2])
 REBOUND = np.array([1 / 6, 1 / 3, 1 / 2, 1.0])
-DROP = 0.3  # of the span of the force: a smaller fall is not a slip
+DROP = 0.3  # of the span of the force once it is loaded: a smaller fall is not a slip
 TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
+OF_NOISE = 8.0  # standard deviations of noise: white noise in a cycle does not reach so far
 USED = ("force", "force_across", "position")  # channels, in the order of their features
 BEND = "bend"  # name of the features that say how far loading is from straight
 LEAST_CYCLES = 6
@@ -60,18 +61,30 @@ class Cycles(NamedTuple):
     after: Indices
 
 
-def find_cycles(force: Floats) -> Cycles:
+def find_cycles(force: Floats, noise: float = 0.0) -> Cycles:
     """Return the whole cycles of a force, from trough over peak to trough.
 
     The first begins at the end of a slip: a least force after no slip is where the record begins,
-    as at an unloaded spring, whose loading is longer than that of any cycle.
+    as at an unloaded spring, whose loading is longer than that of any cycle. How high a fall must
+    be to be a slip does not depend on this loading either.
 
+    Parameters
+    ----------
+    force : ndarray
+        (n,), of equally spaced samples.
+    noise : float, optional
+        Standard deviation of its noise.
+
+    Examples
+    --------
     >>> saw = np.tile(np.r_[0.0:1.0:10j, 0.6, 0.3], 4)
     >>> find_cycles(saw).peak, find_cycles(np.r_[0.1, saw]).peak
     (array([21, 33]), array([22, 34]))
+    >>> find_cycles(np.r_[-9.0:0.0:100j, saw]).peak
+    array([121, 133])
     """
-    low, high = np.percentile(force, TAILS)
-    height = DROP * float(high - low)
+    low, high = np.percentile(force[end_of_loading(force) :], TAILS)
+    height = max(DROP * float(high - low), OF_NOISE * noise)
     turns = zigzag(force, height)
     if len(turns) and np.ptp(force[: turns[0] + 1]) <= height:
         turns = turns[1:]
@@ -80,6 +93,22 @@ def find_cycles(force: Floats) -> Cycles:
     count = max((len(turns) - 1) // 2, 0)
     whole = turns[: 2 * count + 1]
     return Cycles(whole[:-1:2], whole[1::2], whole[2::2])
+
+
+def end_of_loading(force: Floats) -> int:
+    """Return the first sample that is as large as half of those after it; or as small.
+
+    A force that goes to and fro from the beginning reaches it within the first cycle.
+
+    >>> saw = np.tile(np.r_[0.0:1.0:5j, 0.5], 4)
+    >>> end_of_loading(saw), end_of_loading(np.r_[-9.0:0.0:10j, saw])
+    (2, 12)
+    """
+    force = force if force[0] <= np.median(force) else -force
+    start = 0
+    while onwards := int(np.argmax(force[start:] >= np.median(force[start:]))):
+        start += onwards
+    return start
 
 
 def features(

@@ -31,6 +31,7 @@ REACH = 1.3  # lengths of the last cycle that are simulated at once in search of
 MORE = 0.4  # of them, if it is not among these
 LONGEST_WAIT = 4.0  # of them without a trough: the friction of a further cycle is drawn
 IDLE = 10.0  # of them without a trough: the motion has no more cycles
+AT_REST = 0.9  # of the friction force at vanishing slip: below it no law lets a mass slip rapidly
 FEWEST_SAMPLES = 8  # samples that are simulated at once
 MOST_STEPS = 2_000_000
 
@@ -123,7 +124,7 @@ def move(
     troughs: list[int] = []
     origin, begin, initial = 0, 0, Initial(epsilon=0.0)  # where the cycle and its part begin
     whole = max(int(REACH * cycle / step), FEWEST_SAMPLES)
-    window = whole
+    window = loaded = max(whole, int(first_loading(slider) / step))
     own = laws(slider.friction, jitter, random)
     law, last = next(own), len(times) - 1
     while begin < last:
@@ -150,7 +151,7 @@ def move(
             origin, window, law = begin, whole, next(own)
         elif end - origin > LONGEST_WAIT * whole:  # no slip: sliding, or loading
             begin = origin = end
-            if cycles is not None and end - (troughs or [0])[-1] > IDLE * whole:
+            if cycles is not None and end - (troughs or [loaded])[-1] > IDLE * whole:
                 break
             window, law = whole, next(own)
         else:  # a longer cycle
@@ -158,6 +159,14 @@ def move(
         initial = start(slider, rows[begin], float(times[begin]))
     until = begin + 1
     return SampledMotion(times[:until], rows[:until], np.array(troughs, dtype=np.int64), True)
+
+
+def first_loading(slider: Slider) -> float:
+    """Return how long the spring loads before a mass that begins at rest may slip, s.
+
+    It is as long as many cycles where a slip takes little of the force.
+    """
+    return AT_REST * slider.F_0 / (slider.k_x * abs(slider.motion.rate(0.0)[0]))
 
 
 def stretch(times: Floats, begin: int, end: int) -> tuple[float, Floats]:

@@ -17,7 +17,7 @@ from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.features import BEND, Cycles, FeatureGroup, features, find_cycles, parts
-from stiction.inference.jitter import Jitter, SampledMotion, move
+from stiction.inference.jitter import Jitter, SampledMotion, first_loading, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
 from stiction.recording.sensor import FASTEST, low_pass
@@ -35,7 +35,7 @@ LONGEST_CYCLE = 4.0  # of the measured cycles: simulations with longer ones end 
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
 NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names of priors
 SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
-FORMAT = 5  # of stored simulations and of what is learned from them
+FORMAT = 6  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):
@@ -190,12 +190,12 @@ def synthesise(
         jitter = Jitter(spread, common, values.get("drift", 0.0) / conditions.cycles)
         rig = conditions.slider_of(slider)
         wanted = conditions.cycles + SPARE
-        most = LONGEST_CYCLE * wanted * conditions.cycle
+        most = LONGEST_CYCLE * wanted * conditions.cycle + first_loading(rig)
         times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
         motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
         channels = measure(conditions, rig, motion, values, random)
         values.pop("zero_drift", None)  # a zero drifts differently in each record
-        found = find_cycles(channels["force"])
+        found = find_cycles(channels["force"], conditions.noise["force"].level)
         enough = min(len(found.peak), len(motion.troughs)) >= conditions.cycles  # not of noise
         last = Cycles(*(each[-conditions.cycles :] for each in found))
         yield Synthetic(channels, last) if enough else None

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
-from stiction.analysis.motion.regime.classify import classify
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import MOST_MISSING, even_grid
@@ -190,18 +191,16 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         if (values := getattr(record, each, None)) is not None
     }
     step = float(f"{grid.step:.{DIGITS}g}")
-    if (kind := classify(record).kind) in NO_CYCLES:
+    seen = swings(record)
+    if (kind := regime_of(record, seen).kind) in NO_CYCLES:
         raise ResultError(
             f"{name} shows no stick-slip, of which a fit needs {LEAST_CYCLES} cycles: it is "
             f"{kind}; `stiction analyse` tells what that says of friction"
         )
-    found = find_cycles(channels["force"])
-    count = len(found.peak)
-    if count < LEAST_CYCLES:
-        raise ResultError(
-            f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
-            "record for longer, or slower"
-        )
+    refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
+    noise = {each: noise_of(record, each, values) for each, values in channels.items()}
+    found = find_cycles(channels["force"], noise["force"].level)
+    refuse_few(name, len(found.peak))
     if channels["force"].mean() <= 0.0 and has_quick_rises(found):
         raise ResultError(
             f"the force of {name} falls slowly and rises fast: it is recorded with the other sign, "
@@ -209,12 +208,11 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         )
     cycle = near(float(np.mean(found.after - found.before)) * step)
     block = max(round(cycle / step / PER_CYCLE), 1)
-    noise = {each: noise_of(record, each, values) for each, values in channels.items()}
     thin = {each: block_means(values, block) for each, values in channels.items()}
     thin_noise = {
         each: its._replace(level=round_up(its.level / block**0.5)) for each, its in noise.items()
     }
-    found = find_cycles(thin["force"])
+    found = find_cycles(thin["force"], thin_noise["force"].level)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = type(found)(*(each[:number] for each in found))
     velocity = slider.motion.rate(0.0)[0]
@@ -227,8 +225,17 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         step * block, number, cycle, thin_noise,
         lead=near(step * block * int(found.before[0])) if drifts else 0.0,
     )  # fmt: skip
-    seen = features(step * block, thin, conditions.scale(slider), found)
-    return Observation(conditions, seen, thin["force"], found)
+    its = features(step * block, thin, conditions.scale(slider), found)
+    return Observation(conditions, its, thin["force"], found)
+
+
+def refuse_few(name: str, count: int) -> None:
+    """Refuse a record with too few cycles."""
+    if count < LEAST_CYCLES:
+        raise ResultError(
+            f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
+            "record for longer, or slower"
+        )
 
 
 def has_quick_rises(cycles: Cycles) -> bool:
