@@ -25,6 +25,8 @@ from stiction.inference.summary import (
     FeatureSummary,
     Regression,
     Standard,
+    as_arrays,
+    from_arrays,
     learn,
     single_threaded_algebra,
 )
@@ -100,22 +102,18 @@ def ranks(summary: FeatureSummary, truth: Floats) -> Floats:
 def write(path: Path, found: Learned) -> None:
     """Write what was learned."""
     summary = found.summary
-    own = {f"{name}_{key}": value for name in REGRESSIONS
-           for key, value in getattr(summary, name)._asdict().items()}  # fmt: skip
-    write_arrays(path, ranks=found.ranks, **summary.standard._asdict(), **own)
+    own = as_arrays(standard=summary.standard, middle=summary.middle, spread=summary.spread)
+    write_arrays(path, ranks=found.ranks, **own)
 
 
 def read(path: Path | None, features: Floats) -> tuple[FeatureSummary, Floats] | None:
     """Return a stored summary and its ranks; None where there is none of these features."""
     arrays = read_arrays(path)
     try:
-        if arrays is None or arrays["mean"].shape != features.shape[1:]:
+        if arrays is None or arrays["standard_middle"].shape != features.shape[1:]:
             return None
-        standard = Standard(arrays["mean"], arrays["spread"])
-        both = [
-            Regression(*(arrays[f"{name}_{key}"] for key in Regression._fields))
-            for name in REGRESSIONS
-        ]
+        standard = Standard(*from_arrays("standard", Standard._fields, arrays))
+        both = [Regression(*from_arrays(x, Regression._fields, arrays)) for x in REGRESSIONS]
         if len(both[0].library) != len(features):
             return None
         return FeatureSummary(standard, standard.scores(features), *both), arrays["ranks"]

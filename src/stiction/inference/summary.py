@@ -12,7 +12,7 @@ from a first regression with the same metric for all: the average outer product 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
 from typing import NamedTuple, Self
 
@@ -32,24 +32,31 @@ RIDGES = 10.0 ** np.arange(-6.0, 2.1, 0.5)
 STRAIGHT = 1.0  # share of the linear kernel beside the curved one
 LEAST = 1e-8  # squared distance, in place of zero
 LEAST_CHANGE = 1e-9  # standard deviation of a feature that counts as constant
-FARTHEST = 5.0  # standard deviations from the library's mean, to which features are clipped
+FARTHEST = 5.0  # spreads from the library's middle, to which features are clipped
+CENTRAL = (16.0, 50.0, 84.0)  # percentiles: one standard deviation to each side, if normal
 
 
 class Standard(NamedTuple):
-    """Middle and spread of each feature in the library."""
+    """Middle and spread of each feature in the library: its median and half of its central 68 %.
 
-    mean: Floats
+    Means and standard deviations follow the few simulations that hardly slip: beside their features
+    those of all others are alike, and intervals of the misalignment came out a quarter wider.
+    """
+
+    middle: Floats
     spread: Floats
 
     @classmethod
     def of(cls, features: Floats) -> Self:
         """Return those of a library's features, (n, f)."""
-        spread = features.std(axis=0)
-        return cls(features.mean(axis=0), np.where(spread > LEAST_CHANGE, spread, np.inf))
+        low, middle, high = np.percentile(features, CENTRAL, axis=0)
+        deviation = features.std(axis=0)
+        spread = np.where(high - low > LEAST_CHANGE, 0.5 * (high - low), deviation)
+        return cls(middle, np.where(deviation > LEAST_CHANGE, spread, np.inf))
 
     def scores(self, features: Floats) -> Floats:
-        """Return features in standard deviations from the middle, clipped."""
-        found: Floats = np.clip((features - self.mean) / self.spread, -FARTHEST, FARTHEST)
+        """Return features in spreads from the middle, clipped."""
+        found: Floats = np.clip((features - self.middle) / self.spread, -FARTHEST, FARTHEST)
         return found
 
 
@@ -136,6 +143,17 @@ def learn(features: Floats, parameters: Floats) -> FeatureSummary:
         apart = parameters - middle.library
         spread = regression(parts, np.log(apart * apart + LEAST), scores.shape[1])
     return FeatureSummary(standard, scores, middle, spread)
+
+
+def as_arrays(**parts: Standard | Regression) -> dict[str, Floats]:
+    """Return the fields of named parts as they are stored: ``standard_middle``, and so on."""
+    pairs = ((name, part._asdict()) for name, part in parts.items())
+    return {f"{name}_{field}": value for name, its in pairs for field, value in its.items()}
+
+
+def from_arrays(name: str, fields: Sequence[str], arrays: Mapping[str, Floats]) -> list[Floats]:
+    """Return the fields of a stored part; a KeyError if one is not there."""
+    return [arrays[f"{name}_{field}"] for field in fields]
 
 
 def single_threaded_algebra() -> AbstractContextManager[object]:

@@ -25,7 +25,9 @@ from stiction.inference.mechanism.rivals import Mechanism
 from stiction.inference.summary import (
     Regression,
     Standard,
+    as_arrays,
     decompose,
+    from_arrays,
     kernel,
     regression,
     single_threaded_algebra,
@@ -145,10 +147,8 @@ def study(simulations: Simulations, path: Path | None = None) -> Classifier:
         membership = regression(parts, np.eye(labels.max() + 1)[labels], scores.shape[1])
         found = Classifier(standard, scores, membership, logistic(membership.library, labels))
     if path is not None:
-        write_arrays(
-            path, average=standard.mean, spread=standard.spread, slopes=found.slopes,
-            **membership._asdict(),
-        )  # fmt: skip
+        learned = as_arrays(standard=standard, membership=membership)
+        write_arrays(path, slopes=found.slopes, **learned)
     return found
 
 
@@ -156,10 +156,10 @@ def read(path: Path | None, features: Floats) -> Classifier | None:
     """Return a stored classifier of simulations with these features (n, f); None without one."""
     arrays = read_arrays(path)
     try:
-        if arrays is None or arrays["average"].shape != features.shape[1:]:
+        if arrays is None or arrays["standard_middle"].shape != features.shape[1:]:
             return None
-        standard = Standard(arrays["average"], arrays["spread"])
-        membership = Regression(*(arrays[name] for name in Regression._fields))
+        standard = Standard(*from_arrays("standard", Standard._fields, arrays))
+        membership = Regression(*from_arrays("membership", Regression._fields, arrays))
         if len(membership.library) != len(features):
             return None
         return Classifier(standard, standard.scores(features), membership, arrays["slopes"])

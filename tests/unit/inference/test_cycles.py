@@ -1,0 +1,52 @@
+"""Cycles of a fit: those of the analysis, however little of the force a slip takes."""
+
+import numpy as np
+import pytest
+from scipy.signal import lfilter
+
+import stiction as st
+from stiction.errors import ResultError
+from stiction.inference.features import find_cycles
+from stiction.inference.jitter import Jitter, first_loading, move
+from stiction.inference.observation import observe
+
+
+def slider_of(share: float, phi: str = "1 deg") -> st.Slider:
+    """Return a rig whose kinetic friction is a share of that at rest."""
+    friction = st.ExponentialWeakening(mu_0=0.6, mu_inf=0.6 * share, v_f="5 mm/s")
+    return st.Slider(
+        mass=0.25, k_x=1e3, k_y=1e6, phi=phi, normal_load=10.0, c_x=1.0,
+        friction=friction, drive=st.ConstantVelocity(velocity="0.1 mm/s"),
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize("share", [0.6, 0.8, 0.9, 0.95])
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+def test_a_record_from_a_slack_spring_has_the_cycles_of_the_analysis(share, noise):
+    """Of slips that take less than 0.3 of the force, none was seen: the loading was the measure."""
+    slider, random = slider_of(share), np.random.default_rng(3)
+    drop = 1.5 * (1.0 - share) * slider.F_0
+    cycle = drop / (slider.k_x * slider.motion.rate(0.0)[0])
+    times = cycle / 100.0 * np.arange(4000.0 + 100.0 * first_loading(slider) / cycle)
+    motion = move(slider, times, Jitter(0.05 * drop / slider.F_0, 0.5), random, cycle=cycle)
+    force = slider.k_x * motion.rows[:, 0] + noise * drop * random.standard_normal(len(times))
+    record = st.Record(time=motion.time, force=force)
+    expected = st.analysis.find_cycles(record).sizes["cycle"]
+    assert expected > 20
+    assert abs(len(find_cycles(force, noise * drop).peak) - expected) <= 1
+    assert len(observe(record, slider).cycles.peak) >= 20
+
+
+@pytest.mark.parametrize("loading", [0.0, 0.05, 0.3, 0.8])
+@pytest.mark.parametrize("memory", [0.0, 0.5, 0.98, 0.999])
+def test_noise_of_steady_sliding_makes_no_cycles(loading, memory):
+    slider = slider_of(0.9)
+    for seed, level in enumerate((0.003, 0.03, 0.1)):
+        random, time = np.random.default_rng(seed), 1e-3 * np.arange(2000)
+        force = np.minimum(time / max(loading * time[-1], 1e-3), 1.0)
+        own = lfilter([1.0], [1.0, -memory], random.standard_normal(len(time)))
+        force += level * np.sqrt(1.0 - memory**2) * own
+        with pytest.raises(
+            ResultError, match=r"shows no stick-slip|whole cycles of stick and slip"
+        ):
+            observe(st.Record(time=time, force=force), slider)
