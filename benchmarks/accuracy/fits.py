@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 from scipy.stats import kstest
 
-from stiction.inference.calibration import Learned, study
+from stiction.inference.calibration import Learned, learn_or_read
 from stiction.inference.features import USED
 from stiction.inference.library import Library, build, features_from, plan
 from stiction.inference.observation import Conditions, Noise
@@ -173,7 +173,7 @@ def main() -> None:
         for channels in (USED[:1], USED[:2], ("force", "position"), USED):
             which = features_from(channels, known.plan.conditions[0], known.plan.slider)
             start = perf_counter()
-            learned = study(known.features[:, which], known.scores)
+            learned = learn_or_read(known.features[:, which], known.scores)
             print(
                 f"  {' + '.join(channels)}: learned in {perf_counter() - start:.0f} s", flush=True
             )

@@ -28,14 +28,14 @@ from stiction.inference.library import (
     bend_features,
     draw,
     features_from,
+    have_cycles,
     plan,
     simulate_all,
 )
-from stiction.inference.mechanism.classifier import Classifier, Simulations, simulate, study
+from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, UNLIKE
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
-from stiction.inference.next_test.advice import whole
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
 from stiction.inference.priors import Prior, Rig, Uniform
@@ -119,7 +119,7 @@ def angles(rotation: Plan, count: int, folder: Path | None) -> Floats:
     """Return the misalignment (deg) of each test record of rotation that has cycles."""
     place = None if folder is None else folder / f"{rotation.key}-1"
     scores, features = simulate_all(rotation, count, place, seed=1)
-    shares = ndtr(scores[whole(features), [*rotation.priors].index("phi")])
+    shares = ndtr(scores[have_cycles(features), [*rotation.priors].index("phi")])
     return np.degrees(rotation.priors["phi"].quantile(shares))
 
 
@@ -144,7 +144,7 @@ def found_when_known(known: Part, other: Part) -> float:
     """
     labels = np.repeat([0, 1], [len(known.labels), len(other.labels)])
     both = np.concatenate([known.features, other.features])
-    share = study(Simulations(("library", "other"), both, labels)).left_out[:, 1]
+    share = learn_or_read(Simulations(("library", "other"), both, labels)).left_out[:, 1]
     return float((share[labels == 1] > np.quantile(share[labels == 0], 1.0 - RARE)).mean())
 
 
@@ -161,7 +161,7 @@ def report(
 ) -> None:  # fmt: skip
     """Print what becomes of records that no part has seen, with some channels."""
     start = perf_counter()
-    classifier = study(Simulations(known.names, known.features, known.labels))
+    classifier = learn_or_read(Simulations(known.names, known.features, known.labels))
     took = perf_counter() - start
     references = [
         Reference.of(classifier.scores[own], known.bends[own])

@@ -26,8 +26,8 @@ from stiction.analysis.motion.regime.kinds import STICK_SLIP
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import coarse_rate, simulate_test
 from stiction.linear_stability import growth_rate
-from stiction.study.variables.features import zigzag
 from stiction.study.variables.observed_run import observe_run
+from stiction.study.variables.zigzag import zigzag
 
 Floats = NDArray[np.float64]
 

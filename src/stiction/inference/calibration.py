@@ -76,7 +76,7 @@ def estimates(summary: FeatureSummary, truth: Floats) -> Iterator[Known]:
         yield Known(middles, spreads, scores)
 
 
-def study(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
+def learn_or_read(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
     """Learn from features (n, f) and scores (n, p), or read from a file what was learned."""
     stored = read(path, features)
     if stored is not None:

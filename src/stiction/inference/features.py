@@ -6,26 +6,21 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.arrays import Floats
-from stiction.study.variables.features import zigzag
-
-Indices = NDArray[np.int64]
+from stiction.inference.cycles import Cycles, Indices
 
 # shares of a loading, narrow where creep accelerates towards the slip
 EDGES = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.91, 0.95, 0.98, 1.0])
 # free periods of the mass after a peak and after a trough: the slip, and how the force rises again
 SLIP = np.array([1 / 12, 1 / 6, 1 / 3, 1 / 2])
 REBOUND = np.array([1 / 6, 1 / 3, 1 / 2, 1.0])
-DROP = 0.3  # of the span of the force once it is loaded: a smaller fall is not a slip
-TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
-OF_NOISE = 8.0  # standard deviations of noise: white noise in a cycle does not reach so far
 USED = ("force", "force_across", "position")  # channels, in the order of their features
 BEND = "bend"  # name of the features that say how far loading is from straight
-LEAST_CYCLES = 6
+MIDDLES: Floats = 0.5 * (EDGES[1:] + EDGES[:-1])  # of these parts
 CREEP = (0.1, 0.95)  # shares of a loading in which the misalignment is sought
 ABOVE = 1.003  # the friction force at rest over the largest force along the spring
+LEAST_ACROSS = 0.02  # of the friction force at rest: a smaller force across tells no direction
 SMALL = 1e-9  # of the scale: replaces zero in a logarithm
 
 
@@ -51,64 +46,6 @@ class FeatureScale(NamedTuple):
     period: float
     velocity: float
     drift: float = 0.0
-
-
-class Cycles(NamedTuple):
-    """Cycles of a sampled force: indices of the trough before, the peak, and the trough after."""
-
-    before: Indices
-    peak: Indices
-    after: Indices
-
-
-def find_cycles(force: Floats, noise: float = 0.0) -> Cycles:
-    """Return the whole cycles of a force, from trough over peak to trough.
-
-    The first begins at the end of a slip: a least force after no slip is where the record begins,
-    as at an unloaded spring, whose loading is longer than that of any cycle. How high a fall must
-    be to be a slip does not depend on this loading either.
-
-    Parameters
-    ----------
-    force : ndarray
-        (n,), of equally spaced samples.
-    noise : float, optional
-        Standard deviation of its noise.
-
-    Examples
-    --------
-    >>> saw = np.tile(np.r_[0.0:1.0:10j, 0.6, 0.3], 4)
-    >>> find_cycles(saw).peak, find_cycles(np.r_[0.1, saw]).peak
-    (array([21, 33]), array([22, 34]))
-    >>> find_cycles(np.r_[-9.0:0.0:100j, saw]).peak
-    array([121, 133])
-    """
-    low, high = np.percentile(force[end_of_loading(force) :], TAILS)
-    height = max(DROP * float(high - low), OF_NOISE * noise)
-    turns = zigzag(force, height)
-    if len(turns) and np.ptp(force[: turns[0] + 1]) <= height:
-        turns = turns[1:]
-    if len(turns) > 1 and force[turns[0]] > force[turns[1]]:
-        turns = turns[1:]
-    count = max((len(turns) - 1) // 2, 0)
-    whole = turns[: 2 * count + 1]
-    return Cycles(whole[:-1:2], whole[1::2], whole[2::2])
-
-
-def end_of_loading(force: Floats) -> int:
-    """Return the first sample that is as large as half of those after it; or as small.
-
-    A force that goes to and fro from the beginning reaches it within the first cycle.
-
-    >>> saw = np.tile(np.r_[0.0:1.0:5j, 0.5], 4)
-    >>> end_of_loading(saw), end_of_loading(np.r_[-9.0:0.0:10j, saw])
-    (2, 12)
-    """
-    force = force if force[0] <= np.median(force) else -force
-    start = 0
-    while onwards := int(np.argmax(force[start:] >= np.median(force[start:]))):
-        start += onwards
-    return start
 
 
 def features(
@@ -178,13 +115,31 @@ class Loadings:
         """Return the average over all loadings in each part."""
         total = np.bincount(self.part, values, minlength=len(EDGES) - 1)
         held = self.filling > 0
-        middle = 0.5 * (EDGES[1:] + EDGES[:-1])
-        return np.asarray(np.interp(middle, middle[held], total[held] / self.filling[held]))
+        return np.asarray(np.interp(MIDDLES, MIDDLES[held], total[held] / self.filling[held]))
 
     def integral(self, values: Floats, step: float) -> Floats:
         """Return the integral of values from the beginning of each loading."""
         total = np.cumsum(values) - 0.5 * values
         return np.asarray(step * (total - total[self.first][self.cycle]))
+
+    def lean(self, along: Floats) -> Floats:
+        """Return cos(theta) of friction that is a little above the largest force of each loading.
+
+        Of the forces along the spring (N) at these samples.
+        """
+        peak = along[self.first + self.count - 1][self.cycle]
+        return np.asarray(np.clip(along / (ABOVE * peak), 0.0, 1.0 / ABOVE))
+
+    def way(self, along: Floats, step: float) -> Floats:
+        """Return the integral of cot(theta), theta by the force along the spring alone, in s."""
+        lean = self.lean(along)
+        return self.integral(lean / np.sqrt(1.0 - lean * lean), step)
+
+    def measured_way(self, along: Floats, across: Floats, friction: float, step: float) -> Floats:
+        """Return the integral of cot(theta), theta by both forces, in s."""
+        least = LEAST_ACROSS * friction
+        aside = np.where(np.abs(across) < least, np.copysign(least, across), across)
+        return self.integral(along / aside, step)
 
     def regression(self, values: Floats, *columns: Floats) -> Floats:
         """Return the slopes of values over columns, with a constant of its own for each loading."""
@@ -232,10 +187,8 @@ def of_loading(step: float, force: Floats, scale: FeatureScale, loadings: Loadin
     """
     f = force[loadings.index]
     time = step * loadings.number
-    peak = f[loadings.first + loadings.count - 1][loadings.cycle]
-    lean = np.clip(f / (ABOVE * peak), 0.0, 1.0 / ABOVE)
-    way = loadings.integral(lean / np.sqrt(1.0 - lean * lean), step)
-    yielding = loadings.integral(1.0 / (1.0 - lean), step)
+    way = loadings.way(f, step)
+    yielding = loadings.integral(1.0 / (1.0 - loadings.lean(f)), step)
     rate, slowed = loadings.regression(f, time, way)
     beside, *kinds = loadings.regression(f, time, way, yielding) / scale.loading
     return [
@@ -286,9 +239,7 @@ def of_force_across(
     of which the quotient is tan phi.
     """
     along, across = (channels[name][loadings.index] for name in ("force", "force_across"))
-    least = 0.02 * scale.force
-    aside = np.where(np.abs(across) < least, np.copysign(least, across), across)
-    way = loadings.integral(along / aside, step)
+    way = loadings.measured_way(along, across, scale.force, step)
     rate, slowed = loadings.regression(along, step * loadings.number, way)
     tangent = -slowed / rate if rate else 0.0  # too few samples in each loading
     course = loadings.averages(across / scale.force)
@@ -311,10 +262,7 @@ def of_position(
     moved = (position - first) / (scale.velocity * step * (loadings.count - 1)[loadings.cycle])
     time = step * loadings.number
     stiffness = loadings.regression(force, scale.velocity * time - position)[0]
-    peak = force[loadings.first + loadings.count - 1][loadings.cycle]
-    lean = np.clip(force / (ABOVE * peak), 0.0, 1.0 / ABOVE)
-    way = loadings.integral(lean / np.sqrt(1.0 - lean * lean), step)
-    creep = loadings.regression(position, way)[0] / scale.velocity
+    creep = loadings.regression(position, loadings.way(force, step))[0] / scale.velocity
     return [
         logarithm(stiffness * scale.velocity / scale.loading),
         logarithm(abs(creep)),
@@ -331,9 +279,7 @@ def of_both(
     Eq. (7) of Nakano & Popov; theta from both forces, whatever stiffness and friction are.
     """
     along, across, position = (channels[name][loadings.index] for name in USED)
-    least = 0.02 * scale.force
-    aside = np.where(np.abs(across) < least, np.copysign(least, across), across)
-    way = loadings.integral(along / aside, step)
+    way = loadings.measured_way(along, across, scale.force, step)
     alone = loadings.regression(position, way)[0] / scale.velocity
     with_time = loadings.regression(position, way, step * loadings.number)[0] / scale.velocity
     return [logarithm(abs(alone)), logarithm(abs(with_time))]

@@ -12,7 +12,7 @@ from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
 from stiction.friction.registry import LAWS
-from stiction.inference.calibration import study
+from stiction.inference.calibration import learn_or_read
 from stiction.inference.library import (
     LONGEST_CYCLE,
     SIMULATIONS,
@@ -24,7 +24,7 @@ from stiction.inference.library import (
 )
 from stiction.inference.observation import Conditions, Observation, Source, observe_all
 from stiction.inference.posterior import Fit
-from stiction.inference.priors import Normal, Prior, Rig
+from stiction.inference.priors import Normal, Prior, Rig, rig_of
 
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
@@ -77,7 +77,7 @@ def fit(
     DescriptionError
         If nothing is uncertain, or the rig is not of a kind that can be fitted.
     """
-    known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
+    known = rig_of(rig)
     check(known)
     seen = observe_all(records, known.slider)
     plan_of = plan_for(known, [each.conditions for each in seen])
@@ -109,9 +109,14 @@ def _is_fitted(law: type[Any]) -> bool:
     return "mu_0" in getattr(law, "_fields", ()) and not has_state(law)
 
 
-def plan_for(rig: Rig, conditions: Sequence[Conditions]) -> Plan:
-    """Return the plan of a library for records under these conditions."""
-    across = any("force_across" in each.noise for each in conditions)
+def plan_for(rig: Rig, conditions: Sequence[Conditions], across: bool | None = None) -> Plan:
+    """Return the plan of a library for records under these conditions.
+
+    Where the force across is not measured, which `across` tells if not the channels of the
+    conditions, a misalignment has the sign of its prior's middle.
+    """
+    if across is None:
+        across = any("force_across" in each.noise for each in conditions)
     priors = {**rig.priors}
     if not across and "phi" in priors:
         priors["phi"] = one_sided(priors["phi"])
@@ -145,6 +150,6 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
     )  # fmt: skip
     observed = np.concatenate([each.features for each in seen])
     place = None if folder is None else folder / f"learned-{library.wanted}.npz"
-    learned = study(library.features, library.scores, place)
+    learned = learn_or_read(library.features, library.scores, place)
     (sample,) = learned.posteriors(observed[None])
     return Fit.of(library, sample, seen, learned)

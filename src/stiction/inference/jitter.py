@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats
 from stiction.friction import Anisotropic, states
 from stiction.simulation import solve_coarsely
-from stiction.study.variables.features import zigzag
+from stiction.study.variables.zigzag import zigzag
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -63,13 +63,13 @@ class SampledMotion(NamedTuple):
     time: Floats
     rows: Floats
     troughs: NDArray[np.int64]
-    complete: bool
 
 
 def laws(law: Any, jitter: Jitter, random: np.random.Generator) -> Iterator[Any]:
     """Yield the friction law of each cycle, its coefficients drawn about those of `law`."""
     if isinstance(law, Anisotropic):
         yield from (law._replace(law=inner) for inner in laws(law.law, jitter, random))
+        return
     names = coefficients(law)
     for number in count():
         common, *own = random.standard_normal(1 + len(names))
@@ -137,9 +137,7 @@ def move(
         rig = slider.model_copy(update={"friction": law})
         found = solve_coarsely(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
         if found.code != 0:
-            return SampledMotion(
-                times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64), False
-            )
+            return SampledMotion(times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64))
         rows[begin : end + 1] = found.samples[:, kept]
         trough = first_trough(rows[origin : end + 1, 0])
         if trough >= 0:
@@ -158,7 +156,7 @@ def move(
             begin, window = end, max(int(MORE * whole), FEWEST_SAMPLES)
         initial = start(slider, rows[begin], float(times[begin]))
     until = begin + 1
-    return SampledMotion(times[:until], rows[:until], np.array(troughs, dtype=np.int64), True)
+    return SampledMotion(times[:until], rows[:until], np.array(troughs, np.int64))
 
 
 def first_loading(slider: Slider) -> float:

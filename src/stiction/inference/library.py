@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.errors import ResultError
-from stiction.inference.features import BEND, Cycles, FeatureGroup, features, find_cycles, parts
+from stiction.inference.cycles import Cycles, slip_cycles
+from stiction.inference.features import BEND, FeatureGroup, features, parts
 from stiction.inference.jitter import Jitter, SampledMotion, first_loading, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
@@ -109,8 +110,13 @@ def build(
 ) -> Library:
     """Simulate a library of `count` records, or continue one that is stored in a folder."""
     scores, found = simulate_all(plan, count, folder, seed=seed, progress=progress)
-    complete = np.isfinite(found).all(axis=1)
-    return Library(plan, scores[complete], found[complete], count)
+    kept = have_cycles(found)
+    return Library(plan, scores[kept], found[kept], count)
+
+
+def have_cycles(rows: Floats) -> NDArray[np.bool_]:
+    """Return which rows of features (n, f) are those of records with cycles."""
+    return np.asarray(np.isfinite(rows).all(axis=1))
 
 
 def simulate_all(
@@ -163,7 +169,7 @@ def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
     for conditions, made in zip(plan.conditions, records, strict=True):
         scale = conditions.scale(plan.basis or plan.slider)
         blank = dummy(conditions)
-        channels, cycles = made or (blank, find_cycles(blank["force"]))
+        channels, cycles = made or (blank, slip_cycles(blank["force"]))
         its = features(conditions.step, channels, scale, cycles)
         found.append(its if made else np.full_like(its, np.nan))
     return drawn, np.concatenate(found)
@@ -195,7 +201,7 @@ def synthesise(
         motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
         channels = measure(conditions, rig, motion, values, random)
         values.pop("zero_drift", None)  # a zero drifts differently in each record
-        found = find_cycles(channels["force"], conditions.noise["force"].level)
+        found = slip_cycles(channels["force"], conditions.noise["force"].level)
         enough = min(len(found.peak), len(motion.troughs)) >= conditions.cycles  # not of noise
         last = Cycles(*(each[-conditions.cycles :] for each in found))
         yield Synthetic(channels, last) if enough else None
@@ -233,7 +239,7 @@ def measure(
 
 def start_time(motion: SampledMotion, force: Floats, conditions: Conditions) -> float:
     """Return when a record with the cycles that are used would have begun, s."""
-    used = find_cycles(force).before[-conditions.cycles :]
+    used = slip_cycles(force).before[-conditions.cycles :]
     return (float(motion.time[used[0]]) if len(used) else 0.0) - conditions.lead
 
 
@@ -255,7 +261,7 @@ def which(
 ) -> NDArray[np.bool_]:
     """Return which features of a record under these conditions belong to the wanted parts."""
     blank = dummy(conditions)
-    found = parts(conditions.step, blank, conditions.scale(slider), find_cycles(blank["force"]))
+    found = parts(conditions.step, blank, conditions.scale(slider), slip_cycles(blank["force"]))
     return np.concatenate([np.full(len(part.values), wanted(part)) for part in found])
 
 

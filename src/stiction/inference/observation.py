@@ -18,14 +18,8 @@ from stiction.analysis.signals.even_grid import MOST_MISSING, even_grid
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
-from stiction.inference.features import (
-    LEAST_CYCLES,
-    USED,
-    Cycles,
-    FeatureScale,
-    features,
-    find_cycles,
-)
+from stiction.inference.cycles import LEAST_CYCLES, Cycles, slip_cycles
+from stiction.inference.features import USED, FeatureScale, features
 from stiction.recording.noise import ROUNDING_SPREAD, white_noise
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
@@ -40,7 +34,7 @@ PER_CYCLE = 200  # samples: more are averaged
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 DIGITS = 4  # of the sampling interval: times of many records differ by rounding
-TREND = 0.01  # probability below which cycles do not stay the same
+TREND = 0.01  # p-value of a trend below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
@@ -112,7 +106,7 @@ class Conditions(NamedTuple):
 
 
 class Trend(NamedTuple):
-    """How probable as clear a trend from cycle to cycle is where there is none.
+    """p-values of a trend from cycle to cycle.
 
     Of the peaks of a force, and of its drops, which the zero of a load cell leaves as they are.
     """
@@ -131,13 +125,13 @@ class Observation(NamedTuple):
 
     @property
     def trend(self) -> Trend:
-        """How clear a trend the cycles have beyond the stated drift of the zero."""
+        """p-values of a trend of the cycles beyond the stated drift of the zero."""
         drift = self.conditions.noise["force"].drift * self.conditions.step
         return trend(self.force, self.cycles, SURE * drift)
 
 
 def trend(force: Floats, cycles: Cycles, drift: float = 0.0) -> Trend:
-    """Return how probable as clear a trend of peaks and of drops is where there is none.
+    """Return the p-values of a trend of peaks and of drops.
 
     By Kendall's rank correlation with the number of the cycle (M. G. Kendall, Biometrika 30, 81
     (1938)). From the peaks a line is subtracted first: that of P. K. Sen (J. Am. Stat. Assoc. 63,
@@ -147,7 +141,7 @@ def trend(force: Floats, cycles: Cycles, drift: float = 0.0) -> Trend:
     Examples
     --------
     >>> saw = np.concatenate([np.r_[0.0:1.0:9j, 0.5] + 0.05 * n for n in range(12)])
-    >>> cycles = find_cycles(saw)
+    >>> cycles = slip_cycles(saw)
     >>> trend(saw, cycles).peaks < 1e-3, trend(saw, cycles, drift=0.01).peaks > 0.01
     (True, True)
     """
@@ -162,7 +156,7 @@ def trend(force: Floats, cycles: Cycles, drift: float = 0.0) -> Trend:
 
 
 def steadiness(probabilities: Iterable[float]) -> float:
-    """Return how probable the least of several probabilities is, which is that times their number.
+    """Return the p-value of several tests together: the least one times their number (Bonferroni).
 
     >>> steadiness([0.25, 0.5]), steadiness([0.75, 1.0])
     (0.5, 1.0)
@@ -199,7 +193,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         )
     refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
-    found = find_cycles(channels["force"], noise["force"].level)
+    found = slip_cycles(channels["force"], noise["force"].level)
     refuse_few(name, len(found.peak))
     if channels["force"].mean() <= 0.0 and has_quick_rises(found):
         raise ResultError(
@@ -212,7 +206,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     thin_noise = {
         each: its._replace(level=round_up(its.level / block**0.5)) for each, its in noise.items()
     }
-    found = find_cycles(thin["force"], thin_noise["force"].level)
+    found = slip_cycles(thin["force"], thin_noise["force"].level)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = type(found)(*(each[:number] for each in found))
     velocity = slider.motion.rate(0.0)[0]

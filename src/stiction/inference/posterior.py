@@ -88,8 +88,6 @@ class Fit:
         Of each parameter.
     simulations : int
         Simulated records with cycles that were compared.
-    observed : ndarray
-        Features of the records.
     ranks : ndarray
         (m, p), of the truth in the posteriors of simulated records that were left out; uniform
         where posteriors are calibrated.
@@ -98,7 +96,7 @@ class Fit:
     farther : float
         Share of the simulated records that lie farther from the others than the measured one.
     trend : Trend
-        How probable as clear a trend from cycle to cycle is in records that have none.
+        p-values of a trend of peaks and of drops from cycle to cycle, in all records together.
     """
 
     plan: Plan
@@ -106,7 +104,6 @@ class Fit:
     prior: xr.Dataset
     estimates: tuple[Estimate, ...]
     simulations: int
-    observed: Floats = field(compare=False)
     ranks: Floats = field(compare=False)
     scores: Floats = field(compare=False)
     farther: float = field(compare=False)
@@ -132,7 +129,7 @@ class Fit:
             after[last_part(its.name)].attrs["coverage_of_95_percent_intervals"] = its.coverage
         farther = learned.summary.farther(observed)
         count, ranks = len(library.scores), learned.ranks
-        return cls(plan, after, prior, estimates, count, observed, ranks, scores, farther, trend)
+        return cls(plan, after, prior, estimates, count, ranks, scores, farther, trend)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -221,7 +218,7 @@ class Fit:
 
     @property
     def drifts(self) -> bool:
-        """Whether the force has a trend as that of a zero, and no drift of it is stated."""
+        """Whether only the peaks have a trend, as under a drifting zero, and no drift is stated."""
         stated = any(each.noise["force"].drift for each in self.plan.conditions)
         return not stated and self.trend.peaks < TREND <= self.trend.drops
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats
-from stiction.inference.features import Cycles
+from stiction.inference.cycles import Cycles
 from stiction.inference.library import Plan, Synthetic, synthesise
 from stiction.inference.observation import Observation
 from stiction.inference.posterior import Fit
@@ -48,8 +48,8 @@ class Predictive(NamedTuple):
     simulated : Curve
         Of each simulation, (n, s).
     larger : float
-        Share of simulations whose curve departs from their mean more than that of the record does,
-        in its force or in its bend.
+        Posterior predictive p-value: share of simulations whose curve departs from their mean more
+        than that of the record does, in its force or in its bend.
     example : Synthetic
         The simulation with the curve nearest to the mean one.
     """

@@ -47,7 +47,6 @@ def posterior(
     scores: Floats,
     observed: Floats,
     spreads: tuple[Floats, Floats] | None = None,
-    weights: Floats | None = None,
 ) -> Sample:
     """Return a sample of the posterior of scores, given an observed summary.
 
@@ -60,8 +59,6 @@ def posterior(
     spreads : tuple of ndarray, optional
         (n, p) and (p,): how far scores scatter about their summaries, for each simulated record
         and for the measured one; by default alike for all.
-    weights : ndarray, optional
-        (n,), prior density over the density from which the records were drawn; 1 by default.
 
     Examples
     --------
@@ -79,8 +76,7 @@ def posterior(
     count = min(max(int(SHARE * len(distance)), FEWEST_RECORDS), len(distance))
     near = np.argpartition(distance, count - 1)[:count]
     edge = distance[near].max()
-    kernel = 1.0 - (distance[near] / edge) ** 2 if edge > 0.0 else np.ones(count)  # Epanechnikov
-    share = kernel if weights is None else kernel * weights[near]
+    share = 1.0 - (distance[near] / edge) ** 2 if edge > 0.0 else np.ones(count)  # Epanechnikov
     kept = share > 0.0
     near, share = near[kept], share[kept] / share[kept].sum()
     columns = np.column_stack([np.ones(len(near)), apart[near]])
@@ -150,19 +146,22 @@ def with_marginals(joint: Sample, marginals: Sequence[Sample]) -> Sample:
     return Sample(np.stack(columns, axis=1), joint.weights)
 
 
-def local_regression(columns: Floats, values: Floats, weights: Floats) -> Floats:
-    """Return the coefficients of a weighted linear regression."""
+def normal_matrix(columns: Floats, weights: Floats) -> tuple[Floats, Floats]:
+    """Return the weighted columns of a regression, and the matrix of its normal equations."""
     weighted = columns * weights[:, None]
     square = weighted.T @ columns
-    square += RIDGE * np.diag(np.diag(square)) + LEAST * np.eye(len(square))
+    return weighted, square + RIDGE * np.diag(np.diag(square)) + LEAST * np.eye(len(square))
+
+
+def local_regression(columns: Floats, values: Floats, weights: Floats) -> Floats:
+    """Return the coefficients of a weighted linear regression."""
+    weighted, square = normal_matrix(columns, weights)
     return np.asarray(np.linalg.solve(square, weighted.T @ values), dtype=np.float64)
 
 
 def leverage(columns: Floats, weights: Floats) -> Floats:
     """Return the share of each value in its own prediction by a weighted linear regression."""
-    weighted = columns * weights[:, None]
-    square = weighted.T @ columns
-    square += RIDGE * np.diag(np.diag(square)) + LEAST * np.eye(len(square))
+    weighted, square = normal_matrix(columns, weights)
     return np.asarray(np.einsum("ij,ij->i", weighted, np.linalg.solve(square, columns.T).T))
 
 

@@ -19,7 +19,7 @@ from stiction.auditing.measured import (
 )
 from stiction.auditing.page import page
 from stiction.errors import DescriptionError
-from stiction.inference.features import find_cycles
+from stiction.inference.cycles import slip_cycles
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
 from stiction.inference.predictive import SHARES, loading_curve
 from stiction.plotting import plot_predictive, plot_ranks
@@ -149,7 +149,7 @@ def test_what_looks_unlike_the_library_is_no_ground_for_a_verdict(found):
 
 def test_the_loading_curve_of_a_sawtooth_is_straight():
     saw = np.tile(np.r_[0.0:1.0:11j, 0.6, 0.3], 5)
-    curve = loading_curve(0.1, saw, find_cycles(saw))
+    curve = loading_curve(0.1, saw, slip_cycles(saw))
     assert curve.force == pytest.approx(SHARES)
     assert curve.time == pytest.approx(SHARES)
     assert curve.bend == pytest.approx(0.0 * SHARES, abs=1e-12)

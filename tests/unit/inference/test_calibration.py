@@ -5,7 +5,7 @@ import pytest
 from scipy.special import ndtr
 from scipy.stats import kstest
 
-from stiction.inference.calibration import read, study
+from stiction.inference.calibration import learn_or_read, read
 from stiction.inference.regression_abc import Known, marginal, quantiles, rank
 
 PARAMETERS = 4
@@ -24,7 +24,7 @@ def draw(seed, count):
 
 @pytest.fixture(scope="module")
 def learned():
-    return study(*draw(1, 1500))
+    return learn_or_read(*draw(1, 1500))
 
 
 @pytest.fixture(scope="module")
@@ -79,7 +79,7 @@ def test_what_was_learned_is_read_again(learned, tmp_path):
     path = tmp_path / "learned.npz"
     assert read(path, features) is None
     small = features[:400], truth[:400]
-    first, again = (study(*small, path) for _ in range(2))
+    first, again = (learn_or_read(*small, path) for _ in range(2))
     assert np.array_equal(first.ranks, again.ranks)
     pairs = zip(first.posteriors(features[-3:]), again.posteriors(features[-3:]), strict=True)
     assert all(np.array_equal(a.scores, b.scores) for a, b in pairs)

@@ -6,7 +6,7 @@ from scipy.signal import lfilter
 
 import stiction as st
 from stiction.errors import ResultError
-from stiction.inference.features import find_cycles
+from stiction.inference.cycles import slip_cycles
 from stiction.inference.jitter import Jitter, first_loading, move
 from stiction.inference.observation import observe
 
@@ -33,7 +33,7 @@ def test_a_record_from_a_slack_spring_has_the_cycles_of_the_analysis(share, nois
     record = st.Record(time=motion.time, force=force)
     expected = st.analysis.find_cycles(record).sizes["cycle"]
     assert expected > 20
-    assert abs(len(find_cycles(force, noise * drop).peak) - expected) <= 1
+    assert abs(len(slip_cycles(force, noise * drop).peak) - expected) <= 1
     assert len(observe(record, slider).cycles.peak) >= 20
 
 

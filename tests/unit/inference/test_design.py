@@ -10,7 +10,7 @@ import stiction as st
 from stiction.inference.library import Plan, refuse_too_few
 from stiction.inference.next_test import design as module
 from stiction.inference.next_test import further
-from stiction.inference.next_test.advice import Advice, Expected, expectation, misses
+from stiction.inference.next_test.advice import Advice, Expected, expectation, left_out_errors
 from stiction.inference.next_test.further import AGAIN, Wanted, further_tests
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Normal
@@ -36,7 +36,7 @@ def width(records, noise=NOISE):
 @pytest.mark.parametrize("seed", range(3))
 def test_the_expected_width_is_that_of_the_posterior(seed):
     truth, (one, two) = draw(2, seed=seed)
-    before, after = misses([one], truth), misses([one, two], truth)
+    before, after = left_out_errors([one], truth), left_out_errors([one, two], truth)
     found = expectation(PLAN, "twice", truth, after, before)
     error = 4.0 / (2 * RIGS) ** 0.5  # four standard errors of a standard deviation
     assert found.width[0] == pytest.approx(width(2), rel=error)
@@ -48,7 +48,7 @@ def test_the_expected_width_is_that_of_the_posterior(seed):
 def test_the_interval_of_a_ratio_holds_it():
     """At 95 %, of 200 sets of rigs at least 180: fewer have a probability of 0.2 %."""
     random, inside = np.random.default_rng(4), 0
-    covariance = [[1.0, 0.6], [0.6, 0.5]]  # of misses before and after
+    covariance = [[1.0, 0.6], [0.6, 0.5]]  # of left_out_errors before and after
     truth = random.standard_normal((RIGS, 1))
     for _ in range(200):
         before, after = random.multivariate_normal([0.0, 0.0], covariance, RIGS).T[..., None]
@@ -60,8 +60,8 @@ def test_the_interval_of_a_ratio_holds_it():
 def test_a_record_that_says_nothing_narrows_nothing():
     truth, (one,) = draw(1)
     nothing = np.random.default_rng(9).standard_normal((RIGS, 1))
-    before = misses([one], truth)
-    found = expectation(PLAN, "", truth, misses([one, nothing], truth), before)
+    before = left_out_errors([one], truth)
+    found = expectation(PLAN, "", truth, left_out_errors([one, nothing], truth), before)
     assert found.low[0] < 1.0 + 4.0 / (2 * RIGS) ** 0.5
     assert found.high[0] > 1.0 - 4.0 / (2 * RIGS) ** 0.5
 
@@ -69,7 +69,7 @@ def test_a_record_that_says_nothing_narrows_nothing():
 def test_rigs_without_cycles_keep_what_the_present_test_says():
     truth, (one, two) = draw(2)
     two[: RIGS // 4] = np.nan
-    before, after = misses([one], truth), misses([one, two], truth)
+    before, after = left_out_errors([one], truth), left_out_errors([one, two], truth)
     found = expectation(PLAN, "", truth, after, before)
     assert found.usable == 0.75
     missed = np.r_[before[: RIGS // 4], after[RIGS // 4 :]]

@@ -11,7 +11,8 @@ from tests.uncertain import SIMULATIONS, record_of
 
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
-from stiction.inference.features import features, find_cycles, of_trend
+from stiction.inference.cycles import slip_cycles
+from stiction.inference.features import features, of_trend
 from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, move, stretch
 from stiction.inference.library import build, draw, synthesise
@@ -250,12 +251,12 @@ def test_a_trend_is_that_of_the_zero_only_as_far_as_it_is_stated():
         zero = np.concatenate([rise * size for size in sizes]) + slope * np.arange(150) / 10.0
         friction = np.concatenate([rise * size * (1.0 + slope * n) for n, size in enumerate(sizes)])
         for force in (zero, friction):
-            cycles = find_cycles(force)
+            cycles = slip_cycles(force)
             assert trend(force, cycles).peaks < 0.01
             assert trend(force, cycles, 0.11 * abs(slope)).peaks > 0.05
             assert trend(force, cycles, 0.05 * abs(slope)).peaks < 0.01  # it may drift by half
-        assert trend(zero, find_cycles(zero)).drops > 0.001
-        assert trend(friction, find_cycles(friction), 1.0).drops < 0.01
+        assert trend(zero, slip_cycles(zero)).drops > 0.001
+        assert trend(friction, slip_cycles(friction), 1.0).drops < 0.01
 
 
 def test_a_trend_that_may_be_of_the_zero_is_named(found):
@@ -294,7 +295,7 @@ def test_each_cycle_has_friction_of_its_own(rig):
     random = np.random.default_rng(3)
     motion = move(rig.slider, times, Jitter(0.02, 1.0), random, cycle=1.4)
     force = rig.slider.k_x * motion.rows[:, 0]
-    cycles = find_cycles(force)
+    cycles = slip_cycles(force)
     peaks = np.log(force[cycles.peak])
     assert len(peaks) >= 15
     # 2 % with the uncertainty of a standard deviation from 15 values, 18 %; three of them

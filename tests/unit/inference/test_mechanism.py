@@ -11,6 +11,7 @@ from tests.uncertain import record_of
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
 from stiction.friction.laws import Anisotropic, Coulomb, LuGre, RateStateAgeing
+from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import (
     ABOVE,
     EDGES,
@@ -18,14 +19,13 @@ from stiction.inference.features import (
     SLIP,
     FeatureScale,
     Loadings,
-    find_cycles,
     of_loading,
     of_slip,
 )
 from stiction.inference.fit import plan_for
 from stiction.inference.jitter import Jitter, laws, move
 from stiction.inference.library import bend_features
-from stiction.inference.mechanism.classifier import Simulations, simulate, study
+from stiction.inference.mechanism.classifier import Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import CURVES, Likeness, Reference
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
@@ -195,7 +195,7 @@ def test_the_slip_features_follow_the_fall_and_the_rise_in_free_periods():
     shape = np.where(time < 0.5, 0.5 + 0.5 * np.cos(2.0 * np.pi * time), (time - 0.5) / 2.0)
     saw = np.r_[np.linspace(0.0, 1.0, 400), np.tile(shape[1:], 9)]
     scale = FeatureScale(force=1.0, loading=1.0, period=period, velocity=1.0)
-    found = of_slip(step, saw, scale, find_cycles(saw))
+    found = of_slip(step, saw, scale, slip_cycles(saw))
     fall, rise = np.sin(np.pi * SLIP) ** 2, REBOUND / 2.0
     # between samples a cosine is off by (2 pi step)^2 / 16, and its extremes lie on samples
     assert found == pytest.approx([*fall, *rise], abs=(2.0 * np.pi * step) ** 2 / 16.0)
@@ -213,7 +213,7 @@ def test_creep_of_a_leaning_force_and_of_bristles_are_told_from_one_another(slow
             f += step / fine * (1.0 - float(np.dot(slowed, kinds)))
     saw = np.tile(np.r_[loading, 0.6], 9)
     scale = FeatureScale(force=1.0, loading=1.0, period=0.1, velocity=1.0)
-    *_, rate, leaning, yielding = of_loading(step, saw, scale, Loadings(find_cycles(saw)))
+    *_, rate, leaning, yielding = of_loading(step, saw, scale, Loadings(slip_cycles(saw)))
     # the last sample is up to a step (0.005) below the slip, where the fit ends at 1 - f = 0.035:
     # there creep is off by a seventh, and by less in the mean
     found = [-(each**3) for each in (leaning, yielding)]
@@ -226,7 +226,7 @@ def test_creep_of_a_leaning_force_and_of_bristles_are_told_from_one_another(slow
 
 @pytest.fixture(scope="module")
 def learned(clouds):
-    return study(clouds)
+    return learn_or_read(clouds)
 
 
 @pytest.fixture(scope="module")
@@ -260,13 +260,13 @@ def test_left_out_probabilities_are_calibrated(learned, clouds):
 
 def test_what_was_learned_is_stored_and_found_again(clouds, tmp_path):
     path = tmp_path / "learned.npz"
-    first, second = study(clouds, path), study(clouds, path)
+    first, second = learn_or_read(clouds, path), learn_or_read(clouds, path)
     new = np.random.default_rng(1).standard_normal((5, 3))
     assert (first.probabilities(new) == second.probabilities(new)).all()
     fewer = clouds._replace(features=clouds.features[1:], labels=clouds.labels[1:])
-    assert len(study(fewer, path).left_out) == 799  # not those of other simulations
+    assert len(learn_or_read(fewer, path).left_out) == 799  # not those of other simulations
     path.write_bytes(b"damaged")
-    assert (study(clouds, path).probabilities(new) == first.probabilities(new)).all()
+    assert (learn_or_read(clouds, path).probabilities(new) == first.probabilities(new)).all()
 
 
 def test_a_record_of_the_mechanism_is_as_usual_as_any_and_one_beside_it_is_not():
@@ -298,7 +298,7 @@ def test_trends_are_found_where_there_are_some_and_only_there():
         for _ in range(200):
             sizes = 1.0 + slope * np.arange(15) + 0.03 * random.standard_normal(15)
             saw = np.concatenate([rise * size for size in sizes])
-            ps.append(steadiness(trend(saw, find_cycles(saw))))
+            ps.append(steadiness(trend(saw, slip_cycles(saw))))
         found.append(np.mean(np.array(ps) < 0.01))
     assert found[0] <= 0.01 + 3.0 * (0.01 / 200) ** 0.5
     assert found[1] > 0.9

@@ -88,12 +88,3 @@ def test_intervals_without_the_scatter_would_be_too_narrow(trials):
         low, high = quantiles(found.scores[:, 0], found.weights, np.array([0.025, 0.975]))
         held += low <= true[0] <= high
     assert held / 300 < 0.85
-
-
-def test_weights_turn_a_proposal_into_the_prior():
-    random = np.random.default_rng(5)
-    z = 0.7 * random.standard_normal((20000, 1)) + 0.5
-    weights = np.exp(-0.5 * z[:, 0] ** 2 + 0.5 * ((z[:, 0] - 0.5) / 0.7) ** 2)
-    seen = z + 0.5 * random.standard_normal(z.shape)
-    found = posterior(seen, z, np.array([1.0]), weights=weights)
-    assert found.weights @ found.scores[:, 0] == pytest.approx(0.8, abs=0.03)

@@ -8,7 +8,7 @@ however many of its simulations have cycles: the odds before are even.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,7 +20,7 @@ from scipy.special import log_softmax, softmax
 
 from stiction.arrays import Floats
 from stiction.errors import ResultError
-from stiction.inference.library import simulate_all
+from stiction.inference.library import Progress, have_cycles, simulate_all
 from stiction.inference.mechanism.rivals import Mechanism
 from stiction.inference.summary import (
     Regression,
@@ -33,8 +33,6 @@ from stiction.inference.summary import (
     single_threaded_algebra,
 )
 from stiction.storage.arrays import read_arrays, write_arrays
-
-Progress = Callable[[float], None] | None
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out
 WIDTH = 1.0  # of the kernel, over the typical distance between records
@@ -77,7 +75,7 @@ def simulate(
             wanted = -(-count // len(rival.plans))
             report = partial(tell, progress, done, total)
             _, rows = simulate_all(plan, wanted, place, seed=seed, progress=report)
-            parts.append(rows[np.isfinite(rows).all(axis=1)])
+            parts.append(rows[have_cycles(rows)])
             done += 1
         features = np.concatenate(parts)
         if len(features) < FEWEST_SIMULATIONS:
@@ -134,7 +132,7 @@ class Classifier(NamedTuple):
         return found
 
 
-def study(simulations: Simulations, path: Path | None = None) -> Classifier:
+def learn_or_read(simulations: Simulations, path: Path | None = None) -> Classifier:
     """Learn to tell mechanisms apart, or read from a file what was learned."""
     features, labels = simulations.features, simulations.labels
     stored = read(path, features)

@@ -13,12 +13,12 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.fit import check
 from stiction.inference.library import bend_features
-from stiction.inference.mechanism.classifier import Classifier, Simulations, simulate, study
+from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
-from stiction.inference.priors import Rig
+from stiction.inference.priors import Rig, rig_of
 
 SIMULATIONS = 1000  # of each mechanism, by default
 SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
@@ -71,7 +71,7 @@ def mechanism(
     DescriptionError
         If the rig is not of a kind that can be fitted, or is exactly aligned.
     """
-    known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
+    known = rig_of(rig)
     check(known)
     if known.slider.phi == 0.0 and "phi" not in known.priors:
         message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
@@ -85,7 +85,7 @@ def mechanism(
             f"only {simulated.names[0]} sticks and slips on this rig: there is nothing to compare"
         )
     kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}.npz"
-    return compare(simulated, study(simulated, kept), known, seen)
+    return compare(simulated, learn_or_read(simulated, kept), known, seen)
 
 
 def key(rivals: Sequence[Mechanism]) -> str:

@@ -30,7 +30,7 @@ class Likeness(NamedTuple):
         (m, s), departure of the loading from a straight line over its rise, of the nearest
         simulations, in each part of the loading.
     larger : float
-        Share of these whose loading departs more from their mean.
+        Share of these whose loading departs more from their mean: a posterior predictive p-value.
     """
 
     farther: float

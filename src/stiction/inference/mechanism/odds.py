@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from stiction.arrays import Floats, xr
-from stiction.inference.features import EDGES
+from stiction.inference.features import MIDDLES
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rivals import LUGRE, RATE_AND_STATE, ROTATION, STATIC
 from stiction.inference.observation import TREND
@@ -49,7 +49,7 @@ class Odds:
     bend : ndarray
         (s,), departure of the records' loading from a straight line over its rise, in each part.
     steady : float
-        How probable as clear a trend is in records whose cycles have none.
+        p-value of a trend of the cycles, in all records together.
     counts : tuple of int
         Number of simulations of each mechanism.
     absent : tuple of str
@@ -76,7 +76,7 @@ class Odds:
     @property
     def shares(self) -> Floats:
         """The middle of each part of a loading, as a share of its time."""
-        return np.asarray(0.5 * (EDGES[1:] + EDGES[:-1]))
+        return MIDDLES
 
     @property
     def likeliest(self) -> int:
@@ -117,9 +117,9 @@ class Odds:
             )
         if self.steady < TREND:
             found.append(
-                "Friction drifts: peaks or drops have a trend from cycle to cycle (probability "
-                f"{self.steady:.1g} without one), which is not simulated. Take cycles after "
-                f"running in. {STATE_DRIFT}"
+                "Friction drifts: peaks or drops have a trend from cycle to cycle (p = "
+                f"{self.steady:.1g}), which is not simulated. Take cycles after running in. "
+                f"{STATE_DRIFT}"
             )
         return found
 

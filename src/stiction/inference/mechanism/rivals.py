@@ -26,7 +26,7 @@ from stiction.friction.laws.rate_and_state.common import least_direct_effect
 from stiction.inference.fit import plan_for
 from stiction.inference.library import Plan, plan
 from stiction.inference.observation import Conditions
-from stiction.inference.priors import Prior, Rig, Uniform
+from stiction.inference.priors import Prior, Rig, Uniform, middle
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 
@@ -162,10 +162,7 @@ def logarithmic(shares: tuple[float, float], scale: float) -> Uniform:
 
 def middle_of(law: Any, slider: Slider, priors: dict[str, Prior]) -> Any:
     """Return a law in the middle of its priors; the reference speed is that of the drive."""
-    middles = {
-        path.removeprefix("friction."): float(prior.quantile(np.array(0.5)))
-        for path, prior in priors.items()
-    }
+    middles = {path.removeprefix("friction."): middle(prior) for path, prior in priors.items()}
     if "V_star" in law._fields:
         middles["V_star"] = abs(slider.motion.rate(0.0)[0])
     return law(**middles)

@@ -13,12 +13,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats, xr
-from stiction.inference.library import Plan
+from stiction.inference.library import Plan, have_cycles
 from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
 from stiction.inference.summary import learn
@@ -57,13 +56,8 @@ class Expected(NamedTuple):
     usable: float
 
 
-def whole(rows: Floats) -> NDArray[np.bool_]:
-    """Return which rows (n, f) are finite."""
-    return np.asarray(np.isfinite(rows).all(axis=1))
-
-
-def misses(records: Sequence[Floats], truth: Floats) -> Floats:
-    """Return how far each rig's parameters lie from what all others say, (n, p).
+def left_out_errors(records: Sequence[Floats], truth: Floats) -> Floats:
+    """Return the leave-one-out errors of the parameters (n, p), as normal scores.
 
     A regression of each record's features first says what it tells alone; where there are several,
     another one joins these. So few simulations do for many features.
@@ -76,7 +70,7 @@ def misses(records: Sequence[Floats], truth: Floats) -> Floats:
     truth : ndarray
         (n, p), normal scores.
     """
-    complete = whole(np.hstack(records))
+    complete = have_cycles(np.hstack(records))
     found = np.full_like(truth, np.nan)
     if complete.sum() > 2:
         alone = [learn(each[complete], truth[complete]).middle.library for each in records]
@@ -88,11 +82,11 @@ def misses(records: Sequence[Floats], truth: Floats) -> Floats:
 
 
 def expectation(trial: Plan, test: str, truth: Floats, after: Floats, before: Floats) -> Expected:
-    """Return what a test leaves open, from misses (n, p) with it and with the present test alone.
+    """Return what a test leaves open, from leave-one-out errors (n, p) with and without it.
 
     For a rig that shows too few cycles in a test, the present one is all that is known.
     """
-    usable = whole(after)
+    usable = have_cycles(after)
     missed = np.where(usable[:, None], after, before)
     squares, reference = missed**2, before**2
     count = len(before)

@@ -9,9 +9,15 @@ from typing import Any
 from stiction.arguments import is_list
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
-from stiction.inference.fit import check, one_sided
-from stiction.inference.library import Plan, features_from, plan, refuse_too_few, simulate_all
-from stiction.inference.next_test.advice import Advice, Expected, expectation, misses, whole
+from stiction.inference.fit import check, plan_for
+from stiction.inference.library import (
+    Plan,
+    features_from,
+    have_cycles,
+    refuse_too_few,
+    simulate_all,
+)
+from stiction.inference.next_test.advice import Advice, Expected, expectation, left_out_errors
 from stiction.inference.next_test.further import (
     AGAIN,
     ANGLES,
@@ -26,7 +32,7 @@ from stiction.inference.next_test.further import (
     with_noise,
 )
 from stiction.inference.observation import PER_CYCLE, Conditions, Source, observe, record_from
-from stiction.inference.priors import Rig
+from stiction.inference.priors import Rig, rig_of
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical
 from stiction.text.quantity_text import percent
@@ -100,7 +106,7 @@ def design(
     ResultError
         If the record cannot be used, or too few of the simulated rigs stick and slip.
     """
-    known = rig if isinstance(rig, Rig) else Rig.from_toml(rig)
+    known = rig_of(rig)
     check(known)
     slider = known.slider
     name, wanted = read(
@@ -119,7 +125,8 @@ def design(
     if record is None:
         present = must_slip(with_cycle(present, slider))
     tests, skipped = split(further_tests(present, measured, wanted), slider)
-    trial = plan_of(known, present, measured, tests)
+    records = [test.record for test in tests if test.record is not None]
+    trial = plan_for(known, [present, *records], "force_across" in measured)
     folder = None if library is None else Path(library) / f"{trial.key}-{seed}"
     scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=progress)
     found = expectations(trial, Further("the present test", measured), tests, scores, features)
@@ -175,17 +182,6 @@ def split(tests: Iterator[Further], slider: Slider) -> tuple[list[Further], list
     return possible, skipped
 
 
-def plan_of(
-    rig: Rig, present: Conditions, channels: Sequence[str], tests: Sequence[Further]
-) -> Plan:
-    """Return the plan of simulations: each rig in the present test and in all further records."""
-    priors = {**rig.priors}
-    if "force_across" not in channels and "phi" in priors:
-        priors["phi"] = one_sided(priors["phi"])
-    records = [test.record for test in tests if test.record is not None]
-    return plan(rig.slider, priors, [present, *records])
-
-
 def expectations(
     trial: Plan, present: Further, tests: Sequence[Further], scores: Floats, features: Floats
 ) -> Iterator[Expected]:
@@ -202,17 +198,17 @@ def expectations(
         columns = features_from(channels, first, trial.slider)
         return features[:, number * width : (number + 1) * width][:, columns]
 
-    complete = whole(seen(0, present.channels))
+    complete = have_cycles(seen(0, present.channels))
     refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST_RIGS)
     truth = scores[complete]
-    before = misses([seen(0, present.channels)[complete]], truth)
+    before = left_out_errors([seen(0, present.channels)[complete]], truth)
     yield expectation(trial, present.name, truth, before, before)
     further = iter(range(1, 1 + len(others)))
     for test in tests:
         records = [seen(0, test.channels)[complete]]
         if test.record is not None:
             records.append(seen(next(further), test.channels)[complete])
-        yield expectation(trial, test.name, truth, misses(records, truth), before)
+        yield expectation(trial, test.name, truth, left_out_errors(records, truth), before)
 
 
 def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) -> list[str]:

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import AfterValidator, Field
 
 from stiction.drive import ConstantVelocity
-from stiction.inference.features import LEAST_CYCLES, USED, find_cycles
+from stiction.inference.cycles import LEAST_CYCLES, slip_cycles
+from stiction.inference.features import USED
 from stiction.inference.jitter import Jitter, move
 from stiction.inference.library import LONGEST_CYCLE
 from stiction.inference.observation import PER_CYCLE, Conditions, Noise
@@ -97,7 +98,7 @@ def with_cycle(conditions: Conditions, slider: Slider) -> Conditions | None:
     motion = move(
         rig, times, Jitter(0.0, 0.0), np.random.default_rng(0), cycle=guess, cycles=wanted
     )
-    found = find_cycles(motion.rows[:, 0])
+    found = slip_cycles(motion.rows[:, 0])
     if len(motion.troughs) < wanted or len(found.peak) < LEAST_CYCLES:
         return None
     cycle = float(np.mean(found.after - found.before)) * float(times[1])
