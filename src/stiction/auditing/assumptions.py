@@ -157,12 +157,9 @@ def _of_sliding(s: Slider, p: Prediction) -> Iterator[str]:
 def weakening_angle(s: Slider, p: Prediction) -> float:
     """Return the angle of friction (rad) at which its weakening turns creep into slip.
 
-    Eq. (10) takes friction as F_0. A law that weakens with speed drives what zeta damps: creep is
-    unstable where the slope of the law exceeds the damping by rotation, (F_0/s) sin^2(theta), at
-    the slip speed s = V sin(phi)/sin(theta). And the mass swings along the force during creep, on
-    a spring that grows softer as the force turns to the soft axis: where the slope exceeds the
-    critical damping of that swing, it no longer swings back, and its next slip is the rapid one.
-    It is theta_c, or phi if that is larger, where neither happens before.
+    Eq. (10) takes friction as F_0. Where a law weakens with speed, creep becomes unstable, (E4) of
+    docs/explanation/estimates.md, or the mass no longer swings back, (E5). It is theta_c, or phi if
+    that is larger, where neither happens before.
     """
     law: Any = s.law
     phi = abs(s.misalignment)

@@ -192,13 +192,8 @@ def creep_distance(V: float, phi: float, l_x: float, t: float) -> float:
 def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tuple[float, float]:
     """Return the fall of the force in a slip from `peak`, and its mean in the slip (N).
 
-    This estimate takes the slip as a free swing of the mass on a spring about the mean friction F
-    along its path. It begins at rest with the force `peak`, so that the force swings by
-
-        A = sqrt[(peak - F)^2 + k m V^2]
-
-    to each side of F, and the mass has the speed V + (A/sqrt(k m)) sin(tau) from rest to rest. F
-    and A are found together. The fall is 2 A, or 2 (peak - F) below zero where there is none.
+    A free swing of the mass on a spring about the mean friction, from rest at the force `peak`, by
+    (E1) and (E2) of docs/explanation/estimates.md. The fall is below zero where there is none.
     """
     V, scale = hypot(*slider.motion.rate(0.0)), sqrt(stiffness * mass)
     coefficient, load = slider.law.coefficient, slider.normal_load
@@ -218,8 +213,7 @@ def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tu
 def stick_slip_period(slider: Slider, drop: float) -> float:
     """Return the time from slip to slip (s) if the force falls by `drop` (N) in each; NaN if not.
 
-    The mass rests while the drive loads the spring by 2 (peak - F), and swings for the rest of a
-    period of its own, from rest to rest as in `stick_slip`.
+    By (E3) of docs/explanation/estimates.md.
     """
     V, k = hypot(*slider.motion.rate(0.0)), slider.k_x
     by_drive = V * sqrt(k * slider.masses[0])

@@ -48,7 +48,9 @@ MEANINGS = {
 
 
 class Estimate(NamedTuple):
-    """What is known of one parameter: medians and 95 % intervals after and before, in SI.
+    """What is known of one parameter: medians and 95 % intervals after and before.
+
+    In SI, angles in rad; in the datasets of a fit they are in degrees.
 
     `narrower` is the posterior's standard deviation over the prior's, both as normal scores;
     `identified` whether that is below 0.75. `coverage` is how often such intervals hold the truth

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from stiction.plotting.page.canvas import panel
-from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, RED, style
+from stiction.plotting.page.style import BLACK, BLUE, GREY, LINES, RED, style
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from stiction.analysis.protocols.velocity_steps import VelocitySteps
     from stiction.analysis.protocols.yaw import ApparentFriction
 
-LOOKS = ((BLUE, "-"), (RED, (0, (4, 1.5))), (GREEN, (0, (1, 1.5))), (BLACK, (0, (6, 1.5, 1, 1.5))))
 REACH = 8.0  # D_c of slip that are drawn
 POINTS = 200  # of the data after a step: more would hide the line
 
@@ -37,7 +36,7 @@ def plot_velocity_steps(found: VelocitySteps, ax: Axes | None = None) -> Axes:
         ax = panel(ax, 2.8)
         far = max((REACH * each.D_c for each in found.steps if each.D_c > 0.0), default=None)
         for n, each in enumerate(found.steps):
-            color, dashes = LOOKS[n % len(LOOKS)]
+            color, dashes = LINES[n % len(LINES)]
             label = f"{in_words(each.before, 'm/s', 3)} to {in_words(each.after, 'm/s', 3)}"
             some = slice(None, None, max(1, len(each.slip) // POINTS))
             ax.plot(1e6 * each.slip[some], each.mu[some], ".", color=color, ms=4.0, alpha=0.4)

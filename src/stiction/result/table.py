@@ -44,7 +44,7 @@ VARIABLES = {
     ),
     "sticking": ("1", "whether the slip is zero"),
 }
-SHOWN = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
+UNSEEN_PEAK = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
 FASTEST = "largest slip speed"
 FASTER = f"{FASTEST}, at least"  # where it lies between samples
 STICKS = {
@@ -222,7 +222,7 @@ def fastest_slip(samples: Mapping[Any, Any] | ColumnTable) -> tuple[float, bool]
         return shown, True
     means = mean_speeds(time, samples["X"], samples["Y"])
     between = float(np.fmax.reduce(means, initial=0.0))
-    return max(shown, between), between <= SHOWN * shown
+    return max(shown, between), between <= UNSEEN_PEAK * shown
 
 
 def stick_table(intervals: np.ndarray) -> ColumnTable:

@@ -11,7 +11,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.peak_refinement import Vertices, fit_pieces
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, Indices, xr
-from stiction.result.table import SHOWN, mean_speeds
+from stiction.result.table import UNSEEN_PEAK, mean_speeds
 
 # name: (unit, long name), as CF attributes
 COLUMNS = {
@@ -227,7 +227,7 @@ def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floa
         return np.asarray(found)
     between = mean_speeds(record.time, record.position)
     means = np.maximum.reduceat(between, np.minimum(ends, len(between) - 1))[::2]
-    return np.where(means <= SHOWN * found, found, np.nan)
+    return np.where(means <= UNSEEN_PEAK * found, found, np.nan)
 
 
 def _smooth_rate(time: Floats, force: Floats, fall: int) -> Floats:

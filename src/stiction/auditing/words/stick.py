@@ -90,7 +90,7 @@ def _faster(seen: SimulatedTest) -> str:
 def _share_of_inertia(found: Audit) -> float:
     """Return the share of a cycle in which the mass gains or loses the drive's speed.
 
-    It swings on its spring then, for a quarter of its period before the slip and after it.
+    By (E7) of docs/explanation/estimates.md.
     """
     period = found.observation.mean("period")
     return min(0.5 / (found.prediction.f_x * period), 1.0) if isfinite(period) else 0.0

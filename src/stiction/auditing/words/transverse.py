@@ -79,8 +79,7 @@ def transverse(found: Audit) -> list[str]:
 def transverse_decay(slider: Slider) -> float:
     """Return the rate of decay of the transverse oscillation early in creep, 1/s.
 
-    There the mass slips across the drive, at V sin(phi) on average, and friction is a damper of
-    the slope of its law. If negative, the oscillation lasts.
+    By (E6) of docs/explanation/estimates.md. If negative, the oscillation lasts.
     """
     speed = hypot(*slider.motion.rate(0.0)) * abs(sin(slider.misalignment))
     law: Any = slider.law

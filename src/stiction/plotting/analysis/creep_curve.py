@@ -13,16 +13,9 @@ from stiction import theory
 from stiction.arrays import Floats, xr
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN
-from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, RED, style
+from stiction.plotting.page.style import BLACK, GREY, LINES, style
 
 Line = Callable[[Floats], Any]  # time to slip (s) to velocity (m/s)
-
-LOOKS: tuple[tuple[str, Any], ...] = (
-    (BLUE, "-"),
-    (GREEN, (0, (5, 2))),
-    (RED, (0, (1, 1.5))),
-    (BLACK, (0, (6, 1.5, 1, 1.5))),
-)
 
 
 def creep_theory(
@@ -109,7 +102,7 @@ def plot_creep(
         draw_phases(ax, curves, V)
         draw_mean(ax, mean, V)
         to_slip = np.geomspace(0.5 * middle.min(), middle.max(), 400)
-        for (label, line), (color, dashes) in zip((lines or {}).items(), LOOKS, strict=False):
+        for (label, line), (color, dashes) in zip((lines or {}).items(), LINES, strict=False):
             drawn = np.asarray(line(to_slip), dtype=np.float64) / V
             ax.plot(to_slip, drawn, color=color, linestyle=dashes, linewidth=1.2, label=label)
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))

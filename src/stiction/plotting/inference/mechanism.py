@@ -13,16 +13,13 @@ from numpy.typing import NDArray
 from stiction.analysis.signals.robust import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.plotting.page.canvas import grid_of
-from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, ORANGE, PAGE, RED, style
+from stiction.plotting.page.style import BLACK, BLUE, GREY, LINES, PAGE, style
 from stiction.text.quantity_text import percent
 
 if TYPE_CHECKING:
     from stiction.inference.mechanism.odds import Odds
 
 LETTERS = 16  # in a line of a mechanism's name
-LOOKS = (  # of the mechanisms' loadings: distinct without colour, too
-    (BLUE, "-"), (RED, (0, (4, 1.5))), (GREEN, (0, (1, 1))), (ORANGE, (0, (5, 1.5, 1, 1.5))),
-)  # fmt: skip
 DARK = 0.5  # share above which its number is white
 
 
@@ -84,7 +81,7 @@ def draw_loading(ax: Axes, odds: Odds) -> None:
     share = odds.shares
     parts = len(share)  # of the first record, where there are several
     for i, (name, its) in enumerate(zip(odds.names, odds.likeness, strict=True)):
-        color, line = LOOKS[i % len(LOOKS)]
+        color, line = LINES[i % len(LINES)]
         bends = 100.0 * its.bends[:, :parts]
         ax.plot(share, bends.mean(axis=0), color=color, linestyle=line, label=name)
         if i == odds.likeliest:

@@ -24,6 +24,13 @@ PALE = "#E9E9E9"
 FLOOR = "#F5F4F0"
 UNSTABLE = "#F9E3C5"  # where steady sliding is
 
+LINES: tuple[tuple[str, Any], ...] = (  # colour and dashes: distinct without colour, too
+    (BLUE, "-"),
+    (RED, (0, (4, 1.5))),
+    (GREEN, (0, (1, 1.5))),
+    (ORANGE, (0, (6, 1.5, 1, 1.5))),
+)
+
 COLUMN = 3.375  # width of one column of Phys. Rev. E, in
 PAGE = 7.0  # width of both, in
 

@@ -1,1 +1,1 @@
-"""Commands that infer from records: fit."""
+"""Commands that infer from records: fit and design."""

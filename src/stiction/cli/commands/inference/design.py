@@ -84,7 +84,8 @@ def design(
         Standard deviation of a sample of force, by default that of the record, or 0.2 % of the
         friction force. Example: --noise "2 mN".
     position_noise
-        Standard deviation of a sample of displacement. Example: --position-noise "50 nm".
+        Standard deviation of a sample of displacement, by default that of the record, or the noise
+        of the force over k_x. Example: --position-noise "50 nm".
     output
         A figure: PNG, PDF or SVG. Example: -o design.png.
     """
