@@ -129,16 +129,11 @@ def move(
     law, last = next(own), len(times) - 1
     while begin < last:
         end = min(begin + window, last)
-        duration, part = stretch(times, begin, end)
-        settings = Settings.model_construct(
-            duration=duration, sample_rate=None, rtol=RTOL,
-            regularisation=None, smoothing="root", multiscale=False,
-        )  # fmt: skip
         rig = slider.model_copy(update={"friction": law})
-        found = solve_coarsely(Description(rig, initial, settings), part, max_steps=MOST_STEPS)
-        if found.code != 0:
+        samples = simulate_part(rig, initial, *stretch(times, begin, end))
+        if samples is None:
             return SampledMotion(times[: begin + 1], rows[: begin + 1], np.array(troughs, np.int64))
-        rows[begin : end + 1] = found.samples[:, kept]
+        rows[begin : end + 1] = samples[:, kept]
         trough = first_trough(rows[origin : end + 1, 0])
         if trough >= 0:
             begin = origin + trough
@@ -157,6 +152,18 @@ def move(
         initial = start(slider, rows[begin], float(times[begin]))
     until = begin + 1
     return SampledMotion(times[:until], rows[:until], np.array(troughs, np.int64))
+
+
+def simulate_part(
+    slider: Slider, initial: Initial, duration: float, times: Floats
+) -> Floats | None:
+    """Return the samples at these times; None where the run does not come to its end."""
+    settings = Settings.model_construct(
+        duration=duration, sample_rate=None, rtol=RTOL,
+        regularisation=None, smoothing="root", multiscale=False,
+    )  # fmt: skip
+    found = solve_coarsely(Description(slider, initial, settings), times, max_steps=MOST_STEPS)
+    return found.samples if found.code == 0 else None
 
 
 def first_loading(slider: Slider) -> float:

@@ -173,18 +173,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     ResultError
         If it has too few cycles, or its samples leave too large gaps.
     """
-    grid = even_grid(record.time)
-    if grid is None or not grid.serves:
-        raise ResultError(
-            f"{name} has samples too far apart, or too close together, for a fit, which takes an "
-            f"uneven clock and gaps in {percent(MOST_MISSING)} of the time; fit a part without gaps"
-        )
-    channels = {
-        each: grid.on(values)
-        for each in USED
-        if (values := getattr(record, each, None)) is not None
-    }
-    step = float(f"{grid.step:.{DIGITS}g}")
+    step, channels = even_channels(record, name)
     seen = swings(record)
     if (kind := regime_of(record, seen).kind) in NO_CYCLES:
         raise ResultError(
@@ -195,11 +184,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
     found = slip_cycles(channels["force"], noise["force"].level)
     refuse_few(name, len(found.peak))
-    if channels["force"].mean() <= 0.0 and has_quick_rises(found):
-        raise ResultError(
-            f"the force of {name} falls slowly and rises fast: it is recorded with the other sign, "
-            'in all likelihood; fit it with force=-force, or its file with --force="-1 N"'
-        )
+    refuse_other_sign(name, channels["force"], found)
     cycle = near(float(np.mean(found.after - found.before)) * step)
     block = max(round(cycle / step / PER_CYCLE), 1)
     thin = {each: block_means(values, block) for each, values in channels.items()}
@@ -208,19 +193,36 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     }
     found = slip_cycles(thin["force"], thin_noise["force"].level)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
-    found = type(found)(*(each[:number] for each in found))
-    velocity = slider.motion.rate(0.0)[0]
-    stated = record.drive_velocity
-    if stated is not None and abs(stated / abs(velocity) - 1.0) > SAME:
-        velocity = np.copysign(stated, velocity)
+    found = Cycles(*(each[:number] for each in found))
     drifts = any(each.drift for each in noise.values())
     conditions = Conditions(
-        float(velocity), float(record.normal_load or slider.normal_load), 0.0,
+        drive_velocity(record, slider), float(record.normal_load or slider.normal_load), 0.0,
         step * block, number, cycle, thin_noise,
         lead=near(step * block * int(found.before[0])) if drifts else 0.0,
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, its, thin["force"], found)
+
+
+def even_channels(record: Record, name: str) -> tuple[float, dict[str, Floats]]:
+    """Return the time between samples of an even grid, and the channels of a record on it."""
+    grid = even_grid(record.time)
+    if grid is None or not grid.serves:
+        raise ResultError(
+            f"{name} has samples too far apart, or too close together, for a fit, which takes an "
+            f"uneven clock and gaps in {percent(MOST_MISSING)} of the time; fit a part without gaps"
+        )
+    measured = {each: getattr(record, each, None) for each in USED}
+    channels = {each: grid.on(values) for each, values in measured.items() if values is not None}
+    return float(f"{grid.step:.{DIGITS}g}"), channels
+
+
+def drive_velocity(record: Record, slider: Slider) -> float:
+    """Return the velocity of the drive, in the sense of the rig's: that which a record states."""
+    velocity, stated = float(slider.motion.rate(0.0)[0]), record.drive_velocity
+    if stated is None or abs(stated / abs(velocity) - 1.0) <= SAME:
+        return velocity
+    return float(np.copysign(stated, velocity))
 
 
 def refuse_few(name: str, count: int) -> None:
@@ -232,10 +234,14 @@ def refuse_few(name: str, count: int) -> None:
         )
 
 
-def has_quick_rises(cycles: Cycles) -> bool:
-    """Return whether the force of most cycles rises in less than a quarter of their time."""
+def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
+    """Refuse a force that is recorded with the other sign: most cycles rise within QUICKLY."""
     shares = (cycles.peak - cycles.before) / (cycles.after - cycles.before)
-    return float(np.median(shares)) < QUICKLY
+    if force.mean() <= 0.0 and np.median(shares) < QUICKLY:
+        raise ResultError(
+            f"the force of {name} falls slowly and rises fast: it is recorded with the other sign, "
+            'in all likelihood; fit it with force=-force, or its file with --force="-1 N"'
+        )
 
 
 def observe_all(records: Source | Sequence[Source], slider: Slider) -> list[Observation]:

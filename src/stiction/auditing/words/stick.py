@@ -25,11 +25,9 @@ def stick(found: Audit) -> list[str]:
     """Return how much of the apparent stick is creep."""
     seen, s = found.observation, found.slider
     whole = "of each cycle" if len(seen.table) else "of the loading"
-    vibrates, state = seen.motion in VIBRATES, has_state(s.law)
-    inertia = _share_of_inertia(found)
-    hastens = inertia > 0.5 * seen.shares.creep
-    slowly = "creeps" if s.misalignment or state else "slides slowly"
-    slowly = "gains or loses speed" if hastens else slowly
+    vibrates, inertia = seen.motion in VIBRATES, _share_of_inertia(found)
+    slowly = "creeps" if s.misalignment or has_state(s.law) else "slides slowly"
+    slowly = "gains or loses speed" if _hastens(seen, inertia) else slowly
     slow = ("rests", seen.shares.rest), (slowly, seen.shares.creep)
     how = " and ".join(f"{verb} for {percent(share)}" for verb, share in slow if share > NEVER)
     lines = [
@@ -39,41 +37,52 @@ def stick(found: Audit) -> list[str]:
     ]
     if s.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
-    if vibrates:
-        rests = "it rests for a moment in each swing" if seen.shares.rest else "it never rests"
-        lines.append(f"The mass vibrates about steady sliding; {rests}.")
-    elif state and seen.shares.creep > 0.0:
-        lines.append(
-            "Friction with internal state creeps by itself. An audit of the same apparatus with "
-            "phi = 0 shows how much the misalignment adds."
-            if s.misalignment
-            else "The creep is due to the law of friction."
-        )
-    elif s.misalignment and seen.shares.creep - inertia > seen.shares.rest:
-        distance = seen.mean("creep_distance")
-        far = (
-            f"{in_words(distance, 'm')} before each slip"
-            if isfinite(distance)
-            else f"{in_words(found.prediction.creep_distance, 'm')}, by Eq. (7), before it slides"
-        )
-        lines.append(
-            f"The apparent stick is mostly creep under a turning friction force: an artefact "
-            f"of the misalignment. The mass covers {far}. The largest force shows how far "
-            f"friction has turned; it is no evidence of static friction."
-        )
-    elif hastens and seen.shares.creep > seen.shares.rest:
-        lines.append(
-            "The drive is too fast for creep: the mass takes as long to gain its speed, and to "
-            "lose it, as to swing on its spring."
-        )
-    elif seen.shares.rest > HARDLY:
-        lines.append("The apparent stick is mostly true rest.")
+    if why := _why(found, inertia):
+        lines.append(why)
     if seen.motion == STICK_SLIP:
         lines.append(
             "The apparent kinetic coefficient is the mean of peak and trough. The mass overshoots "
             "in each slip, so the trough alone is not a property of the interface."
         )
     return lines
+
+
+def _hastens(seen: SimulatedTest, inertia: float) -> bool:
+    """Return whether the mass is slow for long because it gains or loses speed."""
+    return inertia > 0.5 * seen.shares.creep
+
+
+def _why(found: Audit, inertia: float) -> str:
+    """Return why the mass is slower than the drive for a while; nothing where that is too short."""
+    seen, misaligned = found.observation, found.slider.misalignment != 0.0
+    if seen.motion in VIBRATES:
+        rests = "it rests for a moment in each swing" if seen.shares.rest else "it never rests"
+        return f"The mass vibrates about steady sliding; {rests}."
+    if has_state(found.slider.law) and seen.shares.creep > 0.0:
+        return (
+            "Friction with internal state creeps by itself. An audit of the same apparatus with "
+            "phi = 0 shows how much the misalignment adds."
+            if misaligned
+            else "The creep is due to the law of friction."
+        )
+    if misaligned and seen.shares.creep - inertia > seen.shares.rest:
+        distance = seen.mean("creep_distance")
+        far = (
+            f"{in_words(distance, 'm')} before each slip"
+            if isfinite(distance)
+            else f"{in_words(found.prediction.creep_distance, 'm')}, by Eq. (7), before it slides"
+        )
+        return (
+            f"The apparent stick is mostly creep under a turning friction force: an artefact "
+            f"of the misalignment. The mass covers {far}. The largest force shows how far "
+            f"friction has turned; it is no evidence of static friction."
+        )
+    if _hastens(seen, inertia) and seen.shares.creep > seen.shares.rest:
+        return (
+            "The drive is too fast for creep: the mass takes as long to gain its speed, and to "
+            "lose it, as to swing on its spring."
+        )
+    return "The apparent stick is mostly true rest." if seen.shares.rest > HARDLY else ""
 
 
 def _faster(seen: SimulatedTest) -> str:
