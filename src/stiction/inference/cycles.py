@@ -16,7 +16,8 @@ from stiction.study.variables.zigzag import zigzag
 
 Indices = NDArray[np.int64]
 
-DROP = 0.3  # of the span of the force once it is loaded: a smaller fall is not a slip
+# of the span of the force once it is loaded: a larger fall is a slip, without noise and with much
+DROP = 0.3, 0.5
 TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
 OF_NOISE = 8.0  # standard deviations of noise: white noise in a cycle does not reach so far
 LEAST_CYCLES = 6  # in a record that is fitted
@@ -53,7 +54,8 @@ def slip_cycles(force: Floats, noise: float = 0.0) -> Cycles:
     array([121, 133])
     """
     low, high = np.percentile(force[end_of_loading(force) :], TAILS)
-    height = max(DROP * float(high - low), OF_NOISE * noise)
+    least, most = np.multiply(DROP, high - low)
+    height = min(max(least, OF_NOISE * noise), most)
     turns = zigzag(force, height)
     if len(turns) and np.ptp(force[: turns[0] + 1]) <= height:
         turns = turns[1:]

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats
 from stiction.friction import Anisotropic, states
+from stiction.inference.cycles import slip_cycles
 from stiction.simulation import solve_coarsely
 from stiction.study.variables.zigzag import zigzag
 from stiction.system.description import Description, Settings
@@ -27,10 +28,11 @@ from stiction.system.slider import Slider
 RTOL = 1e-4  # of each cycle: a hundredth of a per cent, below any jitter that is seen
 LARGE = 0.15  # of the span in a cycle's window: a fall by so much, and a rise, make a trough
 SMALLEST = 1e-3  # of the elongation: a smaller fall is not a slip
-REACH = 1.3  # lengths of the last cycle that are simulated at once in search of the next trough
+REACH = 1.3  # mean lengths of a cycle that are simulated at once in search of the next trough
 MORE = 0.4  # of them, if it is not among these
 LONGEST_WAIT = 4.0  # of them without a trough: the friction of a further cycle is drawn
 IDLE = 10.0  # of them without a trough: the motion has no more cycles
+SPARE = 2  # troughs beyond the cycles that are wanted: the first begins at the end of a slip
 AT_REST = 0.9  # of the friction force at vanishing slip: below it no law lets a mass slip rapidly
 FEWEST_SAMPLES = 8  # samples that are simulated at once
 MOST_STEPS = 2_000_000
@@ -99,6 +101,7 @@ def move(
     *,
     cycle: float,
     cycles: int | None = None,
+    noise: float = 0.0,
 ) -> SampledMotion:
     """Simulate a slider at equally spaced times, each cycle with friction of its own.
 
@@ -115,7 +118,9 @@ def move(
     cycle : float
         First guess of a cycle's length, s.
     cycles : int, optional
-        End after so many troughs, or when no more come.
+        End after so many cycles, as `slip_cycles` counts them, or when no more come.
+    noise : float, optional
+        Standard deviation of the noise that a force will have, N, for this count.
     """
     step = times[1] - times[0]
     internal = len(states(slider.law))
@@ -126,7 +131,7 @@ def move(
     whole = max(int(REACH * cycle / step), FEWEST_SAMPLES)
     window = loaded = max(whole, int(first_loading(slider) / step))
     own = laws(slider.friction, jitter, random)
-    law, last = next(own), len(times) - 1
+    law, last, wanted = next(own), len(times) - 1, (cycles or 0) + SPARE
     while begin < last:
         end = min(begin + window, last)
         rig = slider.model_copy(update={"friction": law})
@@ -137,10 +142,15 @@ def move(
         trough = first_trough(rows[origin : end + 1, 0])
         if trough >= 0:
             begin = origin + trough
-            whole = max(int(REACH * trough), FEWEST_SAMPLES) if troughs else whole
+            if troughs:
+                mean = (begin - troughs[0]) / len(troughs)
+                whole = max(int(REACH * mean), FEWEST_SAMPLES)
             troughs.append(begin)
-            if len(troughs) == cycles:
-                break
+            if cycles is not None and len(troughs) >= wanted:
+                seen = len(slip_cycles(slider.k_x * rows[: begin + 1, 0], noise).peak)
+                if seen >= cycles:
+                    break
+                wanted = len(troughs) + cycles - seen
             origin, window, law = begin, whole, next(own)
         elif end - origin > LONGEST_WAIT * whole:  # no slip: sliding, or loading
             begin = origin = end

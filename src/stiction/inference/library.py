@@ -18,7 +18,7 @@ from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.features import BEND, FeatureGroup, features, parts
-from stiction.inference.jitter import Jitter, SampledMotion, first_loading, move
+from stiction.inference.jitter import SPARE, Jitter, SampledMotion, first_loading, move
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
 from stiction.recording.sensor import FASTEST, low_pass
@@ -31,12 +31,11 @@ Progress = Callable[[float], None] | None
 
 SIMULATIONS = 4000  # of a library, by default
 BLOCK = 32  # simulations that are stored together
-SPARE = 2  # cycles simulated beyond those that are used: the first begins from rest
 LONGEST_CYCLE = 4.0  # of the measured cycles: simulations with longer ones end without
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
 NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names of priors
 SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
-FORMAT = 6  # of stored simulations and of what is learned from them
+FORMAT = 7  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):
@@ -195,15 +194,17 @@ def synthesise(
     for conditions in plan.conditions:
         jitter = Jitter(spread, common, values.get("drift", 0.0) / conditions.cycles)
         rig = conditions.slider_of(slider)
-        wanted = conditions.cycles + SPARE
-        most = LONGEST_CYCLE * wanted * conditions.cycle + first_loading(rig)
+        wanted, noise = conditions.cycles, conditions.noise["force"].level
+        most = LONGEST_CYCLE * (wanted + SPARE) * conditions.cycle + first_loading(rig)
         times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
-        motion = move(rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted)
+        motion = move(
+            rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted, noise=noise
+        )
         channels = measure(conditions, rig, motion, values, random)
         values.pop("zero_drift", None)  # a zero drifts differently in each record
-        found = slip_cycles(channels["force"], conditions.noise["force"].level)
-        enough = min(len(found.peak), len(motion.troughs)) >= conditions.cycles  # not of noise
-        last = Cycles(*(each[-conditions.cycles :] for each in found))
+        found = slip_cycles(channels["force"], noise)
+        enough = min(len(found.peak), len(motion.troughs)) >= wanted  # not of noise
+        last = Cycles(*(each[-wanted:] for each in found))
         yield Synthetic(channels, last) if enough else None
 
 
