@@ -27,8 +27,10 @@ from stiction.inference.calibration import Learned, learn_or_read
 from stiction.inference.features import USED
 from stiction.inference.library import Library, build, features_from, plan
 from stiction.inference.observation import Conditions, Noise
+from stiction.inference.posterior import RARE
 from stiction.inference.priors import Rig, Uniform
 from stiction.inference.regression_abc import Sample, quantiles, rank
+from stiction.inference.summary import FeatureSummary, nearest, outlier_factor
 from stiction.recording.sensor import LowPass
 
 Floats = NDArray[np.float64]
@@ -83,6 +85,7 @@ class Trial(NamedTuple):
     inside: NDArray[np.bool_]
     ranks: Floats
     widths: Floats  # standard deviation of the logarithm of each parameter
+    unlike: float  # share of the records that a fit would call unlike the rig's
     seconds: float  # for all records
 
 
@@ -127,7 +130,16 @@ def compare(known: Library, learned: Learned, unseen: Library, features: Floats)
         pairs = zip(sample.scores.T, truth, strict=True)
         ranks.append([rank(each, sample.weights, its) for each, its in pairs])
         widths.append([spread(known, each, sample, i) for i, each in enumerate(names)])
-    return Trial(names, np.array(inside), np.array(ranks), np.array(widths), seconds)
+    unlike = share_unlike(learned.summary, features)
+    return Trial(names, np.array(inside), np.array(ranks), np.array(widths), unlike, seconds)
+
+
+def share_unlike(summary: FeatureSummary, features: Floats) -> float:
+    """Return the share of records that a fit calls unlike those of the rig."""
+    apart = nearest(summary.scores, summary.scores)
+    own = outlier_factor(summary.scores, summary.scores, apart)
+    its = outlier_factor(summary.standard.scores(features), summary.scores, apart)
+    return float(((own > its[:, None]).mean(axis=1) < RARE).mean())
 
 
 def spread(known: Library, name: str, sample: Sample, index: int) -> float:
@@ -140,7 +152,8 @@ def spread(known: Library, name: str, sample: Sample, index: int) -> float:
 
 
 def report(trial: Trial) -> None:
-    """Print a line for each parameter."""
+    """Print a line for each parameter, and how many records are called unlike the rig's."""
+    print(f"    called unlike    {100 * trial.unlike:5.1f} %")
     for i, name in enumerate(trial.names):
         if name in SHOWN or name in ("gain", "zero", "zero_drift"):
             p = kstest(trial.ranks[:, i], "uniform").pvalue

@@ -96,7 +96,8 @@ class Fit:
     scores : ndarray
         (n, p), the draws of `data` as normal scores.
     farther : float
-        Share of the simulated records that lie farther from the others than the measured one.
+        Share of the simulated records that stand farther apart from those around them than the
+        measured one does.
     trend : Trend
         p-values of a trend of peaks and of drops from cycle to cycle, in all records together.
     """
@@ -200,10 +201,10 @@ class Fit:
         if self.farther < RARE:
             found.append(
                 "The records are not like those of the rig as described, whatever the uncertain "
-                f"values are: {percent(self.farther)} of the simulated records lie as far from the "
-                f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
-                "explained: is it this rig's record, are drive and load as stated, does the load "
-                "cell lie along the axis that the rig states?"
+                f"values are: {percent(self.farther)} of the simulated records stand as far apart "
+                f"from those around them, {percent(RARE)} are needed. The values below mean "
+                "nothing until that is explained: is it this rig's record, are drive and load as "
+                "stated, does the load cell lie along the axis that the rig states?"
             )
         if self.beyond:
             names = ", ".join(self.beyond)

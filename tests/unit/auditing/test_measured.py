@@ -139,7 +139,7 @@ def test_a_rig_without_priors_cannot_be_held_against_a_record():
 
 
 def test_what_looks_unlike_the_library_is_no_ground_for_a_verdict(found):
-    """The same fit of a record farther from the library than 99 % of it."""
+    """The same fit of a record that stands farther apart than 99 % of the library."""
     seen = found.measured
     far = replace(seen, fit=replace(seen.fit, farther=0.01))
     assert seen.like
