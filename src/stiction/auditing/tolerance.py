@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.robust import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.auditing.prediction import predict
 from stiction.auditing.progress import Progress, silent

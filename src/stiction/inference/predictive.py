@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.robust import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.inference.cycles import Cycles
 from stiction.inference.library import Plan, Synthetic, synthesise

@@ -11,7 +11,7 @@ from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import error_of_few
+from stiction.analysis.signals.correlated_noise import error_of_few
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.quantity_text import percent

@@ -8,7 +8,8 @@ import numpy as np
 
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
-from stiction.analysis.signals.robust import correlation_time, error_of_few, part_means
+from stiction.analysis.signals.robust import part_means
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats, xr
 
 SURE = 4.0  # standard errors
@@ -55,12 +56,9 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
 
 def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
     """Return the slope of a line, and its standard error; neighbours may deviate alike."""
-    elapsed = at - at.mean()
-    line = np.polyfit(elapsed, middle, 1)
-    rate, left = float(line[0]), middle - np.polyval(line, elapsed)
-    alike = correlation_time(left)
-    error = (alike * left @ left / max(len(at) - 2, 1) / (elapsed @ elapsed)) ** 0.5
-    return rate, error_of_few(float(error), len(at) / alike - 2.0)
+    elapsed = at - at.mean()  # of times from 1970 rounding leaves no error
+    found = line(elapsed, middle)
+    return found.slope, found.correlated_error(elapsed, middle)
 
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:

@@ -24,14 +24,9 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.motion.rest import comes_to_rest
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import mean_and_spread, statistics
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import (
-    MEANS_OF_RECORD,
-    mean_and_spread,
-    part_means,
-    part_starts,
-    statistics,
-)
+from stiction.analysis.signals.robust import MEANS_OF_RECORD, part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import TINY, Floats, xr
 from stiction.recording.noise import rounding_error, white_noise

@@ -15,14 +15,14 @@ from stiction.analysis.motion.drift import Drift, find_drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
-from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import (
+from stiction.analysis.signals.correlated_noise import (
     correlation_time,
     error_of_few,
-    largest_magnitude,
     standard_error,
-    trimmed_mean,
 )
+from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import TINY, Floats, xr
 from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
@@ -132,8 +132,8 @@ def _loading_rates(
         if steady_change(slopes) is None:
             return [whole]
         begin = starts[0]  # times may count from 1970, whose squares leave no digits
-        line = np.polyfit(starts - begin, slopes, 1)  # from the first sample to the last
-        low, high = np.sort(np.polyval(line, record.time[[0, -1]] - begin))
+        change = line(starts - begin, slopes)  # from the first sample to the last
+        low, high = np.sort(change.offset + change.slope * (record.time[[0, -1]] - begin))
         passes = SLOWER * stated < high and low < FASTER * stated
         return [whole._replace(stated=nan) if passes else whole]
     at = [-inf, *(float(starts[place.start]) for place in places[1:]), inf]
@@ -262,15 +262,15 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
     if record.drive_position is None or len(record) < FEW:
         return None
     elapsed = record.time - record.time[0]  # of times from 1970 rounding leaves no error
-    line = np.polyfit(elapsed, record.drive_position, 1)
-    found, stated = abs(float(line[0])), record.drive_velocity or nan
+    way = line(elapsed, record.drive_position)
+    found, stated = abs(way.slope), record.drive_velocity or nan
     how = "slope of the drive's displacement"
     speeds, net, reach = _speeds_of_parts(record.time, record.drive_position)
     if min(found * record.duration, net) < TO_AND_FRO * reach:
         found, how = float(np.median(speeds)), "median speed of its displacement, to and fro"
         error = float(speeds.std()) / len(speeds) ** 0.5
     else:
-        left = record.drive_position - np.polyval(line, elapsed)
+        left = way.deviations(elapsed, record.drive_position)
         error = standard_error(left) / float(elapsed.std())
     return StatedQuantity("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
 
@@ -286,9 +286,10 @@ def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float, flo
     slopes, middles, left = [], [], []
     for t, x in zip(times, positions, strict=True):
         from_middle = t - t.mean()
-        slopes.append(float(from_middle @ x / (from_middle @ from_middle)))
+        way = line(from_middle, x)
+        slopes.append(way.slope)
         middles.append(float(x.mean()))
-        left.append(x - middles[-1] - slopes[-1] * from_middle)
+        left.append(way.deviations(from_middle, x))
     rest = np.concatenate(left)
     noise = float(rest.std()) * (correlation_time(rest) * parts / len(rest)) ** 0.5
     reach = float(np.ptp(middles)) - NOISE * noise

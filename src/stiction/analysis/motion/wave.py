@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import TINY, Complex, Floats
 
 FEWEST_CYCLES, TURNS, PER_TURN = (
@@ -67,7 +68,8 @@ def _strongest_frequency(at: Floats, values: Floats) -> float | None:
 
 def _without_line(at: Floats, values: Floats) -> Floats:
     """Return values less the straight line through them."""
-    return np.asarray(values - np.polyval(np.polyfit(at - at[0], values, 1), at - at[0]))
+    elapsed = at - at[0]
+    return line(elapsed, values).deviations(elapsed, values)
 
 
 def _fit_sine(turned: Complex, values: Floats) -> tuple[complex, float]:

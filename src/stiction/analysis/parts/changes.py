@@ -13,7 +13,7 @@ import numpy as np
 from stiction.analysis.motion.changes.cycles import parts_of
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.parts.wording import number
-from stiction.analysis.signals.robust import statistics
+from stiction.analysis.signals.correlated_noise import statistics
 from stiction.arrays import Floats, xr
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error

@@ -3,25 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import hypot, inf, isclose, isnan, nan
+from math import inf, isclose, isnan, nan
 from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.protocols.settling import (
-    RESTS,
-    SETTLED,
-    CorrelatedNoise,
-    SettledPart,
-    TravelTrend,
-    common_trend,
-    has_settled,
-    line,
-    noise_about,
-    settled_part,
-)
+from stiction.analysis.protocols.settling import RESTS, SETTLED, has_settled
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats, Indices
 from stiction.drive import (
     ConstantLoad,
@@ -41,9 +31,6 @@ from stiction.trajectory import Trajectory
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 BESIDE = 1e-3  # of the mean interval between samples: one so near to an end is at the end
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
-SLOPE = 12.0**0.5  # error of a rise in a straight line, over that of its mean
-TAIL_MEAN = 0.5  # mean of what is left of an evolution in a part, over its first value, at most
-NO_TREND, NO_NOISE = TravelTrend(), CorrelatedNoise()
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 LISTED = 3  # times that a sentence lists
 
@@ -79,40 +66,6 @@ class ConstantStretch(NamedTuple):
 def alike(one: float, two: float) -> bool:
     """Return whether two velocities or loads are equal, but for rounding."""
     return isclose(one, two, rel_tol=ALIKE)
-
-
-class SteadyLevels(NamedTuple):
-    """Steady friction of the stretches of a test, and the trend that they have in common.
-
-    Attributes
-    ----------
-    trend : TravelTrend
-        Over the travel of the drive.
-    level, error, travel : dict
-        Of each stretch: mean friction along the drive in its settled part, its standard error, and
-        how far the drive has come there since the stretch began, m.
-    """
-
-    trend: TravelTrend
-    level: dict[ConstantStretch, float]
-    error: dict[ConstantStretch, float]
-    travel: dict[ConstantStretch, float]
-
-    def at_jump(self, stretch: ConstantStretch, time: float) -> float:
-        """Return the level of a stretch with the trend as it is at one of its ends."""
-        return self.level[stretch] - self.trend.slope * self._since(stretch, time)
-
-    def error_of_difference(self, one: ConstantStretch, two: ConstantStretch) -> float:
-        """Return the standard error of the difference of two levels at the jump between them."""
-        by_trend = self.trend.error * self.apart(one, two)
-        return hypot(self.error[one], self.error[two], by_trend)
-
-    def apart(self, one: ConstantStretch, two: ConstantStretch) -> float:
-        """Return the travel from one level to the next, m."""
-        return self._since(two, two.start) - self._since(one, two.start)
-
-    def _since(self, stretch: ConstantStretch, time: float) -> float:
-        return self.travel[stretch] - abs(stretch.velocity) * (time - stretch.start)
 
 
 class FrictionTest(NamedTuple):
@@ -171,67 +124,6 @@ class FrictionTest(NamedTuple):
         near = self.late(stretch)
         return float(self.mu[near].mean()) if len(near) else nan
 
-    def levels(self) -> SteadyLevels:
-        """Return steady friction of all stretches in which the mass slides.
-
-        A run has no trend, and its levels are those of the ends of stretches.
-        """
-        sliding = [each for each in self.stretches if self.is_sampled(each) and self.slides(each)]
-        ends = [self._part(each, self.late(each)) for each in sliding]
-        if self.law is not None:
-            return self._levels(sliding, ends, NO_TREND)
-        noise = noise_about([each.left for each in ends])
-        rough = self._trend(sliding, ends).slope
-        parts = [self._part(each, self.within(*each[:2]), rough, noise) for each in sliding]
-        return self._levels(sliding, parts, self._trend(sliding, parts))
-
-    def _part(
-        self,
-        stretch: ConstantStretch,
-        at: Indices,
-        slope: float = 0.0,
-        noise: CorrelatedNoise = NO_NOISE,
-    ) -> SettledPart:
-        """Return the settled part of some samples of a stretch, to its end."""
-        travel = abs(stretch.velocity) * (self.time[at] - stretch.start)
-        late = len(self.late(stretch))
-        return settled_part(travel, stretch.way * self.mu[at], late, slope, noise)
-
-    def _errors(self, sliding: list[ConstantStretch], parts: list[SettledPart]) -> list[float]:
-        """Return the standard errors of levels without tails: by a part itself, and by all.
-
-        A short part does not show noise that lasts longer than it.
-        """
-        noise = noise_about([each.left for each in parts])
-        errors = []
-        for each, part in zip(sliding, parts, strict=True):
-            count = len(part.left)
-            error = max(noise.error(count), noise_about([part.left]).own_error(count))
-            errors.append(hypot(error, self.off / each.load) if count > 1 else nan)
-        return errors
-
-    def _trend(self, sliding: list[ConstantStretch], parts: list[SettledPart]) -> TravelTrend:
-        """Return the trend that settled parts have in common."""
-        # of a line, the slope times the length is as uncertain as its mean times sqrt(12)
-        errors = [
-            hypot(SLOPE * error, part.tail) / part.length if part.length > 0.0 else nan
-            for error, part in zip(self._errors(sliding, parts), parts, strict=True)
-        ]
-        return common_trend(np.array([each.slope for each in parts]), np.array(errors))
-
-    def _levels(
-        self, sliding: list[ConstantStretch], parts: list[SettledPart], trend: TravelTrend
-    ) -> SteadyLevels:
-        """Return the levels of settled parts, and their errors."""
-        errors = self._errors(sliding, parts)
-        pairs = list(zip(sliding, parts, errors, strict=True))
-        return SteadyLevels(
-            trend,
-            {each: part.level for each, part, _ in pairs},
-            {each: hypot(error, TAIL_MEAN * part.tail) for each, part, error in pairs},
-            {each: part.centre for each, part, _ in pairs},
-        )
-
     def is_sampled(self, stretch: ConstantStretch) -> bool:
         """Return whether a stretch, and its end, have enough samples to see a change there."""
         return len(self.within(*stretch[:2])) >= FEWEST_SAMPLES and len(self.late(stretch)) > 0
@@ -247,11 +139,14 @@ class FrictionTest(NamedTuple):
         loading = stretch.way * line(self.time[late], self.lag[late]).slope
         return loading < RESTS * abs(stretch.velocity)
 
-    def has_settled(self, stretch: ConstantStretch, trend: TravelTrend = NO_TREND) -> bool:
-        """Return whether friction, less a trend that is known, has settled in a stretch's end."""
+    def has_settled(self, stretch: ConstantStretch, slope: float = 0.0) -> bool:
+        """Return whether friction has settled in a stretch's end.
+
+        From it a known change with the drive's travel, its `slope` (1/m), is subtracted.
+        """
         at, late = self.within(*stretch[:2]), self._latest(stretch)
-        slope = stretch.velocity * trend.slope if trend.stands_out else 0.0
-        return has_settled(self.time[at], self.mu[at] - slope * self.time[at], len(late))
+        rate = stretch.velocity * slope if slope else 0.0  # the velocity may be unknown
+        return has_settled(self.time[at], self.mu[at] - rate * self.time[at], len(late))
 
     def _latest(self, stretch: ConstantStretch) -> Indices:
         """Return the samples in the end of a stretch, but at least as many as show a change."""

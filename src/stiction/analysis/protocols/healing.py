@@ -19,8 +19,9 @@ from stiction.analysis.protocols.friction_test import (
     say_left_out,
 )
 from stiction.analysis.protocols.peaks import Peak, peaks_of_run, peaks_of_samples
-from stiction.analysis.protocols.settling import ROUNDED, StraightLine, trend
+from stiction.analysis.protocols.settling import ROUNDED
 from stiction.analysis.record import Record
+from stiction.analysis.signals.straight_line import StraightLine, line_of_few
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
@@ -196,7 +197,7 @@ def _line(holds: Floats, gains: Floats, errors: Floats) -> StraightLine:
     known = np.isfinite(errors)
     if not known.any():
         return StraightLine(nan, nan)
-    return trend(np.log10(holds[known]), gains[known], errors[known])
+    return line_of_few(np.log10(holds[known]), gains[known], errors[known])
 
 
 def _fault(

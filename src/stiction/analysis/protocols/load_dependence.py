@@ -16,9 +16,9 @@ from stiction.analysis.protocols.friction_test import (
     say_left_out,
     without_harmonics,
 )
-from stiction.analysis.protocols.settling import trend
 from stiction.analysis.record import Record, as_record
-from stiction.analysis.signals.robust import statistics
+from stiction.analysis.signals.correlated_noise import statistics
+from stiction.analysis.signals.straight_line import line_of_few
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
 from stiction.errors import ResultError
@@ -121,7 +121,7 @@ def load_dependence(
         few = "fewer than two levels of the load are held while the mass slides"
         raise ResultError(" ".join([f"{few}; see st.protocols.load_ramp, with hold.", *left_out]))
     loads, forces, errors = np.array(rows).T
-    found = trend(loads, forces, errors)
+    found = line_of_few(loads, forces, errors)
     return LoadDependence(
         loads, forces, found.slope, found.slope_error, found.offset, left_out, found.offset_error
     )

@@ -9,8 +9,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.protocols.friction_test import ConstantStretch, FrictionTest
-from stiction.analysis.protocols.settling import ROUNDED, line
+from stiction.analysis.protocols.settling import ROUNDED, SETTLED
 from stiction.analysis.quadrature import panels, states_at
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 from stiction.recording.noise import ORDER, white_noise
 from stiction.trajectory import Trajectory
@@ -43,7 +44,7 @@ def peaks_of_samples(test: FrictionTest, slides: Sequence[ConstantStretch]) -> l
 def _sampled_peak(mu: Floats) -> Peak:
     """Return the peak of one slide, which begins after the first sample."""
     top = 1 + int(mu[1:].argmax())
-    late = mu[-max(len(mu) // 5, 1) :]
+    late = mu[-max(int(SETTLED * len(mu)), 1) :]
     peak, level = float(mu[top]), float(late.mean())
     noise = max(white_noise(mu) if len(mu) > ORDER else 0.0, _scatter(late))
     fall, unseen = peak - level, max(ROUNDED * abs(peak), 2.0 * CHANCE * noise)

@@ -11,7 +11,6 @@ import numpy as np
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
     FrictionTest,
-    SteadyLevels,
     alike,
     friction_test,
     in_list,
@@ -20,8 +19,8 @@ from stiction.analysis.protocols.friction_test import (
 )
 from stiction.analysis.protocols.inversion import Inversion, StepData
 from stiction.analysis.protocols.law_choice import FittedLaw, choose
-from stiction.analysis.protocols.settling import TravelTrend
 from stiction.analysis.protocols.spring_slider import Law, SpringSlider
+from stiction.analysis.protocols.steady_levels import SteadyLevels, TravelTrend, steady_levels
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -243,7 +242,7 @@ def velocity_steps(
     """
     test = friction_test(source, program)
     jumps, faults = [], []
-    levels = test.levels()
+    levels = steady_levels(test)
     for one, two in test.successions():
         if one.velocity * two.velocity > 0.0 and not alike(one.velocity, two.velocity):
             why = _fault(test, one, two, levels.trend)
@@ -295,7 +294,7 @@ def _fault(
         return "The mass does not slide before the step"
     if not test.slides(two):
         return "The mass does not slide after the step"
-    if not test.has_settled(one, trend):
+    if not test.has_settled(one, trend.known_slope):
         return "Friction has not settled before the step"
     return ""
 
@@ -349,7 +348,7 @@ def _step(
 ) -> VelocityStep:
     """Return a step with the fit of a law."""
     before, by = levels.at_jump(one, two.start), log(data.rig.ratio)
-    settled = test.has_settled(two, levels.trend)
+    settled = test.has_settled(two, levels.trend.known_slope)
     steady = data.after if settled else nan
     up = 1.0 if by > 0.0 else -1.0
     lag = test.lag[test.within(two.start, two.end)]

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.robust import inner_product
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 from stiction.text.quantity_text import percent
 
@@ -130,7 +130,7 @@ def even_grid(time: Floats) -> EvenGrid | None:
     if plain.exact:
         return plain
     number = np.arange(n, dtype=np.float64)
-    start, step = _fit_line(number, time)
+    step, start = line(number, time)[:2]
     each = EvenGrid(time, start, step, n)
     if np.abs(each.places - number).max() < OWN:  # a clock that jitters, or times that are rounded
         return each
@@ -162,18 +162,10 @@ def _fit_grid(time: Floats) -> tuple[float, float]:
             number = np.rint(place[near])
             if number[0] == number[-1]:
                 return start, step
-            start, step = _fit_line(number, part[near])
+            step, start = line(number, part[near])[:2]
         if around >= len(time):
             return start, step
         around *= 2
-
-
-def _fit_line(number: Floats, time: Floats) -> tuple[float, float]:
-    """Return start and step of the line through times by number."""
-    mean, middle = float(number.mean()), float(time.mean())
-    spread = number - mean
-    step = inner_product(spread, time - middle) / inner_product(spread, spread)
-    return middle - step * mean, step
 
 
 def why_not(grid: EvenGrid | None) -> str:

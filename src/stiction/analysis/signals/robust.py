@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats, Indices
 
-CORRELATED = 8  # values: of fewer no correlation is known
 CUT = 0.1  # share of the values left out at each end
 FAR = 8.0  # times the typical step from sample to sample
 FARTHER = 2.0  # times the motion on either side: a fast movement is not an outlier
@@ -18,7 +17,6 @@ LONGEST_GROUP = 8  # samples in a group from first to last, including correct on
 BESIDE = 3  # samples on either side for the motion of the signal; one of them may be wild
 PASSES = 4  # a group beside another is seen after that one is removed
 MEANS_OF_RECORD = 400  # a longer one is not resolved by its samples but by these
-BOUNDS_95 = (0.025, 0.975)  # quantiles, between which 95 % of all values lie
 MOST = 0.05  # of the samples: if there are more, they are the signal
 
 
@@ -66,60 +64,6 @@ def part_means(values: Floats, parts: int) -> Floats:
     """Return the means of equal parts of some values, see `part_starts`."""
     starts = part_starts(len(values), parts)
     return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
-
-
-def correlation_time(values: Floats) -> float:
-    """Return how many values in succession count as one independent value: 1 at least.
-
-    Twice the sum of the autocorrelations, less 1, as far as pairs of them are positive (C. J.
-    Geyer, Stat. Sci. 7, 473 (1992)). Values that alternate count as independent, and so do a few.
-
-    >>> correlation_time(np.tile([1.0, -1.0], 10))
-    1.0
-    """
-    count, left = len(values), values - values.mean() if len(values) else values
-    if count < CORRELATED or not left.any():
-        return 1.0
-    from scipy.fft import irfft, rfft
-
-    power = np.abs(rfft(left, 2 * count)) ** 2
-    share = irfft(power)[: count // 2]
-    share = share[: len(share) // 2 * 2].reshape(-1, 2).sum(axis=1) / share[0]
-    ends = np.flatnonzero(share <= 0.0)
-    return max(2.0 * float(share[: ends[0] if len(ends) else None].sum()) - 1.0, 1.0)
-
-
-def mean_and_spread(values: Floats) -> tuple[float, float]:
-    """Return mean and standard deviation of values."""
-    return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
-
-
-def statistics(values: Floats) -> tuple[float, float, float]:
-    """Return mean, standard error and spread of values, of which neighbours may be alike.
-
-    `error_of_few` makes that of few values larger.
-    """
-    mean, spread = mean_and_spread(values)
-    independent = len(values) / correlation_time(values)
-    return mean, float(error_of_few(spread / independent**0.5, independent - 1.0)), spread
-
-
-def error_of_few(error: float, freedom: float) -> float:
-    """Return a standard error of which two hold 95 % where few values tell it.
-
-    The quantile of Student's t with so many degrees of freedom, over two, and 1 at least.
-
-    >>> round(error_of_few(1.0, 2), 2), error_of_few(1.0, 1000)
-    (2.15, 1.0)
-    """
-    from scipy.special import stdtrit
-
-    return error * max(1.0, 0.5 * float(stdtrit(max(freedom, 1.0), BOUNDS_95[1])))
-
-
-def standard_error(values: Floats) -> float:
-    """Return the standard error of the mean of values, of which neighbours may be alike."""
-    return statistics(values)[1]
 
 
 def uniform_mean(values: Floats, length: int) -> Floats:

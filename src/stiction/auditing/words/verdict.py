@@ -14,7 +14,7 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSITIONAL,
     UNDETERMINED,
 )
-from stiction.analysis.signals.robust import statistics
+from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.simulated_test import (
     OSCILLATES,
     SLIDES,

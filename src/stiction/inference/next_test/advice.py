@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.special import ndtr
 
-from stiction.analysis.signals.robust import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats, xr
 from stiction.inference.library import Plan, have_cycles
 from stiction.inference.next_test.further import AGAIN

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.robust import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, LINES, PAGE, style

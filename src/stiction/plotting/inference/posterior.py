@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.robust import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import xr
 from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style

@@ -6,8 +6,9 @@ from tests.drawn import inside
 
 import stiction as st
 from stiction.analysis.measured_line import strongest_line
-from stiction.analysis.signals.even_grid import _fit_line, even_grid, why_not
+from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.analysis.signals.hum import narrow_lines
+from stiction.analysis.signals.straight_line import line
 
 N, STEP = 10_000, 1e-4
 
@@ -151,4 +152,4 @@ def test_the_grid_is_the_line_of_least_squares_through_the_times(step, jitter):
     number = np.arange(40_000.0)
     time = np.sort(step * (number + jitter * np.sin(number**2))) + 7.0
     slope, start = np.polyfit(number, time, 1)
-    assert _fit_line(number, time) == pytest.approx((start, slope), rel=1e-12)
+    assert line(number, time)[:2] == pytest.approx((slope, start), rel=1e-12)

@@ -10,8 +10,9 @@ import numpy as np
 
 from stiction.analysis.motion.changes.sliding import NO_LOAD
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import standard_error
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import median, part_means, standard_error
+from stiction.analysis.signals.robust import median, part_means
 from stiction.arrays import Floats
 from stiction.recording.noise import rounding_error, white_noise
 

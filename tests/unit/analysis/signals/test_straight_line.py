@@ -1,0 +1,27 @@
+"""Straight lines, and their errors where neighbours deviate alike."""
+
+import numpy as np
+import pytest
+
+from stiction.analysis.signals.correlated_noise import correlation_time
+from stiction.analysis.signals.straight_line import line
+
+
+def test_numbers_and_errors_are_those_of_the_normal_equations():
+    x = np.linspace(3.0, 5.0, 40)
+    y = 2.0 - 0.7 * x + 0.01 * np.cos(40.0 * x)
+    found = line(x, y)
+    (slope, offset), covariance = np.polyfit(x, y, 1, cov=True)
+    assert (found.slope, found.offset) == pytest.approx((slope, offset), rel=1e-12)
+    assert found[2:] == pytest.approx(np.sqrt(np.diag(covariance)), rel=1e-10)
+
+
+def test_alike_neighbours_make_the_error_larger():
+    """Each value stands ten times in a row: as many values tell the line as are different."""
+    values = np.random.default_rng(7).standard_normal(400)
+    x = np.linspace(-1.0, 1.0, 4000)
+    y = np.repeat(values, 10)
+    found = line(x, y)
+    alike = correlation_time(found.deviations(x, y))
+    assert alike == pytest.approx(10.0, rel=0.1)
+    assert found.correlated_error(x, y) == pytest.approx(found.slope_error * alike**0.5)
