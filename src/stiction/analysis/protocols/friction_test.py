@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from math import inf, isclose, isnan, nan
+from math import inf, isclose, nan
 from typing import NamedTuple
 
 import numpy as np
@@ -32,7 +31,6 @@ ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 BESIDE = 1e-3  # of the mean interval between samples: one so near to an end is at the end
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
-LISTED = 3  # times that a sentence lists
 
 
 class ConstantStretch(NamedTuple):
@@ -272,22 +270,3 @@ def without_harmonics(drive: ConstantVelocity | DriveProgram) -> ConstantVelocit
     if isinstance(drive, ConstantVelocity):
         return drive
     return DriveProgram(velocity=drive.velocity, program=drive.program, repeat=drive.repeat)
-
-
-def in_list(texts: Sequence[str]) -> str:
-    """Return the first few of some texts in a row, and the number of the others."""
-    more = len(texts) - LISTED
-    return ", ".join(texts[:LISTED]) + (f" and {more} more" if more > 0 else "")
-
-
-def number_text(value: float, spec: str) -> str:
-    """Return a number as text, formatted so; "none" if it is NaN."""
-    return "none" if isnan(value) else format(value, spec)
-
-
-def say_left_out(faults: Iterable[tuple[str, str]]) -> tuple[str, ...]:
-    """Return a sentence for each reason why something is left out: of all (where, why)."""
-    places: dict[str, list[str]] = {}
-    for where, why in faults:
-        places.setdefault(why, []).append(where)
-    return tuple(f"{why}: left out at {in_list(where)}." for why, where in places.items())

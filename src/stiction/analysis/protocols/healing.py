@@ -14,9 +14,6 @@ from stiction.analysis.protocols.friction_test import (
     FrictionTest,
     alike,
     friction_test,
-    in_list,
-    number_text,
-    say_left_out,
 )
 from stiction.analysis.protocols.peaks import Peak, peaks_of_run, peaks_of_samples
 from stiction.analysis.protocols.settling import ROUNDED
@@ -25,6 +22,7 @@ from stiction.analysis.signals.straight_line import StraightLine, line_of_few
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
+from stiction.text.lists import in_list, number_text, say_left_out
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory

@@ -8,19 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import (
-    FrictionTest,
-    friction_test,
-    in_list,
-    number_text,
-    without_harmonics,
-)
+from stiction.analysis.protocols.friction_test import FrictionTest, friction_test, without_harmonics
 from stiction.analysis.record import Record
 from stiction.analysis.signals.reversals import taken_out
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion
+from stiction.text.lists import in_list, number_text
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory

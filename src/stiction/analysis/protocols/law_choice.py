@@ -6,10 +6,11 @@ from collections.abc import Sequence
 from math import isnan
 from typing import NamedTuple
 
-from stiction.analysis.protocols.friction_test import FrictionTest, in_list
+from stiction.analysis.protocols.friction_test import FrictionTest
 from stiction.analysis.protocols.inversion import Inversion, StepData, invert, unknown
 from stiction.analysis.protocols.spring_slider import Law
 from stiction.friction.laws import RateStateAgeing2, RateStateSlip2
+from stiction.text.lists import in_list
 from stiction.text.units import in_words
 
 CERTAIN = 13.8  # difference of sums of squares, in variances: likelihoods differ by a thousand

@@ -13,7 +13,6 @@ from stiction.analysis.protocols.friction_test import (
     alike,
     of_record,
     of_run,
-    say_left_out,
     without_harmonics,
 )
 from stiction.analysis.record import Record, as_record
@@ -22,6 +21,7 @@ from stiction.analysis.signals.straight_line import line_of_few
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
 from stiction.errors import ResultError
+from stiction.text.lists import say_left_out
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory

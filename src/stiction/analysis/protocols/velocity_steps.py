@@ -13,9 +13,6 @@ from stiction.analysis.protocols.friction_test import (
     FrictionTest,
     alike,
     friction_test,
-    in_list,
-    number_text,
-    say_left_out,
 )
 from stiction.analysis.protocols.inversion import Inversion, StepData
 from stiction.analysis.protocols.law_choice import FittedLaw, choose
@@ -25,6 +22,7 @@ from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
+from stiction.text.lists import in_list, number_text, say_left_out
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
