@@ -14,6 +14,7 @@ from stiction.analysis.motion.doubts.warnings import (
     warnings_of_run,
     why_no_friction,
 )
+from stiction.analysis.motion.drift import shown_drift
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import (
     LOADING_RATE,
@@ -80,9 +81,10 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     cycles, turns = found.cycles, _turns_round(None, regime)
     none, apart = cycles.isel(cycle=slice(0)), cycles_apart(cycles)
     friction = _friction(record, found, cycles.isel(cycle=~apart), regime, turns)
-    stated = compare_metadata(record, regime.kind, cycles)
+    drift = shown_drift(record, regime.kind, cycles)
+    stated = compare_metadata(record, regime.kind, cycles, drift)
     alike = none if turns else cycles  # those of two strokes are none
-    doubts = warnings(record, regime.kind, alike, friction, stated)
+    doubts = warnings(record, regime.kind, alike, friction, stated, drift)
     unreal = why_no_friction(friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)

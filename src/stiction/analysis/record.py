@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import pi, sqrt
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, Self
 
@@ -9,7 +10,7 @@ import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
-from stiction.analysis.signals.robust import inner_product
+from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
@@ -293,6 +294,13 @@ class Record(Described):
         return 1.0 / self.slider.natural_frequency_x if self.slider else None
 
     @property
+    def stated_period(self) -> float | None:
+        """Period of the mass on the spring alone, s, where both are stated: 2 pi (m/k)^1/2."""
+        if self.mass is None or self.stiffness is None:
+            return None
+        return 2.0 * pi * sqrt(self.mass / self.stiffness)
+
+    @property
     def drive_travel(self) -> Floats | None:
         """How far the drive has moved along the force, (n,), m, of a run whose drive varies."""
         return self._of_run and self._at_own_times(self._of_run.drive_travel)
@@ -346,12 +354,10 @@ class Record(Described):
         """
         if self.load is None or not self.normal_load or not np.ptp(self.load) > 0.0:
             return np.ones(len(self))
-        from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
-
         noise = white_noise(self.load) if len(self) > ORDER else 0.0
         wanted = (noise / (SHARP * float(self.load.mean()))) ** 2
         width = int(max(1.0, min(wanted, LONGEST_MEAN * len(self))))
-        load = uniform_filter1d(self.load, width, mode="nearest")
+        load = uniform_mean(self.load, width)
         return np.asarray(np.where(load > 0.0, load, np.nan) / self.normal_load)
 
     def load_variation(self) -> float:

@@ -11,7 +11,13 @@ from stiction.analysis.motion.vibration import COUPLED, OWN_PERIODS, irregularit
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
-from stiction.analysis.signals.robust import MEANS_OF_RECORD, inner_product, part_means, part_starts
+from stiction.analysis.signals.robust import (
+    MEANS_OF_RECORD,
+    inner_product,
+    part_means,
+    part_starts,
+    uniform_mean,
+)
 from stiction.analysis.signals.turning_points import turning_points
 from stiction.arrays import Floats
 
@@ -66,10 +72,8 @@ def _is_elsewhere(line: Line, table: CycleTable, record: Record) -> bool:
 
 def _is_own(line: Line, record: Record) -> bool:
     """Return whether a line is as quick as the mass on its spring, where both are stated."""
-    if record.mass is None or record.stiffness is None:
-        return False
-    own = 2.0 * np.pi * (record.mass / record.stiffness) ** 0.5
-    return bool(COUPLED <= 1.0 / (line.frequency * own) <= OWN_PERIODS)
+    own = record.stated_period
+    return own is not None and COUPLED <= 1.0 / (line.frequency * own) <= OWN_PERIODS
 
 
 def is_subharmonic(line: Line, table: CycleTable) -> bool:
@@ -101,13 +105,11 @@ def _means_over(force: Floats, length: int) -> Floats:
 
     There its first and last period are repeated, with the drift from one to the next.
     """
-    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
-
     first, second = force[:length], force[length : 2 * length]
     last, before = force[-length:], force[-2 * length : -length]
     early, late = second.mean() - first.mean(), last.mean() - before.mean()
     longer = np.concatenate([first - early, force, last + late])
-    return np.asarray(uniform_filter1d(longer, length, mode="nearest")[length:-length])
+    return uniform_mean(longer, length)[length:-length]
 
 
 def may_be_carried(frequency: float, duration: float, left: Floats, seen: CycleTable) -> bool:
@@ -174,20 +176,13 @@ def lasts_through_loading(line: Line, time: Floats, force: Floats) -> bool:
     enough = PERIODS / length * len(time)
     if not enough <= loaded <= len(time) - enough:
         return False
-    quick = _quick(force, max(round(len(time) / length), 1))
+    quick = force - uniform_mean(force, round(len(time) / length))
     before, after = (_amplitude(quick[part], line.values[part]) for part in _split(loaded))
     return min(before, after) >= AS_LARGE * max(before, after)
 
 
 def _split(at: int) -> tuple[slice, slice]:
     return slice(0, at), slice(at, None)
-
-
-def _quick(force: Floats, length: int) -> Floats:
-    """Return a force less its means over `length` samples."""
-    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
-
-    return np.asarray(force - uniform_filter1d(force, length, mode="nearest"))
 
 
 def _amplitude(force: Floats, line: Floats) -> float:

@@ -6,7 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycles import find_cycles
+from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import line
@@ -16,7 +18,7 @@ SURE = 4.0  # standard errors
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
 PARTS = 20  # number of means of a force without cycles, over its second half
 FEWEST_CYCLES = 4  # cycles that show a drift
-STEADY = 1.0  # of its rate, by which that of the two halves may differ
+LASTING = 1.0  # of its rate, by which that of the two halves may differ
 
 
 class Drift(NamedTuple):
@@ -61,6 +63,19 @@ def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
     return found.slope, found.correlated_error(elapsed, middle)
 
 
+def shown_drift(record: Record, kind: str, cycles: xr.Dataset) -> Drift | None:
+    """Return the steady drift of a force; None of a motion whose force does not show one.
+
+    A force that stays at several levels changes from one to the next.
+    """
+    if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
+        return None
+    drift = find_drift(record, cycles)
+    if not np.isfinite(drift.error) or (not cycles.sizes["cycle"] and levels(record)):
+        return None
+    return drift
+
+
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
     """Return whether both halves change at about this rate: a loading, once, is no drift."""
     if len(at) < 2 * FEWEST_CYCLES:
@@ -68,7 +83,7 @@ def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
     half = len(at) // 2
     halves = [_fit_line(at[part], middle[part]) for part in (slice(half), slice(half, None))]
     (first, first_error), (second, second_error) = halves
-    apart = SURE * float(np.hypot(first_error, second_error)) + STEADY * abs(rate)
+    apart = SURE * float(np.hypot(first_error, second_error)) + LASTING * abs(rate)
     return abs(first - second) < apart
 
 

@@ -25,6 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.reversals import smallest_legs
 from stiction.arrays import TINY, Floats, Indices
 
 HALF = 0.5  # of the swing: a larger fall is a cycle
@@ -182,11 +183,7 @@ def _below(values: Floats, share: float, most: float = np.inf) -> Hesitations:
     at, depth = [np.zeros(0, np.intp)], [np.zeros(0)]
     while len(points) > 4:
         legs = np.abs(np.diff(values[points]))
-        inner = legs[1:-1]
-        small = (
-            (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < share * swing(legs, most)[1:-1])
-        )
-        found = np.flatnonzero(small) + 1  # never two neighbours: one of them is not the smaller
+        found = smallest_legs(legs, share * swing(legs, most)[1:-1])
         if not len(found):
             break
         at.append(points[found])

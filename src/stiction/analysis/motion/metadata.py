@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import parts_of, steady_change
-from stiction.analysis.motion.changes.levels import levels
-from stiction.analysis.motion.drift import Drift, find_drift
-from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
+from stiction.analysis.motion.drift import Drift
+from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.correlated_noise import (
@@ -83,7 +82,9 @@ class StatedQuantity(NamedTuple):
         return self.low <= self.ratio <= self.high if isfinite(self.ratio) else None
 
 
-def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[StatedQuantity, ...]:
+def compare_metadata(
+    record: Record, kind: str, cycles: xr.Dataset, drift: Drift | None
+) -> tuple[StatedQuantity, ...]:
     """Return all that a record shows of its apparatus, beside what is stated.
 
     Parameters
@@ -94,8 +95,9 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Sta
         The kind of motion.
     cycles : Dataset
         From `stiction.analysis.find_cycles`.
+    drift : Drift or None
+        Of the force, if it shows one.
     """
-    drift = find_drift(record, cycles)
     found = (
         _stiffness_over_mass(record, kind, cycles),
         *_loading_rates(record, kind, cycles, drift),
@@ -103,13 +105,13 @@ def compare_metadata(record: Record, kind: str, cycles: xr.Dataset) -> tuple[Sta
         _normal_load(record),
         _transverse_frequency(record),
         _zero(record),
-        _drift(record, kind, cycles, drift),
+        _drift(cycles, drift),
     )
     return tuple(each for each in found if each is not None)
 
 
 def _loading_rates(
-    record: Record, kind: str, cycles: xr.Dataset, drift: Drift
+    record: Record, kind: str, cycles: xr.Dataset, drift: Drift | None
 ) -> list[StatedQuantity]:
     """Compare the rate of loading while the mass sticks with stiffness times drive velocity.
 
@@ -122,7 +124,7 @@ def _loading_rates(
     slopes, starts = cycles["stick_slope"].values, cycles["start"].values
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
     # a drift of the load cell seems to load the spring; one of friction does not
-    off = abs(drift.rate) if isfinite(drift.error) else 0.0
+    off = 0.0 if drift is None else abs(drift.rate)
     found, error = _typical(slopes)
     whole = StatedQuantity(
         LOADING_RATE, "N/s", found, hypot(error, off), stated, SLOWER, FASTER, BY_RISE
@@ -341,11 +343,9 @@ def _zero(record: Record) -> StatedQuantity | None:
     return StatedQuantity("zero", "N", read, spread, stated, nan, nan, "reading at its beginning")
 
 
-def _drift(record: Record, kind: str, cycles: xr.Dataset, drift: Drift) -> StatedQuantity | None:
+def _drift(cycles: xr.Dataset, drift: Drift | None) -> StatedQuantity | None:
     """Return the steady change of the force."""
-    if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
-        return None
-    if not isfinite(drift.error) or (not cycles.sizes["cycle"] and levels(record)):
+    if drift is None:
         return None
     how = "line through the middles of cycles" if cycles.sizes["cycle"] else "its second half"
     return StatedQuantity("drift of the force", "N/s", drift.rate, drift.error, nan, nan, nan, how)

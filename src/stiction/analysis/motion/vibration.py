@@ -9,6 +9,8 @@ import numpy as np
 
 from stiction.analysis.motion.course import MANY, ORDERED, order
 from stiction.arrays import Floats
+from stiction.drive.program import nominal_velocity
+from stiction.system.slider import Slider
 
 # Of the period of the mass on the spring along x alone: a vibration of a lesser one has the
 # transverse spring swing as well, as friction that turns couples them. On one spring friction only
@@ -46,6 +48,14 @@ class FastOscillation(NamedTuple):
     amplitude: float
     rate: float
 
+    @classmethod
+    def at_end(cls, slider: Slider, rate: Floats) -> FastOscillation:
+        """Return that of a run by its last rates (m/s) along the stiffer axis, of many periods."""
+        drive = abs(nominal_velocity(slider.motion) * slider.direction[stiffer_axis(slider)])
+        across = 0.5 * float(np.ptp(rate))
+        amplitude = across / drive if drive > 0.0 else 0.0
+        return cls(amplitude, min(slider.k_x, slider.k_y) * across)
+
     def goes_on(self, drop: float = 0.0, period: float = 1.0) -> bool:
         """Return whether it goes on by itself.
 
@@ -53,6 +63,11 @@ class FastOscillation(NamedTuple):
         spring in motion, too.
         """
         return self.amplitude > OSCILLATES and pi * drop / period <= self.rate
+
+
+def stiffer_axis(slider: Slider) -> int:
+    """Return the axis of the stiffer spring: 0 for x, 1 for y."""
+    return 1 if slider.k_y >= slider.k_x else 0
 
 
 def drop_spread(drop: Floats) -> float:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
-from stiction.analysis.signals.robust import inner_product, median
+from stiction.analysis.signals.robust import inner_product, median, uniform_mean
 from stiction.arrays import TINY, Complex, Floats
 
 PERIODS = 16  # of a line that a record has at least
@@ -97,12 +97,10 @@ def _measure_line(
     force: Floats, grid: EvenGrid, power: Floats, floor: Floats, width: float, at: int
 ) -> Line:
     """Return the line at a sample of the spectrum, with its harmonics, at the record's times."""
-    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
-
     cycles = _middle(power, at) * width  # per sample
     length = round(1.0 / cycles)
     even = grid.on(force)
-    slow = uniform_filter1d(even, length, mode="nearest")
+    slow = uniform_mean(even, length)
     quick, left = even - slow, force - _between(grid, slow)
     turn = np.exp(2j * np.pi * cycles * np.arange(len(even)))
     for _ in range(2):  # as it wanders

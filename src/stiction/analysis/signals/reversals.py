@@ -39,6 +39,23 @@ def extrema(values: Counts | Floats) -> Indices:
     return np.concatenate([[0], inner, [last]])
 
 
+def smallest_legs(legs: Counts | Floats, below: Floats | float) -> Indices:
+    """Return the inner legs that are no longer than both neighbours and shorter than a limit.
+
+    There are never two neighbours among them: one of these is not the smaller.
+
+    Parameters
+    ----------
+    legs : array
+        (n,) lengths.
+    below : array or float
+        The limit, one for all or (n - 2,).
+    """
+    inner = legs[1:-1]
+    small = (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < below)
+    return np.flatnonzero(small) + 1
+
+
 def taken_out(values: Counts | Floats, below: float = np.inf) -> tuple[Indices, NDArray[Any]]:
     """Take out reversals, the smallest of each neighbourhood first.
 
@@ -63,9 +80,7 @@ def taken_out(values: Counts | Floats, below: float = np.inf) -> tuple[Indices, 
     points, heights = extrema(values), [np.zeros(0, np.int64)]
     while len(points) > 3:
         legs = np.abs(np.diff(values[points]))
-        inner = legs[1:-1]
-        small = (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < below)
-        found = np.flatnonzero(small) + 1  # never two neighbours: one of them is not the smaller
+        found = smallest_legs(legs, below)
         if len(found) == 0:
             break
         if len(found) < FEW + len(points) // FEW:

@@ -17,7 +17,7 @@ from stiction.analysis.motion.rest import (
     still_shares,
     stops_with_drive,
 )
-from stiction.analysis.motion.vibration import FAST_PERIODS, FastOscillation
+from stiction.analysis.motion.vibration import FAST_PERIODS, FastOscillation, stiffer_axis
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
@@ -187,21 +187,14 @@ class ObservedRun:
         This is half the span of the elongation rate along the stiffer axis, at most 1 unless the
         slip reverses (Nakano & Popov, below Eq. (9)).
         """
-        slider = self.description.slider
-        drive = abs(self.nominal * slider.direction[self.stiffer])
-        return self.rate_across / drive if drive > 0.0 else 0.0
-
-    @property
-    def stiffer(self) -> int:
-        """The stiffer axis: 0 for x, 1 for y."""
-        slider = self.description.slider
-        return 1 if slider.k_y >= slider.k_x else 0
+        return self.fast_oscillation.amplitude
 
     @cached_property
-    def rate_across(self) -> float:
-        """Rate amplitude of the final fast oscillation, m/s."""
-        rate = self.solution.samples[self.fine :, 2 + self.stiffer]
-        return 0.5 * float(rate.max() - rate.min())
+    def fast_oscillation(self) -> FastOscillation:
+        """The final fast oscillation."""
+        slider = self.description.slider
+        rate = self.solution.samples[self.fine :, 2 + stiffer_axis(slider)]
+        return FastOscillation.at_end(slider, rate)
 
     @cached_property
     def regime(self) -> str:
@@ -210,13 +203,12 @@ class ObservedRun:
             return STUCK
         slider = self.description.slider
         drive = slider.k_x * abs(self.nominal * slider.direction[0])
-        oscillation, own = self.transverse_oscillation, 1.0 / slider.natural_frequency_x
-        across = min(slider.k_x, slider.k_y) * self.rate_across
+        own = 1.0 / slider.natural_frequency_x
         shares = self.rests, self.sticks
         stops = stops_with_drive(slider.motion, self.end, self.slip_speed)
         return kind_of(
             self.features, self.swings, self.end - self.start, self.until, drive,
-            FastOscillation(oscillation, across), own, *shares, stops,
+            self.fast_oscillation, own, *shares, stops,
         )  # fmt: skip
 
     def rests(self, cycles: SwingShapes) -> Floats:

@@ -96,7 +96,7 @@ def _is_driven(record: Record, up: Floats, down: Floats, height: float) -> bool:
         return False
     if record.stiffness is None:
         return False
-    if record.mass is not None:
-        return bool(min(rising, falling) > 2.0 * np.pi * (record.mass / record.stiffness) ** 0.5)
+    if (period := record.stated_period) is not None:
+        return min(rising, falling) > period
     rate = record.stiffness * (record.drive_velocity or 0.0)
     return all(ALMOST * rate < height / each < AT_MOST * rate for each in (rising, falling))

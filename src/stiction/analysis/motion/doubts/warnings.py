@@ -7,7 +7,6 @@ from math import log10, pi
 
 import numpy as np
 
-from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
@@ -23,7 +22,7 @@ from stiction.analysis.motion.doubts.sampling import (
     doubt_slips_between_samples,
     doubt_times,
 )
-from stiction.analysis.motion.drift import Drift, find_drift
+from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import (
     AT_REST,
@@ -32,7 +31,7 @@ from stiction.analysis.motion.metadata import (
     StatedQuantity,
     first_reading,
 )
-from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
+from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.hum import Line, of_mains
@@ -72,8 +71,12 @@ def warnings(
     cycles: xr.Dataset,
     friction: Friction,
     stated: Sequence[StatedQuantity],
+    drift: Drift | None,
 ) -> tuple[str, ...]:
-    """Return warnings as sentences, the most important first; `stated` is what was compared."""
+    """Return warnings as sentences, the most important first.
+
+    `stated` is what was compared, `drift` that of the force, if it shows one.
+    """
     wrong = {each.quantity: each for each in stated if each.agrees is False}
     found = [
         *_doubt_load(record),
@@ -89,7 +92,7 @@ def warnings(
         *doubt_few_samples(record, cycles),
         *doubt_filter(record, cycles),
         *doubt_drops_in_noise(record, kind, cycles),
-        *_drift(record, kind, cycles),
+        *_drift(record, drift),
         *_zero(record, friction, cycles),
         *doubt_times(record),
         *doubt_repeats(record),
@@ -280,15 +283,9 @@ def _remedy_of_mass(ratio: float, kind: str) -> str:
     return "check mass and stiffness"
 
 
-def _drift(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
-    if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
-        return
-    if record.load_variation() > VARIES:
-        return  # which the force follows
-    if not cycles.sizes["cycle"] and levels(record):
-        return
-    drift: Drift = find_drift(record, cycles)
-    if drift.stands_out:
+def _drift(record: Record, drift: Drift | None) -> Iterator[str]:
+    """Doubt the load cell where the force drifts, unless it follows a load that varies."""
+    if drift is not None and drift.stands_out and record.load_variation() <= VARIES:
         late = drift.start > float(record.time[0])
         where = f"from {in_words(drift.start, 's')} on" if late else "in all"
         yield (

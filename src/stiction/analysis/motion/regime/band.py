@@ -12,6 +12,7 @@ import numpy as np
 
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import spectrum
+from stiction.analysis.signals.robust import uniform_mean
 from stiction.arrays import TINY, Floats
 
 PERIODS = 16  # of the vibration that a record has at least
@@ -101,13 +102,11 @@ def remaining(time: Floats, force: Floats, frequency: float) -> float:
     frequency : float
         Of the vibration, Hz. What is slower is left out.
     """
-    from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]
-
     grid = even_grid(time)
     if grid is None or not grid.serves or len(force) < EIGHTHS:
         return 1.0
-    force, period = grid.on(force), max(round(1.0 / (frequency * grid.step)), 1)
-    quick = force - uniform_filter1d(force, period, mode="nearest")
+    force = grid.on(force)
+    quick = force - uniform_mean(force, round(1.0 / (frequency * grid.step)))
     size = np.array([np.sqrt(np.mean(part**2)) for part in np.array_split(quick, EIGHTHS)])
     size = np.maximum(size, NOTHING * size[0])
     earlier, later = np.triu_indices(EIGHTHS, 1)

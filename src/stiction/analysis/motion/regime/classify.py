@@ -40,7 +40,6 @@ from stiction.analysis.motion.vibration import (
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
-from stiction.drive.program import nominal_velocity
 from stiction.trajectory import Trajectory
 
 FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
@@ -164,13 +163,9 @@ def _fast_oscillation(record: Record) -> FastOscillation | None:
         return None
     if stops_with_drive(slider.motion, float(record.time[-1]), record.slip_speed):
         return None
-    stiffer = 1 if slider.k_y >= slider.k_x else 0
-    drive = abs(nominal_velocity(slider.motion) * slider.direction[stiffer])
     lasts = FAST_PERIODS / slider.natural_frequencies[1]
-    late = rate[int(np.searchsorted(record.time, record.time[-1] - lasts)) :]
-    across = 0.5 * float(np.ptp(late))
-    amplitude = across / drive if drive > 0.0 else 0.0
-    return FastOscillation(amplitude, min(slider.k_x, slider.k_y) * across)
+    first = int(np.searchsorted(record.time, record.time[-1] - lasts))
+    return FastOscillation.at_end(slider, rate[first:])
 
 
 def _is_over(record: Record, found: Swings) -> bool:

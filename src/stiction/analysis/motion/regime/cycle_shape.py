@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
+from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -197,8 +197,7 @@ def _evidence(record: Record, table: CycleTable, shapes: Shapes) -> dict[str, fl
         evidence["period_spread"] = float(table["period"].std() / table["period"].mean())
     if shapes.kind == HARMONIC and count > 1:
         evidence["drop_spread"] = drop_spread(table["drop"])
-    if record.mass is not None and record.stiffness is not None:
-        own = 2.0 * pi * sqrt(record.mass / record.stiffness)
+    if (own := record.stated_period) is not None:
         evidence["natural_period"] = table.median("period") / own
     return evidence
 
