@@ -34,10 +34,6 @@ from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
 
 HARMONICS = 10.0  # of the stick-slip; oscillations are sought above them
-OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
-OF_SLIDING = ("mu_kinetic", "slip_distance", "peak_slip_speed")  # and those of any known motion
-# columns that a force alone gives by stiffness and drive velocity
-BY_STIFFNESS = ("creep_distance", "slip_distance", "peak_slip_speed")
 BINS = 20.0  # least number in a stick phase for averages
 
 
