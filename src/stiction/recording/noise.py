@@ -110,6 +110,9 @@ def _median(values: Floats, step: float) -> float:
 def lattice(values: Floats) -> float:
     """Return the step of which all values are multiples, up to a constant; 0 if there is none.
 
+    It is that of a converter for sure: there are a dozen codes at least, and four samples of each.
+    `stiction.analysis.signals.digitised.resolution` bounds the rounding of any other signal.
+
     Examples
     --------
     >>> import numpy as np

@@ -5,16 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.recording.noise import dither_remainder
+from stiction.recording.noise import dither_remainder, lattice
 
-MANY, FINE = 100_000, 1e-4  # samples examined for steps; finest step, over the signal's range
+MANY, COARSE = 100_000, 1e-4  # samples examined for steps; smallest step, over the signal's range
 
 
 def resolution(values: Floats) -> float:
-    """Return the smallest step between the values of a signal; 0 if it is nearly continuous."""
+    """Return the step that the values of a signal may be rounded to; 0 if it is nearly continuous.
+
+    That is the step of the `lattice` of all values, up to 14 bits. But that needs a dozen codes,
+    and several samples of each. A force that stays within few steps, or of few samples, has none
+    and may be rounded all the same: there it is the smallest step between values, an upper bound
+    of the rounding. Of a ramp without noise it is the change from sample to sample.
+    """
     some = values[:MANY]
+    if step := lattice(some):
+        return step
     step = float(np.diff(np.unique(some)).min(initial=np.inf))
-    return step if np.isfinite(step) and step >= FINE * float(np.ptp(some)) else 0.0
+    return step if np.isfinite(step) and step >= COARSE * float(np.ptp(some)) else 0.0
 
 
 def rounding_line(values: Floats) -> float:
