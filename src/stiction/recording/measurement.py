@@ -48,6 +48,23 @@ class Measurement(NamedTuple):
     stroke: int | None = None  # of it, if only one is wanted: see `stiction.recording.strokes`
 
 
+class TableBlock(NamedTuple):
+    """A block of a table, the columns that were chosen for it, and what is asked of the file."""
+
+    path: Path
+    table: FileTable
+    asked: Request
+    choice: Choice
+    part: Block
+
+
+class MeasuredChannel(NamedTuple):
+    """A channel at the times of the force, (n,), in SI, and its sensor."""
+
+    values: Floats
+    sensor: Sensor
+
+
 def read_measurements(
     path: Path, given: Mapping[str, Any], sidecar: Path | None = None
 ) -> list[Measurement]:
@@ -131,7 +148,8 @@ def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurem
         its = _remarks(table, before, int(part.rows[0]))
         before = int(part.rows[-1])
         own = what_is_said(its) if len(parts) > 1 else said
-        found.append(_measurement(path, table, asked, choice, part, own, by_interval, len(parts)))
+        block = TableBlock(path, table, asked, choice, part)
+        found.append(_measurement(block, own, by_interval, len(parts)))
     if not found:
         raise ResultError(f"{path}: fewer than {FEWEST_SAMPLES} samples; record it again")
     return found
@@ -164,59 +182,71 @@ def _remarks(table: FileTable, before: int, first: int) -> Sequence[Remark]:
     return [x for x in table.remarks if low < x.line < table.lines[first] or x.line == 0]
 
 
-def _measurement(
-    path: Path,
-    table: FileTable,
-    asked: Request,
-    choice: Choice,
-    part: Block,
-    said: Said,
-    by_interval: bool,
-    parts: int,
-) -> Measurement:
+def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -> Measurement:
     """Return the measurement of one block."""
+    path, table, asked, choice, part = block
     notes = [*table.notes, *choice.notes, *part.notes]
     notes += _notes_on_clock(table, part, said, by_interval, parts)
-    time, channels = part.time, {}
-    raw = {
-        name: each.column.values[part.rows] * each.size
-        for name, each in choice.channels.items()
-        if name != "time"
-    }
-    whole = np.isfinite(raw["force"])
-    if not whole.all():
-        first = table.line(int(part.rows[np.argmin(whole)]))
-        lost = int(np.count_nonzero(~whole))
-        notes.append(f"{number_of(lost, 'sample')} without a force left out, the first at {first}")
-        time = time[whole]
+    whole, lost = _with_force(block)
+    time = part.time[whole]
     if len(time) < FEWEST_SAMPLES:
         raise ResultError(f"{path}: {len(time)} samples with a force; a record needs two")
-    notes += _spacing(time)
-    sensors: dict[str, Sensor] = {}
-    for name, values in raw.items():
-        other = _other_clock(path, table, choice, name, part)
-        its = _on(values, part.time if other is None else other, time, name, notes, whole)
-        if its is None:
+    notes += [*lost, *_spacing(time)]
+    found: dict[str, MeasuredChannel] = {}
+    for name in choice.channels:
+        if name == "time":
             continue
-        sensor = asked.sensors.get(name)
-        channels[name] = its if sensor is None else sensor.value(its, time)
-        if name in DISPLACEMENTS:
-            channels[name] = _unwrap(channels[name], time, asked.reading.wrap, name, notes)
-        sensors[name] = _with_noise(sensor, channels[name], name)
-    known = dict(asked.known)
-    _weigh(path, choice.channels["force"], channels, known, notes, sensors)
+        its, remarks = _channel(block, name, time, whole)
+        notes += remarks
+        if its is not None:
+            found[name] = its
+    found, remarks = _weigh(path, choice.channels["force"], found, asked.known)
+    sensors = {name: each.sensor for name, each in found.items()}
+    notes += remarks
     notes += [_in_words(name, x) for name, x in sensors.items() if x.noise or x.quantisation]
+    channels = {"time": time, **{name: each.values for name, each in found.items()}}
     origin = Origin(
         path.name,
         table.format,
-        _uses(table, choice, channels, time),
+        _uses(table, choice, channels),
         len(time),
         rate_of(time),
         label=table.label or _label(table, part),
         start=said.start or table.start,
         notes=tuple(notes),
     )
-    return Measurement({"time": time, **channels}, known, sensors, origin, asked.reading.stroke)
+    return Measurement(channels, dict(asked.known), sensors, origin, asked.reading.stroke)
+
+
+def _with_force(block: TableBlock) -> tuple[NDArray[np.bool_], list[str]]:
+    """Return a mask of the rows of a block that have a force, and a note on the others."""
+    rows = block.part.rows
+    whole = np.isfinite(block.choice.channels["force"].column.values[rows])
+    if whole.all():
+        return whole, []
+    first = block.table.line(int(rows[np.argmin(whole)]))
+    lost = number_of(int(np.count_nonzero(~whole)), "sample")
+    return whole, [f"{lost} without a force left out, the first at {first}"]
+
+
+def _channel(
+    block: TableBlock, name: str, time: Floats, whole: NDArray[np.bool_]
+) -> tuple[MeasuredChannel | None, list[str]]:
+    """Return a channel at the times of the force, None if it has no values there; and notes."""
+    path, table, asked, choice, part = block
+    chosen = choice.channels[name]
+    values = chosen.column.values[part.rows] * chosen.size
+    other = _other_clock(path, table, choice, name, part)
+    its, notes = _on(values, part.time if other is None else other, time, name, whole)
+    if its is None:
+        return None, notes
+    sensor = asked.sensors.get(name)
+    if sensor is not None:
+        its = sensor.value(its, time)
+    if name in DISPLACEMENTS:
+        its, wraps = _unwrap(its, time, asked.reading.wrap, name)
+        notes += wraps
+    return MeasuredChannel(its, _with_noise(sensor, its, name)), notes
 
 
 def _notes_on_clock(
@@ -259,25 +289,23 @@ def _on(
     own: Floats,
     time: Floats,
     name: str,
-    notes: list[str],
     whole: NDArray[np.bool_],
-) -> Floats | None:
-    """Return a channel at the times of the force; None if it has no values there."""
+) -> tuple[Floats | None, list[str]]:
+    """Return a channel at the times of the force, None if it has no values there; and notes."""
     known = np.isfinite(values) & np.isfinite(own)
     if len(own) == len(whole) and known[whole].all() and np.array_equal(own[whole], time):
-        return np.asarray(values[whole])
+        return np.asarray(values[whole]), []
     meaning = CHANNELS[name].meaning
     if np.count_nonzero(known) < FEWEST_SAMPLES:
-        notes.append(f"the {meaning} has no values and is left out")
-        return None
-    notes.append(f"the {meaning} is interpolated to the times of the force by straight lines")
+        return None, [f"the {meaning} has no values and is left out"]
+    notes = [f"the {meaning} is interpolated to the times of the force by straight lines"]
     order = np.argsort(own[known], kind="stable")
     at, its = own[known][order], values[known][order]
     outside = int(np.count_nonzero((time < at[0]) | (time > at[-1])))
     if outside:
         count = number_of(outside, "sample")
         notes.append(f"{count} outside its times: its first and last value stand there")
-    return np.interp(time, at, its)
+    return np.interp(time, at, its), notes
 
 
 def _spacing(time: Floats) -> list[str]:
@@ -291,16 +319,16 @@ def _spacing(time: Floats) -> list[str]:
 
 
 def _unwrap(
-    values: Floats, time: Floats, period: float | None, name: str, notes: list[str]
-) -> Floats:
+    values: Floats, time: Floats, period: float | None, name: str
+) -> tuple[Floats, list[str]]:
     """Return a displacement made continuous, with a note."""
     found, length, count = unwrap(values, time, period)
-    if count:
-        notes.append(
-            f"the {CHANNELS[name].meaning} starts again {number_of(count, 'time')}, every "
-            f"{in_words(length, 'm')}, and was made continuous (--wrap none leaves it)"
-        )
-    return found
+    if not count:
+        return found, []
+    return found, [
+        f"the {CHANNELS[name].meaning} starts again {number_of(count, 'time')}, every "
+        f"{in_words(length, 'm')}, and was made continuous (--wrap none leaves it)"
+    ]
 
 
 def _with_noise(sensor: Sensor | None, values: Floats, name: str) -> Sensor:
@@ -327,33 +355,31 @@ def _in_words(name: str, sensor: Sensor) -> str:
 
 
 def _weigh(
-    path: Path,
-    force: Chosen,
-    channels: dict[str, Floats],
-    known: dict[str, Any],
-    notes: list[str],
-    sensors: dict[str, Sensor],
-) -> None:
-    """Turn a negative normal load round, and a coefficient of friction into a force."""
-    load = channels.get("load")
-    if load is not None and float(np.median(load)) < 0.0:
-        channels["load"] = load = -load
-        notes.append(
-            "the normal load is negative, as compression is in many cells: its sign was turned"
-        )
-    if load is not None and float(load.min()) < 0.0 < float(load.max()):
-        share = 100.0 * float(np.mean(load < 0.0))
-        notes.append(f"the normal load changes its sign: {share:.2g} % of the samples pull")
+    path: Path, force: Chosen, found: Mapping[str, MeasuredChannel], known: Mapping[str, Any]
+) -> tuple[dict[str, MeasuredChannel], list[str]]:
+    """Turn a negative normal load round, and a coefficient of friction into a force; with notes."""
+    channels, notes, load = dict(found), [], None
+    if "load" in channels:
+        load = channels["load"].values
+        if float(np.median(load)) < 0.0:
+            load = -load
+            channels["load"] = channels["load"]._replace(values=load)
+            notes.append(
+                "the normal load is negative, as compression is in many cells: its sign was turned"
+            )
+        if float(load.min()) < 0.0 < float(load.max()):
+            share = 100.0 * float(np.mean(load < 0.0))
+            notes.append(f"the normal load changes its sign: {share:.2g} % of the samples pull")
     if not force.ratio:
-        return
+        return channels, notes
     if load is None and "normal_load" not in known:
         raise ResultError(
             f"{path}: column {force.column} is a friction coefficient, and the force is that times "
             "the normal load; say --normal-load, e.g. '10 N'"
         )
-    weight = load if load is not None else known["normal_load"]
-    channels["force"] = channels["force"] * weight
-    sensors["force"] = _with_noise(None, channels["force"], "force")
+    its = channels["force"].values * (load if load is not None else known["normal_load"])
+    channels["force"] = MeasuredChannel(its, _with_noise(None, its, "force"))
+    return channels, notes
 
 
 def _label(table: FileTable, part: Block) -> str:
@@ -369,11 +395,8 @@ def _label(table: FileTable, part: Block) -> str:
     return ""
 
 
-def _uses(
-    table: FileTable, choice: Choice, channels: dict[str, Floats], time: Floats
-) -> tuple[Use, ...]:
-    """Return what each column was taken for."""
-    known = {"time": time, **channels}
+def _uses(table: FileTable, choice: Choice, known: Mapping[str, Floats]) -> tuple[Use, ...]:
+    """Return what each column was taken for, of the channels that are `known`."""
     taken = {id(x.column): (name, x) for name, x in choice.channels.items() if name in known}
     found = []
     for column in table.columns:

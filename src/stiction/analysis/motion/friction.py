@@ -40,6 +40,8 @@ PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
 # each peak is sought among some samples; 0.4 in the median of random records
 ABOVE = 0.5
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
+# Kinds of motion whose kinetic friction is the mean of peaks and troughs
+SWINGING = (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR)
 BLOCKS = 20  # means, whose scatter gives the standard error for correlated samples
 
 
@@ -109,50 +111,70 @@ def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Frictio
 
 def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     """Return the friction of a record with known cycles: see `find_friction`."""
-    missing: dict[str, str] = {}
-    kind, load, relative = regime.kind, record.normal_load or np.nan, record.relative_load()
     if len(record) < FEWEST_SAMPLES:
         few = f"of the {FEWEST_SAMPLES} samples that are needed the record has {len(record)}"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
-    count, peak, trough = len(cycles), cycles["peak"], cycles["trough"]
-    slides = sliding(record)
-    end = len(record) if count else slides.last  # the fall after it follows no break-away
-    break_away, reason = _find_break_away(
-        record.time[:end], record.force[:end], cycles, load * relative[:end]
-    )
-    slid = break_away is not None and not count
-    if kind == STUCK and not regime.runner_up:
+    relative, slides = record.relative_load(), sliding(record)
+    end = len(record) if len(cycles) else slides.last  # the fall after it follows no break-away
+    load = (record.normal_load or np.nan) * relative[:end]
+    break_away, reason = _find_break_away(record.time[:end], record.force[:end], cycles, load)
+    slid = break_away is not None and not len(cycles)
+    if regime.kind == STUCK and not regime.runner_up:
         break_away, reason = None, "the mass does not slip"
-    if break_away is None:
-        missing["break_away"] = reason
-    load_at_peak, load_at_trough = (
+    shared = _shared_error(record) if len(cycles) else 0.0
+    static, no_static = _static(record, regime, cycles, relative, shared)
+    kinetic: Measured | None
+    if regime.kind in SWINGING and len(cycles):
+        kinetic, no_kinetic = _middle(record, cycles, relative, shared), ""
+    else:
+        kinetic, no_kinetic = _kinetic(record, regime, slides, relative, slid)
+    reasons = {"break_away": reason, "static": no_static, "kinetic": no_kinetic}
+    missing = {name: why for name, why in reasons.items() if why}
+    return Friction(break_away, static, kinetic, missing)
+
+
+def _shared_error(record: Record) -> float:
+    """Return the error of a force, N, that all its peaks have alike."""
+    rounding = rounding_error(record.force, resolution(record.force))
+    return hypot(rounding, ABOVE * white_noise(record.force))
+
+
+def _static(
+    record: Record, regime: Regime, cycles: CycleTable, relative: Floats, shared: float
+) -> tuple[Measured | None, str]:
+    """Return the static friction, or None and the reason."""
+    if not regime.loads or not len(cycles):
+        return None, f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
+    peak = cycles["peak"]
+    reduced = peak / np.interp(cycles["peak_time"], record.time, relative)
+    return _over(peak, reduced, record.normal_load or np.nan, shared), ""
+
+
+def _middle(record: Record, cycles: CycleTable, relative: Floats, shared: float) -> Measured:
+    """Return the mean of peaks and troughs, about which a mass swings."""
+    peak, trough = cycles["peak"], cycles["trough"]
+    at_peak, at_trough = (
         np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
     )
-    static = None
-    shared = 0.0  # error of all peaks alike
-    if count:
-        shared = rounding_error(record.force, resolution(record.force))
-        shared = hypot(shared, ABOVE * white_noise(record.force))
-    if regime.loads and count:
-        static = _over(peak, peak / load_at_peak, load, shared)
-    else:
-        missing["static"] = (
-            f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
-        )
-    kinetic = None
-    if kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR) and count:
-        reduced = 0.5 * (peak / load_at_peak + trough / load_at_trough)
-        kinetic = _over(0.5 * (peak + trough), reduced, load, shared)
-    elif comes_to_rest(record.slip_speed) and kind != STUCK:
-        missing["kinetic"] = "the mass comes to rest"
-    elif "turns" in regime.evidence:
-        missing["kinetic"] = "it is not determined whether the mass slides"
-    elif kind in (STEADY, SETTLING, TRANSVERSE) or (kind == UNDETERMINED and slid):
-        kinetic = _sliding(record, slides, kind, relative)
-    else:
-        unknown = kind == UNDETERMINED
-        missing["kinetic"] = f"the mass {'may' if unknown else 'does'} not slide"
-    return Friction(break_away, static, kinetic, missing)
+    reduced = 0.5 * (peak / at_peak + trough / at_trough)
+    return _over(0.5 * (peak + trough), reduced, record.normal_load or np.nan, shared)
+
+
+def _kinetic(
+    record: Record, regime: Regime, slides: Sliding, relative: Floats, slid: bool
+) -> tuple[Measured | None, str]:
+    """Return the kinetic friction of a force without cycles, or None and the reason.
+
+    `slid` says whether a break-away was found.
+    """
+    kind = regime.kind
+    if comes_to_rest(record.slip_speed) and kind != STUCK:
+        return None, "the mass comes to rest"
+    if "turns" in regime.evidence:
+        return None, "it is not determined whether the mass slides"
+    if kind in (STEADY, SETTLING, TRANSVERSE) or (kind == UNDETERMINED and slid):
+        return _sliding(record, slides, kind, relative), ""
+    return None, f"the mass {'may' if kind == UNDETERMINED else 'does'} not slide"
 
 
 def without_loading(regime: Regime) -> str:

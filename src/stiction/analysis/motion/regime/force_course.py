@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from stiction.analysis.motion.course import BEGINS_UNLOADED, course, final_fall, lone_fall
+from stiction.analysis.motion.course import BEGINS_UNLOADED, Course, course, final_fall, lone_fall
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.regime.band import (
@@ -75,17 +75,7 @@ def by_course(record: Record, found: Swings) -> Regime:
     least = max([RIPPLE * way.span, *(RESIDUE * line.height for line in found.lines)])
     vibrates = hump.likelihood if hump.rms > least else 0.0
     if vibrates > 0.5:
-        left = remaining(record.time, record.force, hump.frequency)
-        if left < 1.0:
-            sure = (EIGHTHS + 1) / (EIGHTHS + 3)
-            return Regime(SETTLING, sure, evidence | {"fading": hump.frequency, "fades_to": left})
-        evidence |= {"hump": hump.frequency, "hump_height": hump.height}
-        if beat := beat_frequency(record.time, record.force):
-            return Regime(HARMONIC, vibrates, evidence | {"beat": beat}, STEADY)
-        line = _hidden_line(record, begin, least)
-        if line is not None and _is_whole(line, hump, record):
-            return Regime(UNDETERMINED, 0.0, evidence | _as_evidence(line))
-        return Regime(IRREGULAR, vibrates, evidence, STEADY)
+        return _vibration(record, hump, begin, least, evidence)
     if late <= SETTLED:
         sure = (1.0 - late / (2.0 * SETTLED)) * (1.0 - vibrates)
         settles = Regime(SETTLING, sure, evidence | {"late_share": late})
@@ -100,15 +90,45 @@ def by_course(record: Record, found: Swings) -> Regime:
         return _steady(record, found, least, sure * (1.0 - vibrates), evidence)
     if fall := final_fall(record.time, record.force):
         return Regime(UNDETERMINED, 0.0, evidence | dict(zip(FINAL_FALL, fall, strict=True)))
+    return _loading(record, way, drive, 1.0 - vibrates, evidence)
+
+
+def _vibration(
+    record: Record, hump: Hump, begin: int, least: float, evidence: dict[str, float]
+) -> Regime:
+    """Return the kind of a force that vibrates without cycles, or whose vibration fades.
+
+    `begin` and `least` are those of a hidden line, see `_hidden_line`.
+    """
+    left = remaining(record.time, record.force, hump.frequency)
+    if left < 1.0:
+        sure = (EIGHTHS + 1) / (EIGHTHS + 3)
+        return Regime(SETTLING, sure, evidence | {"fading": hump.frequency, "fades_to": left})
+    evidence |= {"hump": hump.frequency, "hump_height": hump.height}
+    if beat := beat_frequency(record.time, record.force):
+        return Regime(HARMONIC, hump.likelihood, evidence | {"beat": beat}, STEADY)
+    line = _hidden_line(record, begin, least)
+    if line is not None and _is_whole(line, hump, record):
+        return Regime(UNDETERMINED, 0.0, evidence | _as_evidence(line))
+    return Regime(IRREGULAR, hump.likelihood, evidence, STEADY)
+
+
+def _loading(
+    record: Record, way: Course, drive: float, sure: float, evidence: dict[str, float]
+) -> Regime:
+    """Return that the mass is stuck if the force goes on rising as fast as a spring is loaded.
+
+    `drive` is stiffness times drive velocity, N/s, or 0; `sure` how likely nothing vibrates.
+    """
     kept = way.late_rate / way.early_rate if way.early_rate else inf
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept
-    if loading >= LOADING:
-        sure = way.one_way * min(loading, 1.0) * (1.0 - vibrates)
-        if not drive and abs(record.force[0]) > BEGINS_UNLOADED * largest_magnitude(record.force):
-            return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
-        return Regime(STUCK, sure, evidence)
-    return Regime(UNDETERMINED, 0.0, evidence)
+    if loading < LOADING:
+        return Regime(UNDETERMINED, 0.0, evidence)
+    sure = way.one_way * min(loading, 1.0) * sure
+    if not drive and abs(record.force[0]) > BEGINS_UNLOADED * largest_magnitude(record.force):
+        return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
+    return Regime(STUCK, sure, evidence)
 
 
 def _toggles(record: Record) -> float:
