@@ -63,7 +63,7 @@ class Assessment(NamedTuple):
 
 
 def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -> Assessment:
-    """Return what counts of a run: it is what it states."""
+    """Return the assessment of a run, whose parameters are exact."""
     cycles, turns = found.cycles, _turns_round(run, regime)
     friction = _friction(record, found, cycles, regime, turns)
     missing = _meaningless(record, cycles, regime)
@@ -77,7 +77,7 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
 
 
 def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
-    """Return what counts of a record: what it states may contradict its force."""
+    """Return the assessment of a record, whose stated parameters may contradict its force."""
     cycles, turns = found.cycles, _turns_round(None, regime)
     none, apart = cycles.isel(cycle=slice(0)), cycles_apart(cycles)
     friction = _friction(record, found, cycles.isel(cycle=~apart), regime, turns)
@@ -109,7 +109,11 @@ def _blank(cycles: xr.Dataset, names: Iterable[str]) -> xr.Dataset:
 def _friction(
     record: Record, found: Swings, usual: xr.Dataset, regime: Regime, turns: str
 ) -> Friction:
-    """Find the friction without hum and ringing, as far as what `turns` round leaves any."""
+    """Find the friction without hum and ringing.
+
+    Where the drive or the force turns round, for the reason `turns`, there is no kinetic friction,
+    or none at all.
+    """
     changed = found.lines or found.ringing
     clean = record.model_copy(update={"force": found.force}) if changed else record
     if "levels" in regime.evidence:

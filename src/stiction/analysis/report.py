@@ -157,11 +157,16 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     trust : bool, optional
         For a file; see `stiction.load`.
 
+    Returns
+    -------
+    Analysis
+        Its text is a report; each finding is an attribute.
+
     Raises
     ------
     ResultError
         If a file cannot be read; see `stiction.read_record` and `stiction.load`. What a run or
-        record does not tell is no error: `Analysis.missing` says why.
+        record does not tell is not an error: `Analysis.missing` says why.
 
     Examples
     --------

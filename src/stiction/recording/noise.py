@@ -11,8 +11,8 @@ from stiction.arrays import Floats
 from stiction.drive.recorded.resolution import NORMAL_MEDIAN
 
 ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
-FEWEST_SAMPLES = 64  # samples
-CODES = 12  # different values at least, by which a lattice is recognised
+FEWEST_SAMPLES = 64  # so many tell white noise to a fifth
+CODES = 12  # at least so many different values, by which a lattice is recognised
 REPEATED = 4  # samples for each of them, on average
 LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
@@ -81,6 +81,8 @@ def rounding_error(values: Floats, step: float) -> float:
 def dither_remainder(values: Floats, step: float) -> float:
     """Return the share of the first harmonic of the rounding to a step that noise leaves.
 
+    It is the characteristic function of Gaussian noise at a frequency of one over the step (B.
+    Widrow & I. Kollar, Quantization Noise, Cambridge 2008).
     Where a force stays within few steps, no median but the mean square of its differences tells the
     noise, and between two codes nothing does: it seems to be half a step.
     """
@@ -110,7 +112,7 @@ def _median(values: Floats, step: float) -> float:
 def lattice(values: Floats) -> float:
     """Return the step of which all values are multiples, up to a constant; 0 if there is none.
 
-    It is that of a converter for sure: there are a dozen codes at least, and four samples of each.
+    It is that of a converter for sure: there are at least a dozen codes, and four samples of each.
     `stiction.analysis.signals.digitised.resolution` bounds the rounding of any other signal.
 
     Examples

@@ -62,7 +62,7 @@ KNOWN = tuple(KnownApparatus.model_fields)
 def _column(value: object) -> str:
     """Return what is said of a column as text: its number may be an integer."""
     if isinstance(value, bool) or not isinstance(value, int | str):
-        raise fault(f"{echo(value)} is no column; write its name, its number, or its unit: 'mN'")
+        raise fault(f"{echo(value)} is not a column; write its name, its number, or its unit: 'mN'")
     return str(value)
 
 

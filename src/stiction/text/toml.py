@@ -90,7 +90,7 @@ def _remedy(error: ValueError, text: str) -> str:
 
 
 def _instead(path: str | Path, written: bool) -> str:
-    """Return what takes a file that is no description."""
+    """Return what takes a file that is not a description."""
     return "" if written else use_of(path, DESCRIPTION, STUDY)
 
 

@@ -51,9 +51,9 @@ def test_any_separator(write, separator):
 def test_a_column_by_its_number(write):
     path = write(f"t [ms],a [mN],b [N]\n{lines(columns=(TIME, FORCE, 2.0 * FORCE))}")
     assert np.allclose(st.read_record(path, force=3, load="2").force, 2.0 * FORCE, rtol=1e-15)
-    with pytest.raises(st.DescriptionError, match=r"load: 2\.5 is no column") as error:
+    with pytest.raises(st.DescriptionError, match=r"load: 2\.5 is not a column") as error:
         st.read_record(path, force=True, load=2.5)
-    assert "force: True is no column" in str(error.value)
+    assert "force: True is not a column" in str(error.value)
 
 
 @pytest.mark.parametrize("separator", ["\t", ";", " "])

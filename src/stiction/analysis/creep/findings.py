@@ -11,7 +11,7 @@ import numpy as np
 from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.force_curve import misalignment_from_force
-from stiction.analysis.creep.misalignment import RESTS, SURE, Misalignment, fit_misalignment
+from stiction.analysis.creep.misalignment import REST_SPEED, SURE, Misalignment, fit_misalignment
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
@@ -218,7 +218,7 @@ def _misalignment(
     mean: xr.Dataset, V: float, stiffness: float, across: float | None, mass: float | None
 ) -> Misalignment:
     """Return the implied misalignment, if it exceeds its uncertainty."""
-    if np.nanmedian(np.abs(mean["velocity"].values)) < RESTS * V:
+    if np.nanmedian(np.abs(mean["velocity"].values)) < REST_SPEED * V:
         raise ResultError("not determined: the mass mostly rests where Eq. (7) predicts creep")
     found = fit_misalignment(mean, V, stiffness, stiffness_across=across or inf, mass=mass or 0.0)
     if found.misfit > MISSED or found.scatter > SCATTER:

@@ -16,9 +16,9 @@ WEAKENINGS = (-0.3, 1.0)  # from strengthening to half the friction at the drive
 ASSUMED = 0.1  # standard error of the weakening: its order is all that is known before
 TURNS = 6  # of the iteration for theta: the weakening is small, so each gains a digit or two
 OFF = 0.1  # of the velocity: largest common error of the theory that is tried
-NEAR = 1e-3  # of the peak, and of the largest common error: by so much they are varied at least
+NEAR = 1e-3  # of the peak, and of the largest common error: they are varied by at least so much
 NEAR_ZERO = 1e-3, 1e-6  # rad, of theta: while it is sought, and as found
-RESTS, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
+REST_SPEED, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
 SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
 
 
@@ -172,7 +172,7 @@ def _acceleration(used: list[Floats]) -> Floats:
 def _after_rest(used: list[Floats], drive_velocity: float) -> list[Floats]:
     """Return the bins, far from slip to near, of which none rests any more: creep begins in one."""
     begin, velocity = used[0], np.abs(used[2])
-    rests = begin[velocity < RESTS * drive_velocity]
+    rests = begin[velocity < REST_SPEED * drive_velocity]
     if not len(rests):
         return used
     later = begin < rests.min()

@@ -79,6 +79,11 @@ def read_record(
         Which stroke of a drive that goes to and fro, from 1, between two turns of its displacement.
         Forces and displacements of a way back are turned round.
 
+    Returns
+    -------
+    Record
+        In SI, with sensors whose noise and quantisation are estimated where they are not given.
+
     Raises
     ------
     ResultError

@@ -33,7 +33,7 @@ def measure(
     Parameters
     ----------
     run : Trajectory
-        Sampled finely enough for the filters: 2.5 times the highest cut-off at least.
+        Sampled finely enough for the filters: at least 2.5 times the highest cut-off.
     sensor : Sensor or dict
         Of the force along the drive; or from a channel to its sensor: ``force``, ``force_across``,
         ``load``, ``position``, ``drive_position``, ``slip_speed``. Other channels are not recorded.

@@ -31,7 +31,7 @@ STEADILY = 0.3
 BELOW, BUILDING = 0.5, 5
 BEGINS_UNLOADED = 0.3  # of the largest force, below which a record begins with an unloaded spring
 PER_QUARTER = 8  # medians in each quarter of a record: few enough to be free of noise
-PARTS = 4 * PER_QUARTER
+COURSE_PARTS = 4 * PER_QUARTER
 # A lone fall: its share of the record's time at most, and its height in standard deviations of the
 # noise, whose range over a million samples is 10
 BRIEF, STANDS_OUT = 1 / 16, 15.0
@@ -190,8 +190,8 @@ class Course(NamedTuple):
 
 
 def course(time: Floats, force: Floats) -> Course:
-    """Return the course of a force of at least `PARTS` samples."""
-    edges = np.linspace(0, len(time), PARTS + 1).astype(np.intp)[1:-1]
+    """Return the course of a force of at least `COURSE_PARTS` samples."""
+    edges = np.linspace(0, len(time), COURSE_PARTS + 1).astype(np.intp)[1:-1]
     parts = np.split(force, edges)
     f = np.array([median(part) for part in parts])
     t = np.array([part.mean() for part in np.split(time, edges)])

@@ -31,7 +31,7 @@ from stiction.trajectory import Trajectory
 
 FEWEST_CYCLES = 3  # cycles beside a ringing
 LINES = 4  # subtracted at most
-SAME = 0.01  # of a line's frequency: so far apart are two lines at least
+SAME = 0.01  # of a line's frequency: two lines are at least so far apart
 OWN_HARMONICS = 10.0  # of the cycles: lower ones can be lines as well; they make no cycles more
 
 

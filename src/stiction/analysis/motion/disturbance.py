@@ -88,10 +88,11 @@ def is_subharmonic(line: Line, table: CycleTable) -> bool:
 
 
 def slow_wave(grid: EvenGrid, force: Floats, frequency: float) -> Floats:
-    """Return what of a force (N) is slower than `frequency` (Hz), at its times, which have a grid.
+    """Return the part of a force (N) slower than `frequency` (Hz).
 
-    Means over a period, and those of what they leave: a wave of five periods is kept to 0.4 %, and
-    nothing of a motion with that frequency.
+    It is at the times of the force, which have a grid: the means over a period, and the means of
+    the remainder. A wave of five periods is whole to 0.4 %, and nothing is left of a motion with
+    that frequency.
     """
     length = max(round(1.0 / (frequency * grid.step)), 1)
     even = grid.on(force)

@@ -77,7 +77,7 @@ def shown_drift(record: Record, kind: str, cycles: xr.Dataset) -> Drift | None:
 
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
-    """Return whether both halves change at about this rate: a loading, once, is no drift."""
+    """Return whether both halves change at about this rate: a single loading is not drift."""
     if len(at) < 2 * FEWEST_CYCLES:
         return True
     half = len(at) // 2

@@ -33,7 +33,7 @@ from stiction.recording.noise import rounding_error, white_noise
 from stiction.text.quantity_text import percent
 
 LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading is not resolved
-FEWEST_SAMPLES = 32  # least number of samples
+FEWEST_SAMPLES = 32  # with fewer the kind of motion is not known, either: see `COURSE_PARTS`
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
 # Standard deviations of white noise: by so much, and no more, the mean of peaks is too high where

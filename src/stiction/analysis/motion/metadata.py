@@ -35,7 +35,7 @@ RESTED = 1.1  # times two falls: rest makes a period longer; less may be another
 PARTS = 200  # of a record, for the speed of a drive that may turn
 TO_AND_FRO = 0.8  # of its reach: a drive that comes less far on the whole turns
 NOISE = 20.0  # standard deviations, by which means of the displacement do not differ
-FEW = 6  # samples in a slip
+FEWEST_PER_FALL = 6  # samples: the duration of a fall, or a slope, is not known by fewer
 ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
 SURE = 3.0  # standard errors by which a value differs for sure
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
@@ -199,7 +199,7 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
     if not cycles.sizes["cycle"] or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
     falls = cycles["trough_time"].values - cycles["peak_time"].values
-    if float(np.median(falls)) * record.sample_rate < FEW or flat_ends(record.force):
+    if float(np.median(falls)) * record.sample_rate < FEWEST_PER_FALL or flat_ends(record.force):
         return None  # where peaks are cut off, a fall seems to begin too early
     periods, how = cycles["period"].values, BY_SLIPS
     rests = float(np.median(periods)) > RESTED * 2.0 * float(np.median(falls))
@@ -261,7 +261,7 @@ def _error(values: np.ndarray) -> float:
 
 def _drive_velocity(record: Record) -> StatedQuantity | None:
     """Compare the slope of the drive's displacement with the stated velocity."""
-    if record.drive_position is None or len(record) < FEW:
+    if record.drive_position is None or len(record) < FEWEST_PER_FALL:
         return None
     elapsed = record.time - record.time[0]  # of times from 1970 rounding leaves no error
     way = line(elapsed, record.drive_position)
@@ -283,7 +283,7 @@ def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float, flo
     That is from the first to the last, and in all, beyond noise. Parts in which the drive turns are
     the fewest: the median speed is that between the turns.
     """
-    parts = min(PARTS, len(time) // FEW)
+    parts = min(PARTS, len(time) // FEWEST_PER_FALL)
     times, positions = (np.array_split(each, parts) for each in (time, position))
     slopes, middles, left = [], [], []
     for t, x in zip(times, positions, strict=True):
@@ -313,7 +313,7 @@ def _transverse_frequency(record: Record) -> StatedQuantity | None:
 
     That is (k_across/m)^1/2 / 2 pi; near the first slip the oscillation is slower.
     """
-    if not record.stiffness_across or not record.mass or len(record) < FEW:
+    if not record.stiffness_across or not record.mass or len(record) < FEWEST_PER_FALL:
         return None
     frequency = (record.stiffness_across / record.mass) ** 0.5 / (2.0 * pi)
     highest = SEEN * record.sample_rate

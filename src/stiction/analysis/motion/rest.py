@@ -19,7 +19,7 @@ STILL = 0.1  # of the drive velocity: a mass that slips more slowly rests, or cr
 LAST, COME_TO_REST = 20, 1e-6  # part of a record, and of its largest slip speed
 _GAINED = 2.0 / np.tan(ANGLES)
 _CYCLE = np.pi + 2.0 * ANGLES + _GAINED  # omega times the period
-RISES, RESTS = np.append(1.0 - np.pi / _CYCLE, 1.0), np.append(_GAINED / _CYCLE, 1.0)
+RISE_SHARES, REST_SHARES = np.append(1.0 - np.pi / _CYCLE, 1.0), np.append(_GAINED / _CYCLE, 1.0)
 
 
 def rest_share(rise_share: ArrayLike) -> Floats:
@@ -41,13 +41,13 @@ def rest_share(rise_share: ArrayLike) -> Floats:
     ----------
     The cycle: J. P. Den Hartog, Mechanical Vibrations, 4th ed. (1956), section 7.3.
     """
-    found: Floats = np.interp(np.asarray(rise_share, float), RISES, RESTS)
+    found: Floats = np.interp(np.asarray(rise_share, float), RISE_SHARES, REST_SHARES)
     return np.maximum(found, 0.0)
 
 
 def rise_share(rest_share: ArrayLike) -> Floats:
     """Return the share of a cycle in which the force rises from the share of rest."""
-    return np.asarray(np.interp(np.asarray(rest_share, float), RESTS, RISES))
+    return np.asarray(np.interp(np.asarray(rest_share, float), REST_SHARES, RISE_SHARES))
 
 
 def still_shares(

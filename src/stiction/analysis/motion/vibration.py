@@ -29,7 +29,7 @@ SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of e
 # by noise or slowly: the typical one, and the standard deviation of its logarithm
 IRREGULAR_SPREAD, HARMONIC_SPREAD = (1.05, 0.1), (0.17, 0.8)
 
-OSCILLATES = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
+LEAST_OSCILLATION = 0.1  # of the largest amplitude of the fast oscillation without reversal of slip
 FAST_PERIODS = 32  # of the fast oscillation at the end, over which it is measured
 
 
@@ -62,7 +62,7 @@ class FastOscillation(NamedTuple):
         A last swing of a force, of a drop (N) in a period (s), which dies out, sets the stiffer
         spring in motion, too.
         """
-        return self.amplitude > OSCILLATES and pi * drop / period <= self.rate
+        return self.amplitude > LEAST_OSCILLATION and pi * drop / period <= self.rate
 
 
 def stiffer_axis(slider: Slider) -> int:

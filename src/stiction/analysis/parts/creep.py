@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.first_slip import slips
-from stiction.analysis.creep.misalignment import RESTS
+from stiction.analysis.creep.misalignment import REST_SPEED
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import SLIGHT, number
 from stiction.analysis.signals.robust import without_outliers
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 RESTING = "it rests"
-BARELY = "it creeps at less than a millionth of the drive's velocity"  # RESTS: states never rest
+# By `REST_SPEED`: a law with states never rests
+BARELY = "it creeps at less than a millionth of the drive's velocity"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
 SURE = 2.0  # standard errors that a fit must be away from nothing
 
@@ -144,7 +145,7 @@ def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
     Creep over no measurable distance while the record lasts is none: then it `rests`, in words.
     """
     value, error = float(row["velocity"]), float(row["velocity_error"])
-    if abs(value) + SURE * np.nan_to_num(error) < RESTS * V:
+    if abs(value) + SURE * np.nan_to_num(error) < REST_SPEED * V:
         return rests
     if value <= SURE * error:
         most = max(value, 0.0) + SURE * error

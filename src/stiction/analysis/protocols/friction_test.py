@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.protocols.settling import RESTS, SETTLED, has_settled
+from stiction.analysis.protocols.settling import SETTLED, STILL_LOADED, has_settled
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.straight_line import line
@@ -135,7 +135,7 @@ class FrictionTest(NamedTuple):
             return False
         late = self._latest(stretch)
         loading = stretch.way * line(self.time[late], self.lag[late]).slope
-        return loading < RESTS * abs(stretch.velocity)
+        return loading < STILL_LOADED * abs(stretch.velocity)
 
     def has_settled(self, stretch: ConstantStretch, slope: float = 0.0) -> bool:
         """Return whether friction has settled in a stretch's end.

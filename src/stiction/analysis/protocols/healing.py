@@ -49,7 +49,7 @@ class Healing:
         Which holds are left out, and why, in sentences.
     peak_error : ndarray, optional
         (n,), standard error of each peak; NaN where the samples do not resolve it. Then `peak` is
-        the highest sample, a lower bound, and is no point of the line.
+        the highest sample, a lower bound, and is not a point of the line.
     """
 
     hold: Floats

@@ -25,7 +25,7 @@ FEWEST_SAMPLES = 20  # samples of a loop: an ellipse through them has 1.6 % less
 A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
 MOST = 1e6  # such times between two jumps
 LATE = 0.2  # of the width, for which the mass slides before the drive turns
-VARIES = 0.01  # of the load: where it varies by more, a force over it is no coefficient
+VARIES = 0.01  # of the load: where it varies by more, a force over it is not a coefficient
 
 
 @dataclass(frozen=True)

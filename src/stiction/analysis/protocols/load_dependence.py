@@ -146,7 +146,7 @@ def _test(source: Trajectory | Record, program: LoadProgram | None) -> FrictionT
 
 
 def _fault(test: FrictionTest, level: ConstantStretch) -> str:
-    """Return why the force at a level is no friction; empty if it is."""
+    """Return why the force at a level is not friction; empty if it is."""
     if not level.velocity:
         return "The drive rests"
     if not test.slides(level):

@@ -17,7 +17,7 @@ SETTLED = 0.2  # of a stretch: its end, in which friction counts as steady
 # slides 0. One that breaks away in the end of the stretch, after a share f of it, has f^2 (3 - 2f):
 # at 0.1 the mean force there is too small by 0.4 % of the loading in a whole stretch. A vibration
 # of fewer than three cycles there may have as much, and its mean is as uncertain.
-RESTS = 0.1
+STILL_LOADED = 0.1
 # Of the force's change within a stretch. Where it tends to its value exponentially, its mean in the
 # end of the stretch is off by as much as it still changes there, within a factor of two.
 CHANGES = 0.01
@@ -32,7 +32,7 @@ STANDS_OUT = 4.0  # standard deviations: 1 of 300 series of 50 means has one bey
 # is 1.5 times (ageing law, to a tenth of the speed) to 3.6 times (to ten times the speed)
 OVER = 4.0
 TAIL = 1.5  # e-folds of a tail within that travel, at least
-BENT = 2.0  # standard errors of a bend: a part that has more is no straight line
+BENT = 2.0  # standard errors of a bend: a part that has more is not a straight line
 
 
 def has_settled(time: Floats, force: Floats, late: int) -> bool:

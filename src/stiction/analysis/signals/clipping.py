@@ -6,7 +6,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 
-FLAT = 4  # times as many samples at the largest value as at any other, and so many at least
+FLAT = 4  # times as many samples at the largest value as at any other, and at least so many
 TIMES = 3  # that a signal stays at its least value: at rest it does so once
 
 

@@ -19,10 +19,11 @@ UNSEEN = 8.0
 
 
 def correlation_time(values: Floats) -> float:
-    """Return how many values in succession count as one independent value: 1 at least.
+    """Return the integrated autocorrelation time of evenly spaced values, at least 1.
 
-    Twice the sum of the autocorrelations, less 1, as far as pairs of them are positive (C. J.
-    Geyer, Stat. Sci. 7, 473 (1992)). Values that alternate count as independent, and so do a few.
+    So many in succession count as one independent value. It is twice the sum of the
+    autocorrelations, less 1, as far as pairs of them are positive (C. J. Geyer, Stat. Sci. 7, 473
+    (1992)). Values that alternate count as independent, and so do a few.
 
     >>> correlation_time(np.tile([1.0, -1.0], 10))
     1.0
@@ -57,7 +58,7 @@ def statistics(values: Floats) -> tuple[float, float, float]:
 def error_of_few(error: float, freedom: float) -> float:
     """Return a standard error of which two hold 95 % where few values tell it.
 
-    The quantile of Student's t with so many degrees of freedom, over two, and 1 at least.
+    The quantile of Student's t with so many degrees of freedom, over two, and at least 1.
 
     >>> round(error_of_few(1.0, 2), 2), error_of_few(1.0, 1000)
     (2.15, 1.0)

@@ -16,11 +16,11 @@ from numpy.typing import NDArray
 
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
+from stiction.recording.guess.clock import ONE_MISSING
 from stiction.text.quantity_text import percent
 
 EVEN = 0.1  # of a step: how far a sample may lie off the grid to count as on it
 OWN = 0.4  # of a step: samples so close to their own times leave none out, which one lies 0.5 off
-GAP = 1.75  # steps between two samples: in a longer interval a sample is missing
 MOST_MISSING = 0.1  # of the grid's points, without a spectrum beyond
 CROWDED = 0.5  # of a step: so close to the sample before, a sample is one too many
 MOST_CROWDED = 0.25  # of the samples: a clock that jitters by a third of a step has 15 %
@@ -66,7 +66,7 @@ class EvenGrid:
     def missing(self) -> NDArray[np.bool_]:
         """(size,) which of the grid's times lie in a gap."""
         found = np.zeros(self.size, bool)
-        gaps = np.flatnonzero(np.diff(self.places) > GAP)
+        gaps = np.flatnonzero(np.diff(self.places) > ONE_MISSING)
         for before, after in zip(self.places[gaps], self.places[gaps + 1], strict=True):
             found[int(np.floor(before + 0.5)) + 1 : int(np.ceil(after - 0.5))] = True
         return found
@@ -171,7 +171,7 @@ def _fit_grid(time: Floats) -> tuple[float, float]:
 def why_not(grid: EvenGrid | None) -> str:
     """Return why a spectrum cannot be computed, in words; '' if it can."""
     if grid is None:
-        return "a spectrum needs two samples at least"
+        return "a spectrum needs at least two samples"
     if grid.serves:
         return ""
     remedy = "analyse a part without gaps, or sample it evenly"

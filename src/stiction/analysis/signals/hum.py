@@ -19,7 +19,7 @@ from stiction.arrays import TINY, Complex, Floats
 
 PERIODS = 16  # of a line that a record has at least
 ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of 2^30 samples
-BESIDE = 64  # samples of the spectrum at least, over which the median is taken
+BESIDE = 64  # at least so many samples of the spectrum, over which the median is taken
 LOBE = 4  # samples of the spectrum to each side that a line takes: the window's lobe
 WANDERS = 2e-3  # of its frequency, to each side: the mains keep theirs to 0.1 Hz
 HANN = 2  # samples of the spectrum to each side that the window makes of a constant line
@@ -30,6 +30,7 @@ HARMONICS = 8
 LEAST = 1e-12  # of the largest power: what is less is nothing
 MUCH = 0.3  # of the power; the first harmonic of a sawtooth has 0.6
 TRIED = 20  # of the strongest
+MOST_LINES = 4  # that are returned: cycles are sought again without each of them
 BLOCK = 5  # periods in each mean of amplitude and phase
 LONGEST_PART = 250  # periods over which amplitude and phase are taken for constant
 
@@ -221,7 +222,7 @@ def _peaks(power: Floats, floor: Floats, above: float) -> list[int]:
         others = max(power[low : own.start].max(), power[own.stop : high].max(initial=0.0))
         if power[at] > above * others:
             alone[at] = power[at] / max(others, TINY)
-    return sorted(alone, key=lambda at: -alone[at])[:4]
+    return sorted(alone, key=lambda at: -alone[at])[:MOST_LINES]
 
 
 def _lobe(at: int) -> slice:

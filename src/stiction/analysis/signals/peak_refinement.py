@@ -10,7 +10,7 @@ from stiction.analysis.signals.turning_points import TurningPoints
 from stiction.arrays import Floats, Indices
 
 ROUNDING = 1e-9  # a slope less than this part of the bend is none
-LEVEL = 1e-12  # of the largest value: less is no slope and no bend, as of a force that is clipped
+LEVEL = 1e-12  # of the largest value: less is neither slope nor bend, as of a force that is clipped
 
 
 class Fits(NamedTuple):
@@ -117,7 +117,7 @@ def _within_noise(points: TurningPoints, upward: Floats) -> tuple[Indices, Indic
     starts = ends[:-1] - before
     first = np.minimum(np.minimum.reduceat(np.where(on_top[0], at, n), starts)[:-1], index)
     last = np.maximum.reduceat(np.where(on_top[1], at, -1), starts)[1:]
-    few = last - first < 2  # else the neighbour beyond a sudden fall is no part of the top
+    few = last - first < 2  # else the neighbour beyond a sudden fall is not a part of the top
     first = np.where(few, np.minimum(first, np.clip(index - 1, 0, n - 3)), first)
     return first, np.where(few, np.maximum(last, np.clip(index + 1, 2, n - 1)), last)
 

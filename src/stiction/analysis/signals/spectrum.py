@@ -59,7 +59,7 @@ class Windows(NamedTuple):
 
 
 def windows_of(sample_rate: float, width: float, step: float) -> Windows:
-    """Return windows of a width, one every `step` (both s); two samples wide at least."""
+    """Return windows of a width, one every `step` (both s), at least two samples wide."""
     windows = Windows(round(width * sample_rate), max(1, round(step * sample_rate)), sample_rate)
     if windows.length < 2:
         raise ResultError(too_short(windows, 0))

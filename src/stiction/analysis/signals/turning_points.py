@@ -30,13 +30,13 @@ PER_OCTAVE = 4  # edges tried in each factor of two of height
 # standard deviations of a step (Siegmund 1985, Sequential Analysis), of which its median is 0.674.
 OVERSHOOT = 2 * 0.583 / 0.674
 # What a gap must be worth for each of those above it: as much as an empty one of a factor 2^(1/2).
-# The random walk is no exact model of any noise, and its faults would add up over thousands.
+# The random walk is not an exact model of any noise, and its faults would add up over thousands.
 EACH = np.log(2.0)
 Number = TypeVar("Number", np.int64, np.float64)
 
-FINE = 2**26  # counts over a signal's range; sums over 2^30 samples still fit into 64 bits
-FEWEST_PER_CYCLE = 8  # samples a cycle has at least; with fewer, no shape can be seen
-COARSE_TURNS = 12  # turning points of cycles of few samples, which are needed at least
+COUNTS = 2**26  # over a signal's range; sums over 2^30 samples still fit into 64 bits
+FEWEST_PER_CYCLE = 8  # samples of a cycle; with fewer, no shape can be seen
+COARSE_TURNS = 12  # turning points of cycles of few samples: at least so many are needed
 ALIKE = 0.5  # the smaller legs over the larger ones, the tenths beyond left out; 0.08 for noise
 EVEN = 0.3  # standard deviation of the periods over their mean
 AS_GOOD = 0.9  # of the clearest gap: of two levels as good, the finer one places points better
@@ -194,7 +194,7 @@ def turning_points(values: Floats) -> TurningPoints:
     level = next(i for i, gap in enumerate(gaps) if gap.clearness >= AS_GOOD * clearest)
     gap, width = gaps[level], 2**level
     index = standing_out(levels[level], gap.middle * width, gap.low * width)
-    if len(index) < 2:  # one turn is no cycle
+    if len(index) < 2:  # one turn is not a cycle
         return nothing
     leg = float(np.median(np.abs(np.diff(levels[level][index])))) / width
     trough = np.diff(levels[level][index], append=0) > 0
@@ -203,7 +203,7 @@ def turning_points(values: Floats) -> TurningPoints:
     quiet = next(i for i, noise in enumerate(reach) if noise < PLACING * leg or i == level)
     for finer in range(level - 1, quiet - 1, -1):
         index = _locate(levels[finer], index, trough)
-    unit = float(np.ptp(values)) / FINE
+    unit = float(np.ptp(values)) / COUNTS
     means = values.min() + unit / 2**quiet * levels[quiet] if quiet else without_spikes(values)
     noise, least = unit * reach[quiet], unit * gap.middle
     return TurningPoints(index, trough, means, 2**quiet, noise, gap.clearness, least)
@@ -238,10 +238,10 @@ def _locate(counts: Counts, index: Indices, trough: NDArray[np.bool_]) -> Indice
 
 
 def as_counts(values: Floats) -> Counts:
-    """Return the values as whole numbers, 0 to `FINE`, so that ties are ties in any unit."""
+    """Return the values as whole numbers, 0 to `COUNTS`, so that ties are ties in any unit."""
     if len(values) == 0 or np.ptp(values) == 0.0:
         return np.zeros(len(values), np.int64)
-    counts: Counts = np.rint((values - values.min()) / np.ptp(values) * FINE).astype(np.int64)
+    counts: Counts = np.rint((values - values.min()) / np.ptp(values) * COUNTS).astype(np.int64)
     return counts
 
 

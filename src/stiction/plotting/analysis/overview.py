@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.findings import drive_speed
-from stiction.analysis.creep.misalignment import RESTS
+from stiction.analysis.creep.misalignment import REST_SPEED
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
@@ -57,7 +57,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
 def moves(found: Analysis, V: float) -> bool:
     """Return whether the mass creeps at all: a figure of rest alone is empty."""
     mean = found.creep
-    return mean is not None and bool((np.abs(mean["velocity"].values) > RESTS * V).any())
+    return mean is not None and bool((np.abs(mean["velocity"].values) > REST_SPEED * V).any())
 
 
 def _loading(found: Analysis) -> float | None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.reversals import standing_out
-from stiction.analysis.signals.turning_points import FINE, as_counts
+from stiction.analysis.signals.turning_points import COUNTS, as_counts
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
 from stiction.plotting.run.time_series import draw_line, name_time
@@ -140,7 +140,7 @@ def time_range(record: Record, least: float) -> tuple[float, float, int]:
     least = max(least, ROUNDING * float(np.abs(record.force).max()))
     if quarter < 2 or np.ptp(last) <= max(least, LASTING * np.ptp(before)):
         return start, end, 0  # it dies out, or hardly moves
-    height = int(LEAST * FINE)
+    height = int(LEAST * COUNTS)
     turns = len(standing_out(as_counts(last), height, height))  # two a swing
     if turns < 2:
         return start, end, 0

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.reversals import standing_out, taken_out
-from stiction.analysis.signals.turning_points import FINE, as_counts
+from stiction.analysis.signals.turning_points import COUNTS, as_counts
 from stiction.analysis.slip import Slip, averaged_slip
 from stiction.arrays import TINY, Floats, Indices
 from stiction.plotting.page.parameter import label_decades
@@ -99,7 +99,7 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     height = np.ptp(values[known]) if len(known) else 0.0
     if not 0.0 < least < height:
         return []
-    points, _ = taken_out(as_counts(values[known]), FINE * least / height)
+    points, _ = taken_out(as_counts(values[known]), COUNTS * least / height)
     first, *_, last = points = known[points]
     turns, found = points[1:-1], []
     for group in np.split(turns, np.flatnonzero(np.diff(time[turns]) > longest) + 1):
@@ -141,7 +141,7 @@ def visible_turns(time: Floats, values: Floats, turns: Indices, group: Indices) 
         beside = APART * gaps.mean()
         ends = time[group[0]] - beside, time[group[-1]] + beside
         near = turns[slice(*np.searchsorted(time[turns], ends))]
-        counts, height = as_counts(values[near]), FINE * least / np.ptp(values[near])
+        counts, height = as_counts(values[near]), COUNTS * least / np.ptp(values[near])
         larger = near[standing_out(counts, height, np.inf)]
         slower = np.diff(time[larger])
         if not len(slower) or np.quantile(slower, 0.25) < BURSTS * np.median(gaps):

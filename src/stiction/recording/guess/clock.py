@@ -16,8 +16,11 @@ AGAIN = 0.05  # of a block's duration: a time so near its first begins the next 
 STEADY = 30.0  # largest of intervals over the smallest
 FEW = 0.02  # of the samples: with so few different values a column is a clock or a period
 FIRST = 0.01  # relative: how far the first interval may differ from the others
+ODD = 3.0  # times as far off as any other interval: it differs by more than jitter
 TIED = 0.5  # of the samples with the time of the one before
-GAP = 3.0  # medians: in a longer interval samples are missing
+FALLING = 0.05  # of the steps: times fall where a block begins again, intervals at every other step
+ONE_MISSING = 1.75  # steps between two samples: in a longer interval at least one is missing
+GAP = 3.0  # medians: longer intervals do not count in the rate; shorter ones may be those of jitter
 EVEN = 0.5  # of their mean: how far the other intervals may spread for that to be sure
 
 
@@ -81,7 +84,7 @@ def _are_periods(path: object, values: Floats, said: str | None, name: str) -> b
     steady = positive and float(values.max() / values.min()) < STEADY
     falls = float(np.mean(steps < 0.0))
     ties = float(np.mean(steps == 0.0))
-    if steady and (ties == 1.0 or falls > 0.05):
+    if steady and (ties == 1.0 or falls > FALLING):
         return True
     # few values, each for many samples: a coarse clock, or a period that changes
     distinct = len(np.unique(values))
@@ -116,7 +119,7 @@ def _first_interval(time: Floats) -> list[str]:
     usual = float(np.median(steps[1:]))
     others = np.abs(steps[1:] - usual).max()
     odd = abs(steps[0] - usual)
-    if usual > 0.0 and odd > FIRST * usual and odd > 3.0 * others:
+    if usual > 0.0 and odd > FIRST * usual and odd > ODD * others:
         return [
             f"the first interval is {in_words(steps[0], 's')}, the others {in_words(usual, 's')}"
         ]

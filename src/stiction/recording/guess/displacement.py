@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.recording.guess.clock import ONE_MISSING
 
 ALIKE = 0.1  # relative difference of jumps that are one wrap
 WHOLE = 0.8  # of the range of values: smaller jumps are motion
@@ -35,7 +36,7 @@ def unwrap(values: Floats, time: Floats, period: float | None) -> tuple[Floats, 
     at = np.flatnonzero(np.abs(steps) > WHOLE * span) if span > 0.0 else np.zeros(0, np.intp)
     rest = np.delete(np.abs(steps), at)
     intervals = np.diff(time)
-    gap = bool(len(at)) and float(intervals[at].max()) > 1.75 * float(np.median(intervals))
+    gap = bool(len(at)) and float(intervals[at].max()) > ONE_MISSING * float(np.median(intervals))
     if not len(at) or gap or rest.max(initial=0.0) > QUIET * span:
         return values, 0.0, 0
     sizes = np.abs(steps[at])

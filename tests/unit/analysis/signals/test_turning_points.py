@@ -168,13 +168,13 @@ def test_counts_are_the_same_in_any_unit():
     values = np.array([0.3, -1.7, 2.4, 0.1])
     counts = turning_points.as_counts(values)
     assert counts.dtype == np.int64
-    assert (counts.min(), counts.max()) == (0, turning_points.FINE)
+    assert (counts.min(), counts.max()) == (0, turning_points.COUNTS)
     # finer than a converter of 24 bits, and sums over 2^30 samples fit into 64
-    assert 2**24 < turning_points.FINE <= 2**33
-    back = values.min() + counts * np.ptp(values) / turning_points.FINE
-    assert back == pytest.approx(values, abs=0.6 * np.ptp(values) / turning_points.FINE)
+    assert 2**24 < turning_points.COUNTS <= 2**33
+    back = values.min() + counts * np.ptp(values) / turning_points.COUNTS
+    assert back == pytest.approx(values, abs=0.6 * np.ptp(values) / turning_points.COUNTS)
     assert turning_points.as_counts(-3e-7 * values + 5e-8).tolist() == [
-        turning_points.FINE - each for each in counts
+        turning_points.COUNTS - each for each in counts
     ]
     assert turning_points.as_counts(np.full(3, 7.0)).tolist() == [0, 0, 0]
     assert turning_points.as_counts(np.zeros(0)).tolist() == []

@@ -39,7 +39,7 @@ def parts_of(period: Floats) -> list[slice]:
 
 
 def _variance(size: Floats) -> float:
-    """Return the variance from cycle to cycle, of which single steps are no part."""
+    """Return the variance from cycle to cycle, to which single steps do not belong."""
     steps = np.abs(np.diff(size))
     return 0.5 * (float(np.median(steps)) / NORMAL_MEDIAN) ** 2 if len(steps) else 0.0
 

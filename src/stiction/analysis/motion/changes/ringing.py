@@ -10,11 +10,11 @@ from stiction.analysis.motion.course import ORDERED, order
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.arrays import Floats
 
-SHORT = 0.25  # of the record: a ringing that lasts no longer is no motion of its own
+SHORT = 0.25  # of the record: a ringing that lasts no longer is not a motion of its own
 BEFORE = 0.75  # of a period before its first peak
 LEFT, SLOWEST = 0.05, 0.95  # of its last swing at its end; a swing over the last one at most
-FEWEST_SWINGS = 3  # swings
-ELSEWHERE = 3.0  # times the period: two peaks farther apart, of which one is no ringing's
+FEWEST_SWINGS = 3  # two are one smaller than the other by chance, half of the time
+ELSEWHERE = 3.0  # times the period: peaks farther apart are not of one ringing
 
 
 class Ringing(NamedTuple):

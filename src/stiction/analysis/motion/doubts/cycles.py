@@ -110,7 +110,7 @@ def doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Itera
 
 
 def doubt_drops_in_noise(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt the drops of a vibration in noise: an extreme of noise is no mean of it.
+    """Doubt the drops of a vibration in noise: an extreme of noise is not its mean.
 
     Noise raises peaks, and the averages that it requires lower them. A sine has the variance of an
     eighth of its squared drop; white noise adds its own to that.

@@ -7,7 +7,7 @@ from math import inf
 
 import numpy as np
 
-from stiction.analysis.motion.metadata import FEW
+from stiction.analysis.motion.metadata import FEWEST_PER_FALL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
 from stiction.arrays import xr
@@ -97,7 +97,7 @@ def doubt_few_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
     """Doubt falls of the force of few samples, and the slip speeds that they give."""
     fall = _usual_fall(cycles)
     samples = fall * record.sample_rate
-    if not samples < FEW:
+    if not samples < FEWEST_PER_FALL:
         return
     yield (
         f"A fall of the force takes {samples:.1f} samples: peaks and troughs lie between them"

@@ -62,7 +62,8 @@ CAUSES = {
 }
 STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
 QUICKER = 2.0  # times k/m: so quick a vibration may be that of both springs
-NOISE = 5.0  # standard deviations
+NOISE = 5.0  # standard deviations: noise alone is as far from zero once in a million readings
+SAME = 1e-9  # of the largest force: readings that differ by less are equal but for rounding
 
 
 def warnings(
@@ -133,7 +134,7 @@ def _doubt_load(record: Record) -> Iterator[str]:
 
 
 def warnings_of_run(run: Trajectory, record: Record, cycles: xr.Dataset) -> tuple[str, ...]:
-    """Return what is to be doubted of a run, which is what it states: its samples may be few."""
+    """Return warnings about the samples of a run; its parameters are exact."""
     return (
         *_unsteady(run),
         *doubt_few_samples(record, cycles),
@@ -341,7 +342,8 @@ def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[st
     some = first_reading(record)
     noise = float(np.std(np.diff(some))) / 2.0**0.5
     first = float(some[0])
-    plateau = float(np.ptp(some)) < max(NOISE * noise, 1e-9 * largest) * 2.0
+    within = max(NOISE * noise, SAME * largest)  # of the middle, to either side
+    plateau = float(np.ptp(some)) < 2.0 * within
     read = float(np.median(some)) if plateau else first
     if abs(read) > max(AT_REST * largest, NOISE * noise):
         turned = "; just after a turn of the drive it is not" if read < 0.0 else ""

@@ -17,7 +17,7 @@ from stiction.arrays import TINY, Floats
 
 PERIODS = 16  # of the vibration that a record has at least
 SUSPECTED = 5  # periods from which on a vibration is suspected, but not known
-SAMPLES = 4  # a period at least
+SAMPLES = 4  # at least, of a period
 WIDE = 1.4  # times its frequency, and as far below, reaches a hump
 FAR = 4.0  # below the frequency by this factor: what is still slower is drift
 PER_OCTAVE = 8  # frequencies tried

@@ -7,7 +7,7 @@ import numpy as np
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
-from stiction.analysis.motion.course import BELOW, PARTS
+from stiction.analysis.motion.course import BELOW, COURSE_PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
@@ -33,7 +33,7 @@ from stiction.analysis.motion.rest import (
 from stiction.analysis.motion.vibration import (
     COUPLED,
     FAST_PERIODS,
-    OSCILLATES,
+    LEAST_OSCILLATION,
     OWN_PERIODS,
     FastOscillation,
 )
@@ -76,7 +76,7 @@ def classify(source: Trajectory | Record) -> Regime:
 
 def regime_of(record: Record, found: Swings) -> Regime:
     """Classify the motion in a record with known swings: see `classify`."""
-    if len(record) < PARTS:
+    if len(record) < COURSE_PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
     if rests_throughout(record.time, record.slip_speed, record.sticks):
         return Regime(STUCK, 1.0, {"rests": record.duration})
@@ -114,7 +114,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
 def _while_it_slides(record: Record, found: Swings) -> Regime:
     """Return the kind of motion without cycles until the drive turns, or the spring is unloaded."""
     _, last, falls = sliding(record)
-    if last == len(record) or last < PARTS or record.slip_speed is not None:
+    if last == len(record) or last < COURSE_PARTS or record.slip_speed is not None:
         return _or_transverse(record, by_course(record, found))
     until = record.before(float(record.time[last]))
     seen = by_course(until, found._replace(force=found.force[:last]))
@@ -134,7 +134,7 @@ def _or_transverse(record: Record, seen: Regime, *last: float) -> Regime:
     fast = _fast_oscillation(record)
     if fast is None or not fast.goes_on(*last):
         return _unless_it_sticks(record, seen)
-    sure = 1.0 - 0.5 * OSCILLATES / fast.amplitude  # at the bound either is as likely
+    sure = 1.0 - 0.5 * LEAST_OSCILLATION / fast.amplitude  # at the bound either is as likely
     return Regime(TRANSVERSE, sure, seen.evidence | {"across": fast.amplitude}, seen.kind)
 
 

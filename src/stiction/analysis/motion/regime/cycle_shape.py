@@ -15,7 +15,7 @@ from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
-    RESTS,
+    RESTING_SHARE,
     TRANSITIONAL,
     TRANSVERSE,
     UNDETERMINED,
@@ -44,7 +44,7 @@ NEAR, PLATEAU = 0.1, 0.35
 # does not change them much
 STRAIGHT, QUIET = 0.13, 0.05
 GROWN = 0.1  # of a force drop: less is not worth a word
-NOISE_SHOWS = 1e-3  # of a force drop; what is less is no noise of a load cell
+NOISE_SHOWS = 1e-3  # of a force drop; what is less is not the noise of a load cell
 
 
 class Shapes(NamedTuple):
@@ -99,7 +99,7 @@ class Shapes(NamedTuple):
         if self.kind != self.by_speed:
             return _chance(self.sticks, TOUCHES, np.inf, ROUNDING)
         if self.by_speed != self.by_rise:
-            return _chance(self.still, RESTS, np.inf, self.resolution)
+            return _chance(self.still, RESTING_SHARE, np.inf, self.resolution)
         return _chance(self.rise, *bounds(self.kind), self.resolution)
 
 
@@ -233,7 +233,7 @@ def _sizes(found: Swings) -> dict[str, float]:
 
 
 def _no_vibration(record: Record, found: Swings, shapes: Shapes) -> Regime | None:
-    """Return that nothing is determined if the shape is no vibration's and no stick-slip's."""
+    """Return that nothing is determined if the shape is of neither vibration nor stick-slip."""
     if shapes.by_speed not in (TRANSITIONAL, HARMONIC):
         return None
     stays, count = _near_ends(record, found.lasting), len(found.lasting)

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
-    RESTS,
+    RESTING_SHARE,
     STICK_SLIP,
     TRANSITIONAL,
     TRANSVERSE,
@@ -181,7 +181,7 @@ class Regime(NamedTuple):
         sticks only shortly is still slower than the drive, or faster, for most of that time.
         """
         rests = max(self.evidence.get(name, 0.0) for name in SLOW_SHARES)
-        return self.kind in (STICK_SLIP, TRANSITIONAL) and rests >= RESTS
+        return self.kind in (STICK_SLIP, TRANSITIONAL) and rests >= RESTING_SHARE
 
     @property
     def rests(self) -> str:

@@ -49,7 +49,7 @@ HIDDEN = 0.5
 # Of the power of a hump: a line of so much is one vibration, in noise. In fewer periods an
 # irregular vibration has such a line, too
 MOST, MANY_PERIODS = 0.5, 100.0
-RIPPLE = 1e-3  # of the force's span: a vibration that is less is no motion of its own
+RIPPLE = 1e-3  # of the force's span: a vibration that is less is not a motion of its own
 
 
 def by_course(record: Record, found: Swings) -> Regime:

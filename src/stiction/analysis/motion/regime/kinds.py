@@ -20,13 +20,13 @@ UNDETERMINED = "undetermined"
 SHAPES = ((STICKING, STICK_SLIP), (0.5, TRANSITIONAL), (0.0, HARMONIC))
 # Share of a cycle for which the mass rests or creeps, in one piece, where its slip speed is known:
 # from there on it sticks and slips, whatever the shape says
-RESTS = 0.5
+RESTING_SHARE = 0.5
 BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rises fast
 
 
 def shape(rise_share: float, still: float = 0.0, sticks: float = 0.0) -> str:
     """Return the kind of cycles from the shares of rise, and of rest and sticking where known."""
-    if still >= RESTS or sticks > TOUCHES:
+    if still >= RESTING_SHARE or sticks > TOUCHES:
         return STICK_SLIP
     if rise_share < BACKWARD:
         return UNDETERMINED
