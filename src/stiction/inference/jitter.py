@@ -170,7 +170,7 @@ def simulate_part(
     """Return the samples at these times; None where the run does not come to its end."""
     settings = Settings.model_construct(
         duration=duration, sample_rate=None, rtol=RTOL,
-        regularisation=None, smoothing="root", multiscale=False,
+        regularisation=None, smoothing="root", multiscale="auto",
     )  # fmt: skip
     found = solve_coarsely(Description(slider, initial, settings), times, max_steps=MOST_STEPS)
     return found.samples if found.code == 0 else None
