@@ -65,7 +65,7 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
     if function in _doors:
         return _doors[function]
     hints = getattr(unwrap(function), "__annotations__", {})
-    # what is no description is refused by its reader, with a remedy of its own
+    # what is not a description is refused by its reader, with a remedy of its own
     texts = {each: str(hint) for each, hint in hints.items() if "Description" not in str(hint)}
     paths = {each for each, hint in texts.items() if "Path" in hint}
     counts = [each for each, hint in texts.items() if is_whole(hint) and each != "return"]
@@ -102,7 +102,7 @@ def name_arguments(function: F) -> F:
 
 
 def is_whole(hint: str) -> bool:
-    """Return whether an annotation allows whole numbers only, perhaps beside what is no number."""
+    """Return whether an annotation allows whole numbers only, perhaps beside other types."""
     if "int" not in hint:  # most, and quickly
         return False
     names = {name_of(each) for each in members(ast.parse(hint, mode="eval").body)}

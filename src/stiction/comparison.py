@@ -31,7 +31,7 @@ HEADINGS = (
     "law", "sticks", "stuck (s)", "largest {}/W", "fastest slip (m/s)",
     "slowest slip while loading (m/s)", "median slip while loading (m/s)",
 )  # fmt: skip
-ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is no slip
+ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is not a slip
 REST = 1e-9  # of the drive's speed: slower motion counts as rest
 BRISTLES = 100.0  # of a spring's stiffness: sigma_0 of Canudas de Wit et al. (1995) over 1 kN/m
 MEMORY = 200.0  # memory lengths in a slip length: 10 µm in the 2 mm of Nakano & Popov

@@ -55,10 +55,10 @@ def simulate(
         How long to simulate, s; until the programs of drive and load end, if they do.
     sample_rate : float or str, optional
         Output samples per second, at start, start + 1/rate, ... as far as the end, which is
-        one if it falls on it; 0 for the first and last state only. When left out, 20 in each
+        one if it falls on it; 0 for the first and last state only. By default 20 in each
         period of the faster natural oscillation, or of what shakes drive or load if that is
-        faster still, while these are no more than 200 000; then so many, but 32 in each period of
-        the slower natural oscillation at least, up to a million in all; and 1000 in the shortest
+        faster still, while these are no more than 200 000; then so many, but at least 32 in each
+        period of the slower natural oscillation, up to a million in all; and 1000 in the shortest
         run. With ``multiscale=True`` the first and last state only. Samples never influence the
         steps, and stick intervals are all recorded anyway.
     rtol : float, optional
@@ -76,7 +76,7 @@ def simulate(
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional
-        delta (m/s, 1e-11 at least): replace the set-valued law by
+        delta (m/s, at least 1e-11): replace the set-valued law by
         ``F s/sqrt(|s|^2 + delta^2)``.
         For comparison; choose it far below the creep velocity V sin^2 phi. Not for laws with
         internal state, which are smooth by themselves.

@@ -18,6 +18,11 @@ PARTICIPLE = re.compile(
     "|found|wound|lent|bent|left|lost|meant|paid|sought|thought|spent|stuck|sung|swung|risen"
 )
 NO_PARTICIPLES = {"between", "len", "listen", "reopen", "speed", "seed"}
+# phrases that CONTRIBUTING (English) replaces: "by default", and "is not a"
+REPLACED = re.compile(
+    r"when left out|(?<!there )(?<!There )\b(is|are) no "
+    "(?!longer|more|less|larger|smaller|closer|better|faster|slower|such)"
+)
 # decorators describe the function below them; laws of users, stored in results, have `settled`
 CONTRACTS = {"compiled", "inlined", "settled", "disturbed"}
 BENCHMARKS = sorted((ROOT / "benchmarks").rglob("*.py"))
@@ -71,6 +76,16 @@ def test_functions_are_nouns_or_imperatives():
             if PARTICIPLE.fullmatch(name) and name not in NO_PARTICIPLES | CONTRACTS:
                 wrong.add(f"{path.relative_to(ROOT)}: {name}")
     assert sorted(wrong) == []
+
+
+def test_phrases_that_are_read_twice_are_replaced():
+    pages = [path for path in (ROOT / "docs").rglob("*.md") if "_build" not in path.parts]
+    wrong = [
+        f"{path.relative_to(ROOT)}: {found[0]}..."
+        for path in (ROOT / "README.md", *pages, *(ROOT / "src").rglob("*.py"))
+        for found in REPLACED.finditer(path.read_text("utf-8"))
+    ]
+    assert wrong == []
 
 
 def test_a_mutant_that_is_known_to_be_equivalent_is_one_of_a_line_that_is_there():

@@ -41,9 +41,9 @@ class Constant(NamedTuple):
     Parameters
     ----------
     value : float or str, optional
-        Velocity or force; the program's base value when left out.
+        Velocity or force; by default the program's base value.
     duration : float or str, optional
-        s; to the end when left out, which only the last piece may.
+        s; by default the last piece lasts to the end.
 
     Examples
     --------
@@ -69,7 +69,7 @@ class Step(NamedTuple):
     by : float or str, optional
         Change of velocity or of force.
     duration : float or str, optional
-        s; to the end when left out, which only the last piece may.
+        s; by default the last piece lasts to the end.
     to : float or str, optional
         Velocity or force after the jump, in place of `by`.
 
@@ -133,7 +133,7 @@ class Hold(NamedTuple):
     Parameters
     ----------
     duration : float or str, optional
-        s; to the end when left out, which only the last piece may.
+        s; by default the last piece lasts to the end.
 
     Examples
     --------
@@ -180,7 +180,7 @@ class Reversal(NamedTuple):
     Parameters
     ----------
     duration : float or str, optional
-        s; to the end when left out, which only the last piece may.
+        s; by default the last piece lasts to the end.
 
     Examples
     --------
@@ -212,7 +212,7 @@ class Harmonic(NamedTuple):
     phase : str, optional
         Angle at the start of the piece, with its unit; zero by default.
     duration : float or str, optional
-        s; to the end when left out, which only the last piece may.
+        s; by default the last piece lasts to the end.
 
     Examples
     --------

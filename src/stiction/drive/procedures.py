@@ -129,7 +129,7 @@ def load_ramp(levels: Quantities, *, ramp: Quantity, hold: Quantity | None = Non
     ramp : float or str
         How long each change takes, s.
     hold : float or str, optional
-        How long each level is held, s; not at all when left out.
+        How long each level is held, s; by default not at all.
 
     Examples
     --------

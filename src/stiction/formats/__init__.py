@@ -61,7 +61,7 @@ def format_of(path: Path) -> Format:
     Raises
     ------
     ResultError
-        If there is no such file, or it is of no format that is read here.
+        If there is no such file, or its format is not read here.
     """
     if not os.path.isfile(path):
         what = "is not a file; name one" if os.path.lexists(path) else "no such file"
@@ -94,6 +94,6 @@ def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
             raise ResultError(f"{path}: no samples in it ({kind.name}); record it again")
     except ResultError:  # the header of a record may look like a description
         if use := use_of(path, RESULT, RECORD):
-            raise ResultError(f"{path}: is no record; {use}") from None
+            raise ResultError(f"{path}: is not a record; {use}") from None
         raise
     return [table for table in tables if len(table)]

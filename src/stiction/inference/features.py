@@ -38,7 +38,7 @@ class FeatureScale(NamedTuple):
     velocity : float
         Of the drive, m/s.
     drift : float
-        Of the load cell's zero, N/s, as it is stated; without it trends are no features.
+        Of the load cell's zero, N/s, as it is stated; without it trends are not features.
     """
 
     force: float

@@ -17,7 +17,7 @@ def plot(source: Any, axes: Any = None, *, trust: bool = False) -> Any:
     source : object, str or Path
         The object to draw, with a method ``plot``, or the file of a run.
     axes : Axes or sequence of Axes, optional
-        Drawn on; a new figure, which pyplot shows, when left out.
+        Drawn on; by default a new figure, which pyplot shows.
     trust : bool, optional
         For a file; see `stiction.load`.
 

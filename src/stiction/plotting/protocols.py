@@ -30,7 +30,7 @@ def plot_velocity_steps(found: VelocitySteps, ax: Axes | None = None) -> Axes:
     found : VelocitySteps
         From `stiction.analysis.velocity_steps`.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
     """
     with style():
         ax = panel(ax, 2.8)
@@ -59,7 +59,7 @@ def plot_healing(found: Healing, ax: Axes | None = None) -> Axes:
     found : Healing
         From `stiction.analysis.healing`.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
     """
     with style():
         ax = panel(ax, 2.4)
@@ -95,7 +95,7 @@ def plot_hysteresis(found: Hysteresis, ax: Axes | None = None) -> Axes:
     found : Hysteresis
         From `stiction.analysis.hysteresis`.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
     """
     with style():
         ax = panel(ax, 2.6)
@@ -121,7 +121,7 @@ def plot_load_dependence(found: LoadDependence, ax: Axes | None = None) -> Axes:
     found : LoadDependence
         From `stiction.analysis.load_dependence`.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
 
     Examples
     --------
@@ -153,7 +153,7 @@ def plot_apparent_friction(found: ApparentFriction, ax: Axes | None = None) -> A
     found : ApparentFriction
         From `stiction.analysis.apparent_friction`.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
     """
     phi = np.degrees(found.phi)
     with style():

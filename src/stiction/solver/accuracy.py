@@ -92,7 +92,7 @@ def accuracy(
     also the upper limit; without either a tiny share of the initial speeds. Friction that weakens
     at the rate g per second, the steepest -F'(v)/m up to 10 times that speed, lets slip grow from
     k V/(m g^2), which must then be resolved; k is the acting stiffness. Slip that the
-    rounding of forces makes in 1/g, or in a radian of the spring, is no error; where a law has
+    rounding of forces makes in 1/g, or in a radian of the spring, is not an error; where a law has
     states, each step tells how much that is (M70c).
     """
     along, across = speeds(slider, stretch.problem.drive, start, stretch.end)

@@ -69,7 +69,7 @@ def refuse_other_files(path: str | Path) -> None:
     ResultError
         Naming the first link, external or virtual dataset in it.
     OSError
-        If it is no HDF5 file.
+        If it is not an HDF5 file.
     """
     h5py: Any = import_module("h5py")  # slow to import
     sizes: list[float] = []

@@ -65,7 +65,7 @@ def creep_curves(
     Dataset
         Over ``phase`` and ``bin``: ``velocity`` (m/s), ``velocity_error`` (m/s; for samples
         whose noise is independent, in a run for rounding alone), ``force`` (N), ``begin`` and
-        ``end`` (s), the time to slip at both ends of the bin; not a number where a phase is
+        ``end`` (s), the time to slip at both ends of the bin; NaN where a phase is
         shorter.
         Over ``phase``: ``slip_time`` (s), when it ends.
 

@@ -78,7 +78,7 @@ def _load_and_speed(slider: Slider) -> tuple[float, float]:
     found = stretches(slider.motion, loads, np.array([0.0, np.inf]))
     if [each[:2] for each in found] != [(0.0, np.inf)]:
         raise ResultError(
-            "the velocity of the drive, or the load, varies, and one force over one load is no "
+            "the velocity of the drive, or the load, varies, and one force over one load is not "
             "friction then; give a constant velocity, and no load program"
         )
     return found[0].load, abs(found[0].velocity)

@@ -75,7 +75,7 @@ def _why(found: Audit, inertia: float) -> str:
         return (
             f"The apparent stick is mostly creep under a turning friction force: an artefact "
             f"of the misalignment. The mass covers {far}. The largest force shows how far "
-            f"friction has turned; it is no evidence of static friction."
+            f"friction has turned; it is not evidence of static friction."
         )
     if _hastens(seen, inertia) and seen.shares.creep > seen.shares.rest:
         return (

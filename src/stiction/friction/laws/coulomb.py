@@ -21,7 +21,7 @@ class Coulomb(NamedTuple):
     mu_0 : float
         Friction coefficient.
     mu_static : float, optional
-        Separate coefficient of static friction, not below mu_0; none when left out.
+        Separate coefficient of static friction, not below mu_0; by default none.
 
     Examples
     --------

@@ -28,7 +28,7 @@ class ExponentialWeakening(NamedTuple):
     v_f : float or str
         Slip speed over which the coefficient changes, m/s.
     mu_static : float, optional
-        Separate coefficient of static friction, not below mu_0; none when left out.
+        Separate coefficient of static friction, not below mu_0; by default none.
 
     Examples
     --------

@@ -29,9 +29,9 @@ class HyperbolicWeakening(NamedTuple):
     v_h : float or str
         Slip speed at which the coefficient has fallen by half, m/s.
     mu_static : float, optional
-        Separate coefficient of static friction, not below mu_0; none when left out.
+        Separate coefficient of static friction, not below mu_0; by default none.
     mu_inf : float, optional
-        Friction coefficient at large slip speed; zero when left out.
+        Friction coefficient at large slip speed; by default zero.
 
     Examples
     --------

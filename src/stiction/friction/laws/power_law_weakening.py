@@ -31,7 +31,7 @@ class PowerLawWeakening(NamedTuple):
     n : float
         Exponent, greater than zero.
     mu_static : float, optional
-        Separate coefficient of static friction, not below mu_0; none when left out.
+        Separate coefficient of static friction, not below mu_0; by default none.
 
     Examples
     --------

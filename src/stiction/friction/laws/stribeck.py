@@ -36,9 +36,9 @@ class Stribeck(NamedTuple):
         Exponent, 1 to 10: 2 is usual (Gaussian), 1 the exponential law. Below 1 the slope at
         vanishing slip speed would be infinite.
     c : float or str, optional
-        Viscous friction per normal load, s/m; none when left out.
+        Viscous friction per normal load, s/m; by default none.
     mu_static : float, optional
-        Separate coefficient of static friction, not below mu_s; none when left out.
+        Separate coefficient of static friction, not below mu_s; by default none.
 
     Examples
     --------

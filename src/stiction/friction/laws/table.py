@@ -32,7 +32,7 @@ class Table(NamedTuple):
     mu : sequence of float
         Friction coefficient at each.
     mu_static : float, optional
-        Separate coefficient of static friction, not below the first of mu; none when left out.
+        Separate coefficient of static friction, not below the first of mu; by default none.
 
     Examples
     --------

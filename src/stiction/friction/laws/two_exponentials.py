@@ -29,7 +29,7 @@ class TwoExponentials(NamedTuple):
     v_1, v_2 : float or str
         Slip speeds over which it is lost, m/s.
     mu_static : float, optional
-        Separate coefficient of static friction, not below the sum of all three; none when left out.
+        Separate coefficient of static friction, not below the sum of all three; by default none.
 
     Examples
     --------

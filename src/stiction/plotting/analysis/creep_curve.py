@@ -86,7 +86,7 @@ def plot_creep(
         What to compare with, each by its name: velocity (m/s) as a function of the time to slip
         (s), from `creep_theory` or a fit's ``velocity``.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
 
     Examples
     --------

@@ -37,8 +37,8 @@ def plot_cycles(
     source : Record or Trajectory
         Measured, or a run; not empty.
     axes : Axes or sequence of Axes, optional
-        For the whole record, and for the part that is shown larger; a new figure as wide as a
-        page when left out.
+        For the whole record, and for the part that is shown larger; by default a new figure as wide
+        as a page.
 
     Returns
     -------

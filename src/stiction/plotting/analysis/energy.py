@@ -100,7 +100,7 @@ def plot_energy(budget: xr.Dataset, axes: Sequence[Axes] | None = None) -> NDArr
     budget : Dataset
         From `stiction.analysis.energy_budget`, with some intervals, e.g. cycles.
     axes : sequence of Axes, optional
-        Two, drawn on; a new figure as wide as a column when left out.
+        Two, drawn on; by default a new figure as wide as a column.
 
     Returns
     -------

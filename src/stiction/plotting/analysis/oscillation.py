@@ -38,9 +38,9 @@ def plot_spectrogram(
     amplitude : DataArray
         Over ``frequency`` (Hz) and ``time`` (s), from `stiction.analysis.spectrogram`.
     highest : float, optional
-        Upper end of the frequency axis, Hz; all when left out.
+        Upper end of the frequency axis, Hz; by default all.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
     """
     with style():
         ax = panel(ax, 2.6)
@@ -178,7 +178,7 @@ def plot_oscillation(
     oscillation : Dataset
         What that returned.
     axes : sequence of Axes, optional
-        Three, drawn on; a new figure as wide as a column when left out.
+        Three, drawn on; by default a new figure as wide as a column.
 
     Returns
     -------

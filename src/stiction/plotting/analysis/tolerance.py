@@ -34,7 +34,7 @@ def plot_tolerance(budget: Budget, axes: Sequence[Axes] | None = None) -> NDArra
     budget : Budget
         Of `stiction.audit` of a rig with an uncertain misalignment: ``audit(rig).budget``.
     axes : sequence of Axes, optional
-        Four; a new figure as wide as a page when left out.
+        Four; by default a new figure as wide as a page.
 
     Returns
     -------

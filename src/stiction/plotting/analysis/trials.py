@@ -58,7 +58,7 @@ def plot_trials(
     trials : sequence of Trial
         At least one; blue.
     axes : Axes or sequence of Axes, optional
-        Drawn on, one for each trial; a new figure as wide as a page when left out.
+        Drawn on, one for each trial; by default a new figure as wide as a page.
 
     Returns
     -------

@@ -40,7 +40,7 @@ def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
     slider : Slider
         The system.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
 
     Examples
     --------

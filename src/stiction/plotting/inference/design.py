@@ -26,7 +26,7 @@ def plot_design(advice: Advice, axes: Axes | None = None) -> Axes:
     advice : Advice
         Of `stiction.design`.
     axes : Axes, optional
-        A new figure when left out.
+        By default a new figure.
 
     Returns
     -------

@@ -31,7 +31,7 @@ def plot_mechanism(odds: Odds, axes: Sequence[Axes] | None = None) -> NDArray[np
     odds : Odds
         Of `stiction.mechanism`.
     axes : sequence of Axes, optional
-        Three; a new figure as wide as a page when left out.
+        Three; by default a new figure as wide as a page.
 
     Returns
     -------

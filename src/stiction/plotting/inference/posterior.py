@@ -41,7 +41,7 @@ def plot_posterior(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.o
     fit : Fit
         From `stiction.fit`.
     axes : sequence of Axes, optional
-        One for each parameter; a new figure as wide as a page when left out.
+        One for each parameter; by default a new figure as wide as a page.
 
     Returns
     -------
@@ -184,7 +184,7 @@ def plot_predictive(
     comparison : Comparison
         Of `stiction.audit` of a rig and a record: ``audit(rig, record=record).measured``.
     axes : sequence of Axes, optional
-        Three; a new figure as wide as a page when left out.
+        Three; by default a new figure as wide as a page.
 
     Returns
     -------
@@ -240,7 +240,7 @@ def plot_ranks(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.objec
     fit : Fit
         From `stiction.fit`.
     axes : sequence of Axes, optional
-        One for each parameter; a new figure as wide as a page when left out.
+        One for each parameter; by default a new figure as wide as a page.
 
     Returns
     -------

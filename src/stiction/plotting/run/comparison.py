@@ -72,7 +72,7 @@ def plot_comparison(
         The runs by label, e.g. from `stiction.compare`.
     axes : mapping of str to Axes, optional
         What to draw, and where: any of "force", "X", "speed", "rest", "portrait", "held" and
-        "words". All, on a new figure as wide as a page, when left out.
+        "words". All, on a new figure as wide as a page by default.
 
     Returns
     -------

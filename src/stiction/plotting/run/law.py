@@ -23,9 +23,9 @@ def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = Non
     slider : Slider
         The system.
     fastest : float, optional
-        Largest slip speed, m/s; ten times that of the drive when left out.
+        Largest slip speed, m/s; by default ten times that of the drive.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
 
     Examples
     --------

@@ -47,7 +47,7 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
     axes : mapping of str to Axes, optional
         What to draw, and where: any of "system", "words", "law", "drive_X", "drive_Y",
         "normal_load" (where these change), "force", "friction", "direction", "position",
-        "speed", "stuck". All, on a new figure as wide as a page, when left out.
+        "speed", "stuck". All, on a new figure as wide as a page by default.
 
     Returns
     -------
@@ -195,7 +195,7 @@ def plot_glance(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict
     run : Trajectory
         Any run.
     axes : mapping of str to Axes, optional
-        As of `stiction.plotting.plot_run`; a new figure as wide as a page when left out.
+        As of `stiction.plotting.plot_run`; by default a new figure as wide as a page.
 
     Returns
     -------

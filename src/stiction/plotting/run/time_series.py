@@ -33,7 +33,7 @@ LONGER = 1.2  # times as long as they are, periods must fit into an oscillation:
 THIN = 5e-3  # of a panel's height: a smaller range looks like a line
 RANGE = 1.5  # periods in which extremes are sought: they differ in length
 MEAN = 4.0  # periods of a mean; two are the least whose weight cancels them
-LARGER = 3.0  # times the median swing: larger ones are no noise of an oscillation, but another one
+LARGER = 3.0  # times the median swing: larger ones are not noise, but another oscillation
 APART = 15.0  # times a period: a mean over `MEAN` periods keeps 0.95 of an oscillation as slow
 ALL_ALONG = 0.7  # of the time of an oscillation, noise on it is
 BURSTS = 1.5  # times the gap between turns: larger swings that are as fast are bursts and spikes
@@ -54,7 +54,7 @@ def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floa
     Parameters
     ----------
     time, values : array
-        (n,); not-a-number values leave gaps only where a whole bin lacks a value.
+        (n,); NaN values leave gaps only where a whole bin lacks a value.
     bins : int
         How many.
 
@@ -88,7 +88,7 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     Parameters
     ----------
     time, values : ndarray
-        (n,); not-a-number values are no turns.
+        (n,); NaN values are not turns.
     longest : float
         Period of the slowest of them, s, by the mean over time, and time between two turns that
         ends one.
@@ -374,7 +374,7 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the slip speed (m/s) over time on a logarithmic axis; gaps where it is zero.
 
     The line is the mean over short times, a pale band reaches to the maximum: where it comes to
-    rest in each of many oscillations, how far it falls is no speed of the system. Speeds below
+    rest in each of many oscillations, how far it falls is not a speed of the system. Speeds below
     1e-7 of the largest are left out, so that a landing does not stretch the axis; of rate and
     state, under which nothing lands, none are. Where samples are too few for that, the line is the
     speed of the mean motion (`averaged_slip`).

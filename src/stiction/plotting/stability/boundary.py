@@ -32,7 +32,7 @@ def plot_boundary(
     closed_form : tuple of array, optional
         Another boundary to compare with, the two parameters in SI.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
 
     Examples
     --------

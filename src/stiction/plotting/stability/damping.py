@@ -84,7 +84,7 @@ def plot_damping(
     A, theta
         Ranges, as of `draw_damping_map`.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
 
     Examples
     --------

@@ -32,7 +32,7 @@ def plot_modes(
     critical : Critical, optional
         Critical values of the same parameter: dashed, with their numbers above.
     axes : sequence of Axes, optional
-        Two, drawn on; a new figure as wide as a column when left out.
+        Two, drawn on; by default a new figure as wide as a column.
 
     Returns
     -------

@@ -32,7 +32,7 @@ def plot_onset(onset: Onset, critical: float | None = None, ax: Axes | None = No
     critical : float, optional
         The onset by linear theory, SI, from `stiction.linear_stability.critical`.
     ax : Axes, optional
-        Drawn on; a new figure as wide as a column when left out.
+        Drawn on; by default a new figure as wide as a column.
     """
     with style():
         ax = panel(ax, 2.7)

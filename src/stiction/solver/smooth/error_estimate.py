@@ -192,7 +192,7 @@ def local_error(
     """Return the relative error of the step's cubic, and write the error itself.
 
     It is relative to the slip, or to the motion about steady sliding if that is slower; slip that
-    the rounding of forces makes is no error (M70c). Where slip follows the springs, the cubic
+    the rounding of forces makes is not an error (M70c). Where slip follows the springs, the cubic
     misses no force, and its error is that of the distance (M70b).
     """
     p = within(w, INTERIOR)

@@ -119,7 +119,7 @@ def ask(helper: subprocess.Popen[bytes], task: int) -> Any:
 def main() -> None:
     """Do the tasks named on standard input, until it ends."""
     questions, answers = sys.stdin.buffer, os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a law prints is no answer
+    os.dup2(2, 1)  # what a law prints is not an answer
     sys.path[:] = pickle.load(questions)
     work = pickle.load(questions)
     answers.write(READY)

@@ -264,7 +264,7 @@ def _in_file(fault: Fault) -> Fault:
 
 
 def refuse_other(study: object) -> None:
-    """Refuse what is no study."""
+    """Refuse what is not a study."""
     if not isinstance(study, Study):
         remedy = "make one with st.Study(...) or read one with st.Study.from_toml(path)"
         raise DescriptionError.of("study", f"{echo(study)} is not a Study; {remedy}")

@@ -329,7 +329,7 @@ def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[st
         if high > BOTH_SIGNS * largest:
             yield (
                 f"The force lies between {in_words(low, 'N')} and {in_words(high, 'N')}: the drive "
-                "goes back and forth, and a mean is no friction; or the zero of the force is off."
+                "goes back and forth, and a mean is not friction; or the zero of the force is off."
             )
             return
         yield (
