@@ -38,14 +38,9 @@ from stiction.plotting.page.save import png, save, write
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PURPLE, new_figure, style
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
+from stiction.plotting.run.lines import draw_line, envelope, oscillations
 from stiction.plotting.run.overview import plot_run
-from stiction.plotting.run.time_series import (
-    cut_open,
-    draw_line,
-    draw_slip_speed,
-    envelope,
-    oscillations,
-)
+from stiction.plotting.run.time_series import cut_open, draw_slip_speed
 from stiction.plotting.shades import COLORS
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep, zero_slip

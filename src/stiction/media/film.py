@@ -23,7 +23,8 @@ from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
 from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
-from stiction.plotting.run.time_series import STILL, envelope, say_only
+from stiction.plotting.run.lines import envelope
+from stiction.plotting.run.time_series import STILL, say_only
 from stiction.result.table import ColumnTable, sample_table
 from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole

@@ -28,7 +28,8 @@ from stiction.plotting.page.style import (
     style,
 )
 from stiction.plotting.run import time_series
-from stiction.plotting.run.time_series import draw_line, draw_rate
+from stiction.plotting.run.lines import draw_line
+from stiction.plotting.run.time_series import draw_rate
 from stiction.plotting.stability.damping import (
     CLEAR,
     draw_damping_map,
@@ -120,7 +121,7 @@ def _magnify_creep(ax: Axes, run: Trajectory) -> Axes:
     stick = time <= time[0] + 0.98 * (end - time[0])
     inset = ax.inset_axes((0.16, 0.48, 0.36, 0.44))
     factor, prefix = metric_prefix(X[stick])
-    time_series.draw_line(inset, time[stick], X[stick] * factor, BLUE)
+    draw_line(inset, time[stick], X[stick] * factor, BLUE)
     inset.set_ylabel(f"$X$ ({prefix}m)", fontsize=7, labelpad=1)
     inset.set_xlabel("$t$ (s)", fontsize=7, labelpad=1)
     inset.margins(y=0.08)

@@ -16,7 +16,8 @@ from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import Floats, xr
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
-from stiction.plotting.run.time_series import draw_line, name_time
+from stiction.plotting.run.lines import draw_line
+from stiction.plotting.run.time_series import name_time
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 

@@ -16,7 +16,8 @@ from stiction.analysis.signals.reversals import standing_out
 from stiction.analysis.signals.turning_points import COUNTS, as_counts
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
-from stiction.plotting.run.time_series import draw_line, name_time
+from stiction.plotting.run.lines import draw_line
+from stiction.plotting.run.time_series import name_time
 from stiction.text.quantity_text import metric_prefix
 
 TITLE = 48  # characters of a line above a panel

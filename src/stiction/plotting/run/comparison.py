@@ -32,8 +32,8 @@ from stiction.plotting.run.curves import (
     force_symbol,
     mark_early_end,
 )
+from stiction.plotting.run.lines import EDGE
 from stiction.plotting.run.time_series import (
-    EDGE,
     fastest_drive,
     say_only,
     set_speed_limits,

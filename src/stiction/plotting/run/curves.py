@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike
 from stiction.analysis.slip import Slip, cell_force, cell_symbol
 from stiction.arrays import Floats
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
+from stiction.plotting.run.lines import draw_line
 from stiction.plotting.run.time_series import (
     DEEPEST,
     average_slip,
-    draw_line,
     fastest_drive,
     say_only,
     stays,

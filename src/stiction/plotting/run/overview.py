@@ -23,6 +23,7 @@ from stiction.plotting.page.words import (
 )
 from stiction.plotting.run import time_series
 from stiction.plotting.run.law import draw_law
+from stiction.plotting.run.lines import BAND, draw_line
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
@@ -149,13 +150,13 @@ def _forces(ax: Axes, run: Trajectory) -> None:
     factor, prefix = metric_prefix(np.concatenate(forces))
     times = run.samples["time"]
     for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
-        line = time_series.draw_line(ax, times, force * factor, color)
+        line = draw_line(ax, times, force * factor, color)
         line.set_label(f"$k_{axis} u_{axis}$")
         line.set_zorder(2.2 if axis == "x" else 2.0)  # the transverse force would hide it
     ax.set_ylabel(f"spring force ({prefix}N)")
     handles: list[Artist] = [*ax.get_lines()]
     if ax.collections:
-        band = Patch(color=GREY, alpha=time_series.BAND, linewidth=0, label="fast oscillation")
+        band = Patch(color=GREY, alpha=BAND, linewidth=0, label="fast oscillation")
         handles.append(band)
     ax.legend(
         handles=handles, loc="lower right", ncols=3, bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0

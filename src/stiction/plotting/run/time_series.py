@@ -3,245 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.patches import StepPatch
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
 from stiction.analysis.motion.rest import stuck_until
-from stiction.analysis.signals.reversals import standing_out, taken_out
-from stiction.analysis.signals.turning_points import COUNTS, as_counts
 from stiction.analysis.slip import Slip, averaged_slip
-from stiction.arrays import TINY, Floats, Indices
+from stiction.arrays import Floats
 from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
+from stiction.plotting.run.lines import BAND, EDGE, FEW, draw_line
 from stiction.text.quantity_text import metric_prefix, percent
 from stiction.trajectory import Trajectory
 
-FEW = 50  # so few samples are drawn as points: the motion between them is unknown
 PARTS = 500  # of the time: finer than a printed line shows
-BINS = 1500  # more than a printed line has dots
-LINES = 3.0  # widths of a line in a period: fewer leave next to no paper between its two strokes
-TURNS = 6  # at least, of an oscillation: three periods
-PAUSE, PAUSES = 3.0, 0.5  # times the median gap between turns, and the share of such in bursts
-LONGER = 1.2  # times as long as they are, periods must fit into an oscillation: theirs differ
-THIN = 5e-3  # of a panel's height: a smaller range looks like a line
-RANGE = 1.5  # periods in which extremes are sought: they differ in length
-MEAN = 4.0  # periods of a mean; two are the least whose weight cancels them
-LARGER = 3.0  # times the median swing: larger ones are not noise, but another oscillation
-APART = 15.0  # times a period: a mean over `MEAN` periods keeps 0.95 of an oscillation as slow
-ALL_ALONG = 0.7  # of the time of an oscillation, noise on it is
-BURSTS = 1.5  # times the gap between turns: larger swings that are as fast are bursts and spikes
-SMOOTH = 13  # least bins of a mean, two of them with weight zero: one may hold a period and a half
-POINT = 72.0  # pt in an inch
-EDGE = 0.3  # pt, of the outline of a range: pale colours look alike in print
-BAND = 0.3  # opacity of the range
 HARDLY = 1.0  # %, of the time stuck: less is hardly seen
 DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
 LEAST = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
 CONSTANT = 1e-9  # of a quantity: a smaller range is rounding
 STILL = 1.0  # deg: least range of the axis of an angle
-
-
-def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floats, Floats]:
-    """Thin out a long series without a visible change: keep the extremes of `bins` bins.
-
-    Parameters
-    ----------
-    time, values : array
-        (n,); NaN values leave gaps only where a whole bin lacks a value.
-    bins : int
-        How many.
-
-    Returns
-    -------
-    time, values : ndarray
-        (2 bins,), or what was given if that is not longer.
-    """
-    t, v = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
-    if len(t) <= 2 * bins:
-        return t, v
-    starts = _bin_starts(len(t), bins)
-    middle = 0.5 * (t[starts] + t[np.r_[starts[1:], len(t)] - 1])
-    low, high = np.fmin.reduceat(v, starts), np.fmax.reduceat(v, starts)
-    return np.repeat(middle, 2), np.column_stack([low, high]).ravel()
-
-
-class Oscillation(NamedTuple):
-    """An oscillation: the samples from its first turn to its last, and its mean period in s.
-
-    An oscillation that begins or ends with the record has the samples beyond these turns, too.
-    """
-
-    samples: slice
-    period: float
-
-
-def oscillations(time: Floats, values: Floats, longest: float, least: float) -> list[Oscillation]:
-    """Find the oscillations with short periods.
-
-    Parameters
-    ----------
-    time, values : ndarray
-        (n,); NaN values are not turns.
-    longest : float
-        Period of the slowest of them, s, by the mean over time, and time between two turns that
-        ends one.
-    least : float
-        Height of a turn; smaller ones do not count.
-    """
-    known = np.flatnonzero(np.isfinite(values))
-    height = np.ptp(values[known]) if len(known) else 0.0
-    if not 0.0 < least < height:
-        return []
-    points, _ = taken_out(as_counts(values[known]), COUNTS * least / height)
-    first, *_, last = points = known[points]
-    turns, found = points[1:-1], []
-    for group in np.split(turns, np.flatnonzero(np.diff(time[turns]) > longest) + 1):
-        group = visible_turns(time, values, turns, group)
-        gaps = np.diff(time[group])
-        if len(group) < TURNS or gaps[gaps > PAUSE * np.median(gaps)].sum() > PAUSES * gaps.sum():
-            continue
-        periods = time[group[2:]] - time[group[:-2]]
-        # that at any time, not of any turn: the turns of a burst do not make up for a long pause
-        period, lasts = np.average(periods, weights=periods), time[group[-1]] - time[group[0]]
-        if period <= longest and (TURNS - 1) * period <= LONGER * 2.0 * lasts:
-            begins = time[group[0]] - time[first] <= 1.5 * gaps[0]
-            goes_on = time[last] - time[group[-1]] <= 1.5 * gaps[-1]
-            start, end = first if begins else group[0], last if goes_on else group[-1]
-            found.append(Oscillation(slice(start, end + 1), 2.0 * gaps.mean()))
-    return found
-
-
-def visible_turns(time: Floats, values: Floats, turns: Indices, group: Indices) -> Indices:
-    """Leave out turns that are noise on an oscillation which a mean over their periods would alter.
-
-    The mean of a few noise periods takes away part of an oscillation that is hardly slower, and
-    more of it where the noise is slower: what is left beats.
-
-    Parameters
-    ----------
-    time, values : ndarray
-        (n,).
-    turns, group : ndarray
-        Indices of all turns, and of those that are looked at, which follow one another.
-
-    Returns
-    -------
-    ndarray
-        Those of the slower oscillation, or `group`.
-    """
-    while len(group) >= TURNS:
-        gaps, least = np.diff(time[group]), LARGER * np.median(np.abs(np.diff(values[group])))
-        beside = APART * gaps.mean()
-        ends = time[group[0]] - beside, time[group[-1]] + beside
-        near = turns[slice(*np.searchsorted(time[turns], ends))]
-        counts, height = as_counts(values[near]), COUNTS * least / np.ptp(values[near])
-        larger = near[standing_out(counts, height, np.inf)]
-        slower = np.diff(time[larger])
-        if not len(slower) or np.quantile(slower, 0.25) < BURSTS * np.median(gaps):
-            break
-        inside = larger[(larger >= group[0]) & (larger <= group[-1])]
-        lasts = np.ptp(time[inside]) if len(inside) else 0.0  # of a growing one, only the end is
-        if slower.mean() > beside or lasts < ALL_ALONG * np.ptp(time[group]):
-            break
-        group = inside
-    return group
-
-
-def draw_line(
-    ax: Axes,
-    time: ArrayLike,
-    values: ArrayLike,
-    color: str = BLACK,
-    width: float = 0.7,
-    window: tuple[float, float] | None = None,
-) -> Line2D:
-    """Draw values over time (s), thinned out by `envelope`.
-
-    Where oscillations are too fast for a line of this width in this panel, the line is their mean,
-    and a pale band their range.
-
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on, in a figure that has its size.
-    time, values : array
-        (n,).
-    color : str
-        Of the line and the band.
-    width : float
-        Of the line, pt.
-    window : tuple of float, optional
-        Time and range that the panel shows, by default those of the values.
-    """
-    times, shown = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
-    if len(times) > FEW:
-        height = np.fmax.reduce(shown) - np.fmin.reduce(shown)
-        span, height = window or (times[-1] - times[0], height)
-        across = POINT * ax.get_window_extent().width / ax.figure.get_dpi()
-        longest = LINES * width / across * span
-        found = oscillations(times, shown, longest, THIN * height)
-        if found:
-            shown = _draw_range(ax, times, shown, found, color)
-    (line,) = ax.plot(*envelope(times, shown), color=color, linewidth=width)
-    if len(times) <= FEW:
-        line.set(linestyle="none", marker="o", markersize=2.5, clip_on=False, zorder=3)
-    if times[-1] > times[0]:
-        ax.set_xlim(times[0], times[-1])
-    return line
-
-
-def _draw_range(
-    ax: Axes, time: Floats, values: Floats, found: list[Oscillation], color: str
-) -> Floats:
-    """Draw the range of oscillations as a band; return the values with their mean in its place."""
-    bins = min(BINS, len(time) // 2)
-    starts = _bin_starts(len(time), bins)
-    step = (time[-1] - time[0]) / bins
-    low, high, shown = np.full(bins, np.nan), np.full(bins, np.nan), values.copy()
-    for samples, period in found:
-        first, last = np.searchsorted(starts, (samples.start, samples.stop - 1), side="right") - 1
-        within = slice(first, last + 1)
-        inner = np.maximum(starts[within] - samples.start, 0)
-        low[within], high[within], mean = _smooth(values[samples], inner, period / step)
-        shown[samples] = np.repeat(mean, np.diff(inner, append=samples.stop - samples.start))
-    middle = 0.5 * (time[starts] + time[np.r_[starts[1:], len(time)] - 1])
-    band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
-    band.set_facecolor((color, BAND))
-    return shown
-
-
-def _smooth(values: Floats, starts: Indices, period: float) -> tuple[Floats, ...]:
-    """Return low, high and mean of periods around each bin of an oscillation; `period` in bins."""
-    known = np.isfinite(values)
-    half = int(np.ceil(RANGE * period)) // 2
-    low, high = (
-        _extremes(np.where(known, values, none), starts, half, extreme, none)
-        for extreme, none in ((np.fmin, np.inf), (np.fmax, -np.inf))
-    )
-    weight = np.hanning(max(SMOOTH, round(MEAN * period) // 2 * 2 + 3))
-    total, count = (
-        np.convolve(np.add.reduceat(each, starts), weight)[len(weight) // 2 :][: len(starts)]
-        for each in (np.where(known, values, 0.0), known.astype(np.float64))
-    )
-    return low, high, total / np.maximum(count, TINY)
-
-
-def _extremes(values: Floats, starts: Indices, half: int, extreme: np.ufunc, none: float) -> Floats:
-    """Return the extreme of each bin and `half` as many to either side, as there are."""
-    own = np.pad(extreme.reduceat(values, starts), half, constant_values=none)
-    return np.asarray(extreme.reduce(sliding_window_view(own, 2 * half + 1), axis=1))
-
-
-def _bin_starts(samples: int, bins: int) -> Indices:
-    """Return the index of the first sample of each bin."""
-    return np.linspace(0, samples, bins, endpoint=False).astype(np.intp)
 
 
 def draw_quantity(
