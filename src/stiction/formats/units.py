@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from stiction.formats.channels import CHANNELS, plain
 from stiction.text.unit_text import UnitError, factor
 
 GRAVITY = 9.80665  # m/s^2, the standard acceleration of gravity (CGPM 1901): gram-force
@@ -121,6 +122,8 @@ def split_unit(heading: str) -> tuple[str, str]:
     --------
     >>> split_unit("Force [mN]"), split_unit("t/s"), split_unit("time_ms"), split_unit("F_N")
     (('Force', 'mN'), ('t', 's'), ('time', 'ms'), ('F_N', ''))
+    >>> split_unit("Kraft N"), split_unit("F N")
+    (('Kraft', 'N'), ('F N', ''))
     """
     heading = heading.strip().strip('"').strip()
     found = NAMED.fullmatch(heading)
@@ -135,7 +138,22 @@ def split_unit(heading: str) -> tuple[str, str]:
         plain = bool(at and name and unit) and not weight and not symbol and not is_ratio(unit)
         if plain and (len(unit) <= 4 or unit.lower() in SPELLED) and is_unit(unit):
             return name, spell(unit)
+    name, _, unit = heading.rpartition(" ")
+    if is_channel(name, unit) and not is_channel(heading):
+        return name.strip(), spell(unit)
     return heading, SPELLED.get(heading.lower(), "")
+
+
+def is_channel(name: str, unit: str = "") -> bool:
+    """Return whether a column of this name, in this unit if one is given, is a channel's.
+
+    >>> is_channel("Kraft", "N"), is_channel("Kraft", "s"), is_channel("F N")
+    (True, False, True)
+    """
+    return any(
+        each.names.fullmatch(plain(name)) and (not unit or size_of(unit, each.unit) is not None)
+        for each in CHANNELS.values()
+    )
 
 
 def _raw_units(stated: str, unit: str) -> float | None:

@@ -34,6 +34,7 @@ T = TypeVar("T")
 FORCES = {"force", "force_across"}
 DISPLACEMENTS = ("position", "drive_position")
 FEWEST_SAMPLES = 2  # samples of a block
+BESIDE = 0.05  # of the rows of the longest table: a shorter one holds results, say
 STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
 UNEVEN = 0.01  # relative: intervals that differ by more are reported
 
@@ -90,19 +91,27 @@ def read_measurements(
     reading = asked.reading
     layout = TextLayout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
     found: list[Measurement] = []
-    faults, without = Faults(), Faults()  # a table beside those of samples may have no force
-    for table in read_tables(path, layout):
+    # beside the table of samples there may be one without a force, and a short one of results
+    faults, without, short, notes = Faults(), Faults(), Faults(), []
+    tables = read_tables(path, layout)
+    most = max(map(len, tables), default=0)
+    for table in tables:
         try:
             found += _measurements(path, table, asked)
-        except UnclearColumns as error:
-            (without if FORCES & {*error.lacking} else faults).found.append(error)
         except ResultError as error:
-            faults.found.append(error)
+            lacks = isinstance(error, UnclearColumns) and FORCES & {*error.lacking}
+            if len(table) < BESIDE * most:
+                short.found.append(error)
+                rows = number_of(len(table), "row")
+                notes.append(f"a table of {rows} left out, the first at {table.line(0)}")
+            else:
+                (without if lacks else faults).found.append(error)
     faults.refuse()
     if not found:
         without.refuse()
+        short.refuse()
     numbered = [
-        each._replace(origin=_place_among(each.origin, number, len(found)))
+        each._replace(origin=_place_among(each.origin, number, len(found), notes))
         for number, each in enumerate(found, 1)
     ]
     return numbered if reading.block is None else [block_of(path, numbered, reading.block)]
@@ -125,8 +134,9 @@ def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
     return found[number - 1]
 
 
-def _place_among(origin: Origin, number: int, count: int) -> Origin:
-    return Origin(**{**vars(origin), "block": number, "blocks": count})
+def _place_among(origin: Origin, number: int, count: int, notes: Sequence[str]) -> Origin:
+    place = {"block": number, "blocks": count, "notes": (*origin.notes, *notes)}
+    return Origin(**{**vars(origin), **place})
 
 
 def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurement]:

@@ -795,3 +795,50 @@ def test_all_damaged_files_of_a_folder_are_listed(write):
     assert [line.split(": ")[0] for line in str(error.value).splitlines()] == [
         str(path.parent / name) for name in ("b.csv", "c.csv")
     ]
+
+
+@pytest.mark.parametrize(
+    "heading", ["Time (s),Force (mN)", "Time [s],Force [mN]", "Time/s,Force/mN"]
+)
+def test_a_column_by_its_heading_as_the_file_or_a_message_has_it(write, heading):
+    """A heading copied from the file was "neither a column nor a unit"."""
+    path = write(f"{heading}\n{lines()}")
+    for time, force in (heading.split(","), ("Time [s]", "Force [mN]")):
+        record = st.read_record(path, time=time, force=force)
+        assert record.force == pytest.approx(1e-3 * FORCE)
+
+
+def test_units_after_a_blank(write):
+    record = st.read_record(write(f"Zeit s;Kraft mN\n{lines(';', ',')}"))
+    assert record.force == pytest.approx(1e-3 * FORCE)
+    with pytest.raises(st.ResultError, match="states no unit"):  # F N is the normal force
+        st.read_record(write(f"Time [s],Force,F N\n{lines(columns=(TIME, FORCE, FORCE))}"))
+
+
+@pytest.mark.parametrize("form", ["{m:02d}:{s:06.3f}", "{m:d}:{s:05.2f}", "00:{m:02d}:{s:06.3f}"])
+def test_minutes_and_seconds_are_times(write, form):
+    whole = 118.0 + TIME
+    rows = [
+        f"{form.format(m=int(t // 60.0), s=t % 60.0)},{f}"
+        for t, f in zip(whole, FORCE, strict=True)
+    ]
+    record = st.read_record(write("time,Force [N]\n" + "\n".join(rows)))
+    assert record.time == pytest.approx(TIME)
+
+
+def test_exponents_of_fortran(write):
+    rows = [f"{t:.4E},{f:.6E}".replace("E", "D") for t, f in zip(TIME, FORCE, strict=True)]
+    record = st.read_record(write("t [s],F [N]\n" + "\n".join(rows)))
+    assert record.force == pytest.approx(FORCE)
+
+
+def test_a_table_of_results_above_the_samples(write):
+    """Of 1 row, as testing machines write it: it hid the samples."""
+    times = 0.01 * np.arange(200)
+    table = '"Results"\n"","Maximum load [N]","Friction coefficient"\n"1","1.7","0.35"\n\n'
+    samples = lines(columns=(times, times, 1.0 + 0.1 * np.sin(times)), digits=6)
+    record = st.read_record(
+        write(f'{table}"Time","Extension","Load"\n"(s)","(mm)","(N)"\n{samples}'), force="Load"
+    )
+    assert len(record) == 200
+    assert "a table of 1 row left out, the first at line 3" in notes(record)

@@ -25,21 +25,23 @@ MISSING = {
 }
 NAMED_DAY = r"\d{1,2}[-. ][^\W\d]{3,}[-. ]\d{2,4}"  # 01-Mar-2026
 DAY = rf"\d{{1,4}}[-./]\d{{1,2}}[-./]\d{{1,4}}|{NAMED_DAY}"  # before a time of day
+MINUTES = r"\d{1,3}:[0-5]\d[.,]\d+"  # and seconds: 12:34.5
 CLOCK = re.compile(
-    rf"((?P<date>{DAY})[ T])?(?P<clock>\d{{1,2}}:\d{{2}}(:\d{{2}}([.,]\d+)?)?)"
+    rf"((?P<date>{DAY})[ T])?(?P<clock>\d{{1,2}}:\d{{2}}(:\d{{2}}([.,]\d+)?)?|{MINUTES})"
     r"( ?(?P<half>[AP])M|Z|(?P<offset>[+-]\d{2}:?\d{2}))?",
     re.I,
 )
 DATE = re.compile(rf"\d{{4}}-\d{{2}}-\d{{2}}|\d{{1,2}}[./]\d{{1,2}}[./]\d{{2,4}}|{NAMED_DAY}")
 HALF_A_DAY = 43200.0  # s
-NUMBER = {
-    ".": re.compile(r"[+−-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
-    ",": re.compile(r"[+−-]?(\d+(,\d+)?|,\d+)([eE][+-]?\d+)?|[+-]?inf", re.I),
+NUMBER = {  # exponents as Fortran writes them, too: 1.5D-03
+    ".": re.compile(r"[+−-]?(\d+\.?\d*|\.\d+)([ED][+-]?\d+)?|[+-]?inf", re.I),
+    ",": re.compile(r"[+−-]?(\d+(,\d+)?|,\d+)([ED][+-]?\d+)?|[+-]?inf", re.I),
 }
 GROUPS = {  # thousands in groups: 12,345.6 or 12'345.6
     ".": re.compile(r"[+−-]?[1-9]\d{0,2}([,'’ \u00a0\u202f]\d{3})+(\.\d*)?"),
     ",": re.compile(r"[+−-]?[1-9]\d{0,2}([.'’ \u00a0\u202f]\d{3})+(,\d*)?"),
 }
+FORTRAN = re.compile(r"(?<=[\d.,])D(?=[+-]?\d)", re.I)
 GROUPED = re.compile(r"[+-]?[1-9]\d{0,2}[.,]\d{3}")  # one and a half, or fifteen hundred?
 THOUSANDTHS, HUNDREDS = 0.1, re.compile(r"[+-]?[1-9]\d\d")  # share of cells below a thousand
 
@@ -82,7 +84,7 @@ class Dialect(NamedTuple):
         if self._has_groups(cell):
             whole, sign, rest = cell.partition(self.decimal)
             cell = re.sub("[^0-9+−-]", "", whole) + sign + rest
-        return cell.replace("−", "-").replace(self.decimal, ".")
+        return FORTRAN.sub("e", cell).replace("−", "-").replace(self.decimal, ".")
 
     def is_value(self, cell: str) -> bool:
         """Return whether a cell is a number, a time of day, or missing."""
@@ -272,6 +274,7 @@ def seconds_of(cells: Sequence[object]) -> Floats | None:
 def _since_midnight(time: re.Match[str]) -> float:
     """Return a time of day as seconds, less its offset from universal time."""
     parts = [float(each.replace(",", ".")) for each in time["clock"].split(":")]
+    parts = [0.0, *parts] if re.fullmatch(MINUTES, time["clock"]) else parts
     if half := time["half"]:
         parts[0] = parts[0] % 12.0 + (12.0 if half in "Pp" else 0.0)
     offset = (time["offset"] or "+0000").replace(":", "")

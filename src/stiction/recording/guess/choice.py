@@ -11,7 +11,7 @@ from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError, echo
 from stiction.formats.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.formats.table import FileColumn, FileTable
-from stiction.formats.units import is_electric, is_ratio, size_of
+from stiction.formats.units import is_electric, is_ratio, size_of, split_unit
 
 DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
 
@@ -145,11 +145,12 @@ def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
 
 
 def _find(path: object, table: FileTable, name: str, text: str) -> FileColumn | None:
-    """Return the column of a name, a heading or a number."""
-    columns, small = table.columns, text.lower()
+    """Return the column of a name, a heading as the file or a message has it, or a number."""
+    columns, small, split = table.columns, text.lower(), split_unit(text)
     for matches in (
         [x for x in columns if text in (x.name, x.heading)],
         [x for x in columns if small in (x.name.lower(), x.heading.lower())],
+        [x for x in columns if split[1] and split == (x.name, x.unit)],
         [x for x in columns if text == str(x.number)],
     ):
         if len(matches) > 1:
