@@ -133,6 +133,11 @@ class RecordOptions:
     stroke
         Number of the stroke to read, from 1, where the drive goes to and fro and the record has its
         displacement. On a way back, forces and displacements are turned round. Example: --stroke 2.
+    begin
+        Time at which the part to read begins, in the times of the file: after running in, say.
+        Example: --begin "20 s".
+    end
+        Time at which it ends. Example: --end "3 min".
     sidecar
         TOML file that says all this, so that it need not be repeated. By default it is the file
         beside the record, data.toml for data.csv. Example: --sidecar rig/sensors.toml.
@@ -158,6 +163,8 @@ class RecordOptions:
     wrap: str | None = None
     block: int | None = None
     stroke: int | None = None
+    begin: str | None = None
+    end: str | None = None
     sidecar: Path | None = None
 
     def arguments(self) -> dict[str, Any]:

@@ -210,7 +210,8 @@ def even_channels(record: Record, name: str) -> tuple[float, dict[str, Floats]]:
     if grid is None or not grid.serves:
         raise ResultError(
             f"{name} has samples too far apart, or too close together, for a fit, which takes an "
-            f"uneven clock and gaps in {percent(MOST_MISSING)} of the time; fit a part without gaps"
+            f"uneven clock and gaps in {percent(MOST_MISSING)} of the time; fit a part without "
+            "gaps (--begin, --end)"
         )
     measured = {each: getattr(record, each, None) for each in USED}
     channels = {each: grid.on(values) for each, values in measured.items() if values is not None}

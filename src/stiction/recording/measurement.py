@@ -26,7 +26,7 @@ from stiction.recording.guess.displacement import unwrap
 from stiction.recording.guess.remarks import Said, what_is_said
 from stiction.recording.noise import noise_level
 from stiction.recording.origin import Origin, Use
-from stiction.recording.request import MARKS, SIGNS, ReadingOptions, Request, request
+from stiction.recording.request import MARKS, SIGNS, AskedPart, ReadingOptions, Request, request
 from stiction.recording.sensor import Sensor
 from stiction.text.units import in_words
 
@@ -46,7 +46,7 @@ class Measurement(NamedTuple):
     known: dict[str, Any]
     sensors: dict[str, Sensor]
     origin: Origin
-    stroke: int | None = None  # of it, if only one is wanted: see `stiction.recording.strokes`
+    asked: AskedPart = AskedPart()  # of it, if not all is wanted
 
 
 class TableBlock(NamedTuple):
@@ -225,7 +225,7 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
         start=said.start or table.start,
         notes=tuple(notes),
     )
-    return Measurement(channels, dict(asked.known), sensors, origin, asked.reading.stroke)
+    return Measurement(channels, dict(asked.known), sensors, origin, asked.reading.part)
 
 
 def _with_force(block: TableBlock) -> tuple[NDArray[np.bool_], list[str]]:

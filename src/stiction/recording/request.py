@@ -32,6 +32,7 @@ SECTIONS = ("columns", "reading", "record", "sensors")
 MARKS = {"tab": "\t", "comma": ",", "semicolon": ";", "space": " ", "bar": "|"}
 SIGNS = {"point": ".", "comma": ","}
 WHOLE = "none"  # a displacement that does not start again
+Instant = Annotated[Read[float], reader("a time", "s", "2 s")]
 SignedForce = Annotated[Read[float], reader("a force", "N", "3 mN")]
 
 
@@ -69,6 +70,14 @@ def _column(value: object) -> str:
 Column = Annotated[Read[str], BeforeValidator(_column)]
 
 
+class AskedPart(NamedTuple):
+    """The part of a record that is asked for: between two times, s, and of that a stroke."""
+
+    begin: float | None = None
+    end: float | None = None
+    stroke: int | None = None
+
+
 class ReadingOptions(Described):
     """How to read a file, as far as the user says so.
 
@@ -92,6 +101,8 @@ class ReadingOptions(Described):
         Which of several blocks, counted from 1: a block begins where the times begin again.
     stroke : int, optional
         Which stroke of a drive that goes to and fro, counted from 1.
+    begin, end : float or str, optional
+        Of the part that is read, s, in the times of the file; by default all.
     """
 
     time: Column | None = None
@@ -108,6 +119,13 @@ class ReadingOptions(Described):
     wrap: Annotated[Read[float] | None, BeforeValidator(_wrap)] = None
     block: Annotated[Whole, Field(ge=1)] | None = None
     stroke: Annotated[Whole, Field(ge=1)] | None = None
+    begin: Instant | None = None
+    end: Instant | None = None
+
+    @property
+    def part(self) -> AskedPart:
+        """What is said of the part of the record."""
+        return AskedPart(self.begin, self.end, self.stroke)
 
     @property
     def columns(self) -> dict[str, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -11,14 +10,12 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.formats.table import number_of
-from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
-from stiction.text.units import in_words
+from stiction.recording.part import part_of
 
 ENDS = 0.25  # of the reach, about its middle: beyond it the drive is at one end or at the other
 AT_AN_END = 0.02  # of the reach: so near its end a drive turns, or dwells
 WHOLE = 0.5  # of the reach: a part at the beginning or the end of a record that is less is left out
-DIRECTED = ("force", "force_across", "position", "drive_position")  # channels with a sign
 
 
 class Stroke(NamedTuple):
@@ -88,29 +85,4 @@ def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
             f"{path}: has {number_of(len(parts), 'stroke')}{one}; there is no stroke {echo(number)}"
         )
     samples, way = parts[number - 1]
-    channels = {
-        key: (way if key in DIRECTED else 1.0) * values[samples]
-        for key, values in found.channels.items()
-    }
-    time = channels["time"]
-    elapsed = float(time[0] - found.channels["time"][0])
-    sensors = {name: sensor.later(elapsed) for name, sensor in found.sensors.items()}
-    back = "; on this way back, forces and displacements were turned round" if way < 0.0 else ""
-    note = (
-        f"stroke {number} of {len(parts)}, from {in_words(float(time[0]), 's')} to "
-        f"{in_words(float(time[-1]), 's')}{back}"
-    )
-    used = [
-        replace(use, least=float(channels[x].min()), largest=float(channels[x].max()))
-        if (x := use.channel) in channels
-        else use
-        for use in found.origin.uses
-    ]
-    origin = replace(
-        found.origin,
-        uses=tuple(used),
-        samples=len(time),
-        rate=rate_of(time),
-        notes=(note, *found.origin.notes),
-    )
-    return found._replace(channels=channels, sensors=sensors, origin=origin, stroke=None)
+    return part_of(found, samples, f"stroke {number} of {len(parts)}", way)

@@ -119,3 +119,27 @@ def test_the_zero_of_a_later_stroke_is_less_certain_if_it_drifts(path):
     # the stage turns at 4 s, which is known to 2 % of the stroke
     assert second.zero_uncertainty == pytest.approx(0.05, rel=0.02)
     assert first.zero_drift_uncertainty == second.zero_drift_uncertainty == 0.01
+
+
+def test_a_part_between_two_times_is_read(path, tmp_path, capsys):
+    """Messages advised "a part without gaps", "cycles after running in"; no command took one."""
+    whole = st.read_record(path)
+    part = st.read_record(path, begin="6 s", end=10.0)
+    inside = (whole.time >= 6.0) & (whole.time <= 10.0)
+    assert part.time == pytest.approx(whole.time[inside])
+    assert part.force == pytest.approx(whole.force[inside])
+    assert "a part, from 6 s to 10 s" in part.origin.notes
+    whole.save(tmp_path / "whole.nc")
+    stored = st.read_record(tmp_path / "whole.nc", begin="6 s", end="10 s")
+    assert stored.force == pytest.approx(part.force)
+    path.with_suffix(".toml").write_text('[reading]\nbegin = "6.5 s"\n')
+    assert st.read_record(path).time[0] == pytest.approx(6.5)
+    assert st.read_record(path, stroke=1).time[0] == pytest.approx(8.0)  # the first whole one
+    with pytest.raises(st.ResultError, match=r"0 samples between.* its times go from 0 s to 19.99"):
+        st.read_record(path, begin="30 s")
+    with pytest.raises(st.DescriptionError, match="begin: '3 N' is in N"):
+        st.read_record(path, begin="3 N")
+    with pytest.raises(SystemExit) as ended:
+        main(["import", str(path), "--begin", "6s", "--end", "10 s"])
+    assert ended.value.code == 0
+    assert "A part, from 6 s to 10 s." in capsys.readouterr().out

@@ -10,7 +10,8 @@ from stiction.analysis.record import Record
 from stiction.errors import DescriptionError, Fault, Faults, ResultError
 from stiction.formats.table import natural_key
 from stiction.recording.measurement import Measurement, read_measurements
-from stiction.recording.request import ReadingOptions
+from stiction.recording.part import part_between
+from stiction.recording.request import AskedPart, ReadingOptions
 from stiction.recording.stored import is_stored, read_stored, root_attributes
 from stiction.recording.strokes import stroke_of
 from stiction.storage.kinds import use_of
@@ -35,6 +36,8 @@ class ReadArguments(TypedDict, total=False):
     wrap: str | None
     block: int | None
     stroke: int | None
+    begin: Quantity | None
+    end: Quantity | None
     normal_load: Quantity | None
     stiffness: Quantity | None
     stiffness_across: Quantity | None
@@ -78,6 +81,8 @@ def read_record(
     stroke : int, optional
         Which stroke of a drive that goes to and fro, from 1, between two turns of its displacement.
         Forces and displacements of a way back are turned round.
+    begin, end : float or str, optional
+        Of the part to read, in the times of the file: after running in, before a gap.
 
     Returns
     -------
@@ -206,7 +211,7 @@ def _measurements(
         return read_measurements(file, said, None if sidecar is None else Path(sidecar))
     stored = read_stored(file)
     changed = {name: value for name, value in said.items() if value is not None}
-    stroke = ReadingOptions(stroke=changed.pop("stroke", None)).stroke
+    part = {x: changed.pop(x) for x in AskedPart._fields if x in changed}
     strange = [
         name for name in changed if name not in Record.model_fields or name in stored.channels
     ]
@@ -215,13 +220,16 @@ def _measurements(
         raise ResultError(
             f"{path}: is a stored record, in SI already: leave out {what}, or read its source again"
         )
-    return [stored._replace(known={**stored.known, **changed}, stroke=stroke)]
+    return [stored._replace(known={**stored.known, **changed}, asked=ReadingOptions(**part).part)]
 
 
 def _record(path: str | Path, found: Measurement) -> Record:
-    """Return the record of a measurement, or of a stroke of it, with faults that name the file."""
-    if found.stroke is not None:
-        found = stroke_of(path, found, found.stroke)
+    """Return the record of a measurement, or of a part of it, with faults that name the file."""
+    begin, end, stroke = found.asked
+    if begin is not None or end is not None:
+        found = part_between(path, found, begin, end)
+    if stroke is not None:
+        found = stroke_of(path, found, stroke)
     try:
         return Record(**found.channels, **found.known, sensors=found.sensors, origin=found.origin)
     except DescriptionError as error:

@@ -174,7 +174,7 @@ def why_not(grid: EvenGrid | None) -> str:
         return "a spectrum needs at least two samples"
     if grid.serves:
         return ""
-    remedy = "analyse a part without gaps, or sample it evenly"
+    remedy = "analyse a part without gaps (--begin, --end), or sample it evenly"
     if grid.missing.mean() > MOST_MISSING:
         return (
             f"{percent(grid.missing.mean())} of the time lies in gaps between samples, and a "

@@ -118,8 +118,8 @@ class Odds:
         if self.steady < TREND:
             found.append(
                 "Friction drifts: peaks or drops have a trend from cycle to cycle (p = "
-                f"{self.steady:.1g}), which is not simulated. Take cycles after running in. "
-                f"{STATE_DRIFT}"
+                f"{self.steady:.1g}), which is not simulated. Take cycles after running in "
+                f"(--begin). {STATE_DRIFT}"
             )
         return found
 
