@@ -26,7 +26,15 @@ from stiction.recording.guess.displacement import unwrap
 from stiction.recording.guess.remarks import Said, what_is_said
 from stiction.recording.noise import noise_level
 from stiction.recording.origin import Origin, Use
-from stiction.recording.request import MARKS, SIGNS, AskedPart, ReadingOptions, Request, request
+from stiction.recording.request import (
+    KNOWN,
+    MARKS,
+    SIGNS,
+    AskedPart,
+    ReadingOptions,
+    Request,
+    request,
+)
 from stiction.recording.sensor import Sensor
 from stiction.text.units import in_words
 
@@ -214,6 +222,7 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
     sensors = {name: each.sensor for name, each in found.items()}
     notes += remarks
     notes += [_in_words(name, x) for name, x in sensors.items() if x.noise or x.quantisation]
+    notes += _apparatus_in_words(asked.known)
     channels = {"time": time, **{name: each.values for name, each in found.items()}}
     origin = Origin(
         path.name,
@@ -226,6 +235,16 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
         notes=tuple(notes),
     )
     return Measurement(channels, dict(asked.known), sensors, origin, asked.reading.part)
+
+
+def _apparatus_in_words(known: Mapping[str, Any]) -> list[str]:
+    """Return a note on what is stated of the apparatus, if anything is."""
+    its = [
+        f"{name.replace('_', ' ')} {in_words(float(known[name]), unit)}"
+        for name, unit in KNOWN.items()
+        if known.get(name) is not None
+    ]
+    return [f"stated: {', '.join(its)}"] if its else []
 
 
 def _with_force(block: TableBlock) -> tuple[NDArray[np.bool_], list[str]]:

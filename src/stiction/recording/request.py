@@ -57,7 +57,10 @@ class KnownApparatus(Described):
     zero: SignedForce | None = None
 
 
-KNOWN = tuple(KnownApparatus.model_fields)
+KNOWN = {  # its fields and their units
+    "normal_load": "N", "stiffness": "N/m", "stiffness_across": "N/m", "drive_velocity": "m/s",
+    "mass": "kg", "zero": "N",
+}  # fmt: skip
 
 
 def _column(value: object) -> str:
@@ -209,7 +212,7 @@ def _tables(own: Path) -> dict[str, dict[str, Any]]:
     allowed = {
         "columns": tuple(CHANNELS),
         "reading": tuple(name for name in ReadingOptions.model_fields if name not in CHANNELS),
-        "record": KNOWN,
+        "record": tuple(KNOWN),
         "sensors": tuple(name for name in CHANNELS if name != "time"),
     }
     for section, table in raw.items():

@@ -842,3 +842,8 @@ def test_a_table_of_results_above_the_samples(write):
     )
     assert len(record) == 200
     assert "a table of 1 row left out, the first at line 3" in notes(record)
+
+
+def test_what_is_stated_of_the_apparatus_is_echoed(write):
+    record = st.read_record(write(f"t [s],F [N]\n{lines()}"), mass="250 g", stiffness="1 N/mm")
+    assert "stated: stiffness 1 kN/m, mass 250 g" in notes(record)
