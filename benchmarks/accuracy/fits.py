@@ -23,14 +23,14 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 from scipy.stats import kstest
 
-from stiction.inference.calibration import Learned, learn_or_read
 from stiction.inference.features import USED
+from stiction.inference.learning.calibration import Learned, learn_or_read
+from stiction.inference.learning.regression_abc import Sample, quantiles, rank
+from stiction.inference.learning.summary import FeatureSummary, nearest, outlier_factor
 from stiction.inference.library import Library, build, features_from, plan
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.posterior import RARE
 from stiction.inference.priors import Rig, Uniform
-from stiction.inference.regression_abc import Sample, quantiles, rank
-from stiction.inference.summary import FeatureSummary, nearest, outlier_factor
 from stiction.recording.sensor import LowPass
 
 Floats = NDArray[np.float64]

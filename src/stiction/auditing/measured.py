@@ -11,6 +11,7 @@ import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.analysis.report import analyse
+from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.auditing.progress import silent
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
@@ -162,7 +163,7 @@ def verdict(found: RecordComparison) -> str:
             "No verdict: this record is not like those of the rig as described, whatever the "
             "uncertain values are; the fitted values below mean nothing until that is explained."
         )
-    return f"{explanation(found)}; {alternatives(claimed)}."
+    return f"{explanation(found)}; {alternatives(found.odds)}."
 
 
 def explanation(found: RecordComparison) -> str:
@@ -172,6 +173,11 @@ def explanation(found: RecordComparison) -> str:
         return (
             "The rig as described explains this record without any coefficient of static friction "
             "beyond its law; its misalignment is not fitted"
+        )
+    if not phi.identified and found.fit is not None and "phi" in found.fit.at_an_end:
+        return (
+            "The rig as described explains this record, but the record points to the end of the "
+            f"prior of its misalignment, {describe(phi)}: widen the prior"
         )
     if not phi.identified:
         return (
@@ -184,14 +190,19 @@ def explanation(found: RecordComparison) -> str:
     )
 
 
-def alternatives(claimed: str) -> str:
+def alternatives(odds: Odds | None) -> str:
     """Return what the comparison with other mechanisms adds to an explanation, a clause."""
-    if claimed == ROTATION:
+    if odds is not None and odds.decision == ROTATION:
+        others = (its for name, its in zip(odds.names, odds.likeness, strict=True)
+                  if name != ROTATION)  # fmt: skip
+        excluded = all(min(its.farther, its.larger) < UNLIKE for its in others)
+        probability = near_one(odds.probabilities.max())
         return (
-            "the other mechanisms compared do not explain it: what looks like static friction is "
-            "the apparatus, whose friction vector rotates"
-        )
-    if claimed == UNDECIDED:
+            "the other mechanisms compared do not explain it"
+            if excluded
+            else f"of the mechanisms compared this is the most probable ({probability})"
+        ) + ": what looks like static friction is the apparatus, whose friction vector rotates"
+    if odds is not None and odds.decision == UNDECIDED:
         return "that it is another mechanism is not excluded"
     return "no static friction beyond that law is needed, and none is excluded"
 
@@ -248,6 +259,7 @@ def curve(found: Predictive | None) -> str:
     """Return how the loading curve agrees with simulations."""
     if found is None:
         return "With the fitted values hardly any simulated record has cycles of stick and slip."
+    low, high = (in_words(x, "N/s") for x in np.quantile(found.simulated.rate, BOUNDS_95))
     force, bend = (
         ((values >= low) & (values <= high)).mean()
         for values, (low, high) in zip(
@@ -257,7 +269,8 @@ def curve(found: Predictive | None) -> str:
     return (
         f"The measured loading curve lies within the 95 % band of simulated ones over "
         f"{percent(force)} of its length, and its departure from a straight line over "
-        f"{percent(bend)}; "
+        f"{percent(bend)}. It rises by {in_words(float(found.measured.rate), 'N/s')} on average, "
+        f"95 % of the simulated ones by {low} to {high}. "
         f"{percent(found.larger)} of the simulations depart as far from their mean, and below "
         f"{percent(RARE)} it is unlike them."
     )

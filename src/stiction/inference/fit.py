@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +12,8 @@ from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
 from stiction.friction.registry import LAWS
-from stiction.inference.calibration import learn_or_read
+from stiction.inference.learning.calibration import learn_or_read
+from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.library import (
     LONGEST_CYCLE,
     SIMULATIONS,
@@ -149,7 +150,23 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
         "the record is stick-slip at all: `stiction analyse` tells",
     )  # fmt: skip
     observed = np.concatenate([each.features for each in seen])
-    place = None if folder is None else folder / f"learned-{library.wanted}.npz"
-    learned = learn_or_read(library.features, library.scores, place)
+    learned = learn_or_read(library.features, library.scores, _place(folder, library))
     (sample,) = learned.posteriors(observed[None])
-    return Fit.of(library, sample, seen, learned)
+    return Fit.of(library, sample, seen, learned, [*_alone(library, seen, folder)])
+
+
+def _alone(
+    library: Library, seen: Sequence[Observation], folder: Path | None
+) -> Iterator[FeatureSummary]:
+    """Yield what the features of each of several records say by themselves."""
+    if len(seen) < 2:
+        return
+    ends = np.cumsum([len(each.features) for each in seen])[:-1]
+    for number, features in enumerate(np.split(library.features, ends, axis=1), 1):
+        place = _place(folder, library, f"-record-{number}")
+        yield learn_or_read(np.ascontiguousarray(features), library.scores, place).summary
+
+
+def _place(folder: Path | None, library: Library, of: str = "") -> Path | None:
+    """Return the file in which is kept what a library taught."""
+    return None if folder is None else folder / f"learned-{library.wanted}{of}.npz"

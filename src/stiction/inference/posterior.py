@@ -12,10 +12,12 @@ from scipy.special import ndtr
 
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
-from stiction.inference.calibration import Learned
+from stiction.inference.disagreement import Disagreement, disagreement
+from stiction.inference.learning.calibration import Learned
+from stiction.inference.learning.regression_abc import Sample, quantiles
+from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.library import Library, Plan
 from stiction.inference.observation import TREND, Observation, Trend, steadiness
-from stiction.inference.regression_abc import Sample, quantiles
 from stiction.names import draw
 from stiction.result.file import new_netcdf
 from stiction.storage.files import NETCDF, placeable, whole
@@ -27,7 +29,9 @@ from stiction.text.units import in_words
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95
+CONTRADICTS = 0.01  # p-value below which records of one rig contradict each other
 RARE = 0.05  # share of simulations below which a record is not like them
+NEAR_AN_END = 2.0  # normal score beyond which 5 % of a prior lie
 TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
 NARROWER = 0.75  # of the prior's standard deviation, as normal scores: what counts as identified
 STATE_DRIFT = (
@@ -100,6 +104,8 @@ class Fit:
         measured one does.
     trend : Trend
         p-values of a trend of peaks and of drops from cycle to cycle, in all records together.
+    disagreement : Disagreement or None
+        The parameter of which several records say most clearly something else, if there are any.
     """
 
     plan: Plan
@@ -111,12 +117,21 @@ class Fit:
     scores: Floats = field(compare=False)
     farther: float = field(compare=False)
     trend: Trend = field(compare=False)
+    disagreement: Disagreement | None = field(compare=False)
 
     @classmethod
     def of(
-        cls, library: Library, sample: Sample, seen: Sequence[Observation], learned: Learned
+        cls,
+        library: Library,
+        sample: Sample,
+        seen: Sequence[Observation],
+        learned: Learned,
+        alone: Sequence[FeatureSummary] = (),
     ) -> Self:
-        """Return the fit of a weighted sample of normal scores, from what a library taught."""
+        """Return the fit of a weighted sample of normal scores, from what a library taught.
+
+        `alone` is what the features of each record say by themselves, where there are several.
+        """
         observed = np.concatenate([each.features for each in seen])
         pairs = zip(*(each.trend for each in seen), strict=True)
         trend = Trend(*map(steadiness, pairs))  # of all records
@@ -132,7 +147,9 @@ class Fit:
             after[last_part(its.name)].attrs["coverage_of_95_percent_intervals"] = its.coverage
         farther = learned.summary.farther(observed)
         count, ranks = len(library.scores), learned.ranks
-        return cls(plan, after, prior, estimates, count, ranks, scores, farther, trend)
+        blocks = [each.features for each in seen]
+        apart = disagreement([*plan.priors], library.scores, alone, blocks) if alone else None
+        return cls(plan, after, prior, estimates, count, ranks, scores, farther, trend, apart)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -190,6 +207,13 @@ class Fit:
         return [each.name for each, middle in pairs if abs(middle) > TAIL]
 
     @property
+    def at_an_end(self) -> list[str]:
+        """The parameters with a median near an end of the prior: a few per cent lie beyond."""
+        middles = np.median(self.scores, axis=0)
+        pairs = zip(self.estimates, middles, strict=True)
+        return [each.name for each, middle in pairs if abs(middle) > NEAR_AN_END]
+
+    @property
     def unidentified(self) -> list[str]:
         """The parameters of which the records say no more than the prior, nor point beyond it."""
         return [x.name for x in self.estimates if not x.identified and x.name not in self.beyond]
@@ -205,6 +229,14 @@ class Fit:
                 f"from those around them, {percent(RARE)} are needed. The values below mean "
                 "nothing until that is explained: is it this rig's record, are drive and load as "
                 "stated, does the load cell lie along the axis that the rig states?"
+            )
+        if self.disagreement is not None and self.disagreement.p_value < CONTRADICTS:
+            found.append(
+                "The records contradict each other, most clearly about "
+                f"{self.disagreement.name}: {percent(self.disagreement.p_value)} of the simulated "
+                f"rigs have records that differ as far, {percent(CONTRADICTS)} are needed. The "
+                "values below mean nothing until that is explained: are they of one rig, under "
+                "the conditions stated? Fit each by itself."
             )
         if self.beyond:
             names = ", ".join(self.beyond)

@@ -32,6 +32,11 @@ class Curve(NamedTuple):
     force: Floats
 
     @property
+    def rate(self) -> Floats:
+        """The mean rate of the force from first to last, N/s."""
+        return np.asarray((self.force[..., -1] - self.force[..., 0]) / self.time[..., -1])
+
+    @property
     def bend(self) -> Floats:
         """How far the force is from a straight line between its ends, over its rise."""
         first, last = self.force[..., :1], self.force[..., -1:]
@@ -49,7 +54,7 @@ class Predictive(NamedTuple):
         Of each simulation, (n, s).
     larger : float
         Posterior predictive p-value: share of simulations whose curve departs from their mean more
-        than that of the record does, in its force or in its bend.
+        than that of the record does, in its force, its bend or its rate.
     example : Synthetic
         The simulation with the curve nearest to the mean one.
     """
@@ -96,8 +101,8 @@ def predict(
     measured = loading_curve(step, seen.force, seen.cycles)
     simulated = Curve(*(np.stack(each) for each in zip(*curves, strict=True)))
     own, others = departures(
-        np.concatenate([measured.force, measured.bend]),
-        np.concatenate([simulated.force, simulated.bend], axis=1),
+        np.concatenate([measured.force, measured.bend, measured.rate[None]]),
+        np.concatenate([simulated.force, simulated.bend, simulated.rate[:, None]], axis=1),
     )
     larger = (1.0 + float((others >= own).sum())) / (1.0 + len(others))
     return Predictive(measured, simulated, larger, made[int(np.argmin(others))])

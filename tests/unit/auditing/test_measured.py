@@ -39,7 +39,7 @@ def test_a_record_of_the_rig_is_explained_and_its_misalignment_found(found):
     assert first.title == "What the record says"
     said, described = first.sentences
     assert said.startswith("The rig explains this record by itself: with a misalignment of 2.")
-    assert said.endswith(f"; {alternatives(found.measured.odds.decision)}.")
+    assert said.endswith(f"; {alternatives(found.measured.odds)}.")
     assert "as it is described" in described
 
 

@@ -5,8 +5,8 @@ import pytest
 from scipy.special import ndtr
 from scipy.stats import kstest
 
-from stiction.inference.calibration import learn_or_read, read
-from stiction.inference.regression_abc import Known, marginal, quantiles, rank
+from stiction.inference.learning.calibration import learn_or_read, read
+from stiction.inference.learning.regression_abc import Known, marginal, quantiles, rank
 
 PARAMETERS = 4
 

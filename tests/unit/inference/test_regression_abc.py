@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 
-from stiction.inference.regression_abc import posterior, quantiles, rank
-from stiction.inference.summary import learn
+from stiction.inference.learning.regression_abc import posterior, quantiles, rank
+from stiction.inference.learning.summary import learn
 
 COUNT, ERROR = 1500, 0.5
 

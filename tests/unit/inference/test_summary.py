@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stiction.inference.summary import Standard, nearest, outlier_factor
+from stiction.inference.learning.summary import Standard, nearest, outlier_factor
 
 
 def library_of(seed: int, count: int, wide: float):

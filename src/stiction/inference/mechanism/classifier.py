@@ -20,9 +20,7 @@ from scipy.special import log_softmax, softmax
 
 from stiction.arrays import Floats
 from stiction.errors import ResultError
-from stiction.inference.library import Progress, have_cycles, simulate_all
-from stiction.inference.mechanism.rivals import Mechanism
-from stiction.inference.summary import (
+from stiction.inference.learning.summary import (
     Regression,
     Standard,
     as_arrays,
@@ -32,6 +30,8 @@ from stiction.inference.summary import (
     regression,
     single_threaded_algebra,
 )
+from stiction.inference.library import Progress, have_cycles, simulate_all
+from stiction.inference.mechanism.rivals import Mechanism
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out

@@ -17,10 +17,10 @@ from scipy.special import ndtr
 
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats, xr
+from stiction.inference.learning.summary import learn
 from stiction.inference.library import Plan, have_cycles
 from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
-from stiction.inference.summary import learn
 from stiction.names import draw
 from stiction.text.paths import last_part
 from stiction.text.quantity_text import percent
@@ -119,7 +119,7 @@ class Advice:
     assumed : tuple of str
         What neither the description nor the user said, as sentences.
     simulations : int
-        Number of simulated rigs.
+        Number of simulated rigs with cycles in the present test.
     """
 
     plan: Plan
@@ -227,7 +227,9 @@ class Advice:
             "A hold tells nothing: this law has no memory of how long the contact was at rest."
         )
         found += self.assumed
-        found.append(f"Expected over {self.simulations} rigs drawn from the priors.")
+        found.append(
+            f"Expected over {self.simulations} rigs drawn from the priors, with cycles now."
+        )
         return found
 
     def not_surely_better(self) -> Sequence[str]:

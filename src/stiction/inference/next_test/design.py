@@ -131,7 +131,9 @@ def design(
     scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=progress)
     found = expectations(trial, Further("the present test", measured), tests, scores, features)
     assumed = assumptions(() if record is None else measured, present, wanted)
-    return Advice(trial, name, tuple(found), (*skipped,), (*assumed,), len(scores))
+    columns = features.shape[1] // len(trial.conditions)
+    usable = int(have_cycles(features[:, :columns]).sum())
+    return Advice(trial, name, tuple(found), (*skipped,), (*assumed,), usable)
 
 
 def several(given: Any) -> tuple[Any, ...]:

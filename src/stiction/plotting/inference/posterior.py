@@ -218,16 +218,15 @@ def draw_cycles(ax: Axes, seen: Any, found: Any) -> None:
 def draw_loading(panels: Sequence[Axes], found: Any) -> None:
     """Draw loading curves and their bend, each with its predictive band."""
     factor, prefix = metric_prefix(found.measured.force)
-    time, names = found.simulated.time.mean(axis=0), ("force", "bend")
+    share, names = np.linspace(0.0, 100.0, len(found.measured.force)), ("force", "bend")
     for ax, name, scale, (low, high) in zip(
         panels, names, (factor, 100.0), found.bands, strict=True
     ):
-        ax.fill_between(time, scale * low, scale * high, color=PALE, label="simulated, 95 %")
+        ax.fill_between(share, scale * low, scale * high, color=PALE, label="simulated, 95 %")
         mean = getattr(found.simulated, name).mean(axis=0)
-        ax.plot(time, scale * mean, color=BLUE, linewidth=0.8)
-        measured = found.measured
-        ax.plot(measured.time, scale * getattr(measured, name), color=BLACK, label="measured")
-        ax.set(xlabel="time in the mean loading (s)")
+        ax.plot(share, scale * mean, color=BLUE, linewidth=0.8)
+        ax.plot(share, scale * getattr(found.measured, name), color=BLACK, label="measured")
+        ax.set(xlabel="share of the time of a loading (%)")
     panels[0].set_ylabel(f"force ({prefix}N)")
     panels[1].set_ylabel("from a straight line (% of the rise)")
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.inference.regression_abc import (
+from stiction.inference.learning.regression_abc import (
     Known,
     Sample,
     marginal,
@@ -21,7 +21,7 @@ from stiction.inference.regression_abc import (
     rank,
     with_marginals,
 )
-from stiction.inference.summary import (
+from stiction.inference.learning.summary import (
     FeatureSummary,
     Regression,
     Standard,
