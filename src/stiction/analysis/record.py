@@ -295,7 +295,7 @@ class Record(Described):
 
     @property
     def stated_period(self) -> float | None:
-        """Period of the mass on the spring alone, s, where both are stated: 2 pi (m/k)^1/2."""
+        """Period 2 pi (m/k)^1/2 of the mass on the spring alone, s, where both are stated."""
         if self.mass is None or self.stiffness is None:
             return None
         return 2.0 * pi * sqrt(self.mass / self.stiffness)

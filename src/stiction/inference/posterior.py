@@ -208,7 +208,7 @@ class Fit:
 
     @property
     def at_an_end(self) -> list[str]:
-        """The parameters with a median near an end of the prior: a few per cent lie beyond."""
+        """The parameters with a median near an end of the prior, beyond which few per cent lie."""
         middles = np.median(self.scores, axis=0)
         pairs = zip(self.estimates, middles, strict=True)
         return [each.name for each, middle in pairs if abs(middle) > NEAR_AN_END]

@@ -24,7 +24,7 @@ def library():
     return truth, [learn(records_of(truth, random), truth) for _ in range(2)]
 
 
-def seen(library, first, second, count, seed=2):
+def disagreements(library, first, second, count, seed=2):
     """Return how far pairs of records of rigs with these parameters disagree."""
     random = np.random.default_rng(seed)
     pairs = [
@@ -48,6 +48,6 @@ def test_records_of_one_rig_seldom_contradict_each_other(library):
 )
 def test_records_of_two_rigs_contradict_each_other(library, second, name):
     """The joint interval held neither truth, without a word: in 26 of 33 pairs of records."""
-    found = seen(library, (0.5, 0.0), second, 20)
+    found = disagreements(library, (0.5, 0.0), second, 20)
     assert np.mean([each.p_value < 0.01 for each in found]) > 0.8
     assert np.mean([each.name == name for each in found]) > 0.8

@@ -271,8 +271,14 @@ def outlier_factor(some: Floats, scores: Floats, apart: Floats) -> Floats:
     >>> outlier_factor(np.array([[50.5], [110.0]]), wide, nearest(wide, wide)).round(1)
     array([ 0.6, 38.4])
     """
-    around = np.argpartition(squares(some, scores), AROUND, axis=1)[:, :AROUND]
-    return np.asarray(nearest(some, scores) / np.median(apart[around], axis=1))
+    return nearest(some, scores) / apart_around(some, scores, apart)
+
+
+def apart_around(some: Floats, scores: Floats, apart: Floats) -> Floats:
+    """Return how far those of the library around each record stand apart, (m,)."""
+    count = min(AROUND, len(scores) // 2)
+    around = np.argpartition(squares(some, scores), count, axis=1)[:, :count]
+    return np.asarray(np.median(apart[around], axis=1))
 
 
 def nearest(some: Floats, scores: Floats) -> Floats:

@@ -11,6 +11,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.inference.learning.summary import apart_around
 from stiction.inference.predictive import departures
 
 NEIGHBOURS = 150  # simulations from which a distance is measured
@@ -47,22 +48,26 @@ class Reference(NamedTuple):
         (n, f), features in units in which they are comparable.
     bends : ndarray
         (n, s), departure of the loading from a straight line in each of its parts.
-    own : ndarray
-        (n,), distance of each from its nearest others.
+    apart, own : ndarray
+        (n,), distance of each from its nearest others; and over that of the ones around it.
     """
 
     members: Floats
     bends: Floats
+    apart: Floats
     own: Floats
 
     @classmethod
     def of(cls, members: Floats, bends: Floats) -> Self:
         """Return the reference of simulations with these features."""
-        return cls(members, bends, distances(members, members))
+        apart = distances(members, members)
+        return cls(members, bends, apart, apart / apart_around(members, members, apart))
 
     def likeness(self, record: Floats, bend: Floats) -> Likeness:
         """Return how like a record with features (f,) and bend (s,) is to the simulations."""
-        (its,) = distances(record[None], self.members)
+        (its,) = distances(record[None], self.members) / apart_around(
+            record[None], self.members, self.apart
+        )
         near = np.argsort(((self.members - record) ** 2).sum(axis=1))[:CURVES]
         apart, others = departures(bend, self.bends[near])
         larger = (1.0 + float((others >= apart).sum())) / (1.0 + len(others))

@@ -226,7 +226,7 @@ def draw_loading(panels: Sequence[Axes], found: Any) -> None:
         mean = getattr(found.simulated, name).mean(axis=0)
         ax.plot(share, scale * mean, color=BLUE, linewidth=0.8)
         ax.plot(share, scale * getattr(found.measured, name), color=BLACK, label="measured")
-        ax.set(xlabel="share of the time of a loading (%)")
+        ax.set(xlabel="share of a loading (%)")
     panels[0].set_ylabel(f"force ({prefix}N)")
     panels[1].set_ylabel("from a straight line (% of the rise)")
 
