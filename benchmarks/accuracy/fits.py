@@ -26,7 +26,6 @@ from scipy.stats import kstest
 from stiction.inference.features import USED
 from stiction.inference.learning.calibration import Learned, learn_or_read
 from stiction.inference.learning.regression_abc import Sample, quantiles, rank
-from stiction.inference.learning.summary import FeatureSummary, nearest, outlier_factor
 from stiction.inference.library import Library, build, features_from, plan
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.posterior import RARE
@@ -130,16 +129,8 @@ def compare(known: Library, learned: Learned, unseen: Library, features: Floats)
         pairs = zip(sample.scores.T, truth, strict=True)
         ranks.append([rank(each, sample.weights, its) for each, its in pairs])
         widths.append([spread(known, each, sample, i) for i, each in enumerate(names)])
-    unlike = share_unlike(learned.summary, features)
+    unlike = float((learned.summary.farther(features) < RARE).mean())
     return Trial(names, np.array(inside), np.array(ranks), np.array(widths), unlike, seconds)
-
-
-def share_unlike(summary: FeatureSummary, features: Floats) -> float:
-    """Return the share of records that a fit calls unlike those of the rig."""
-    apart = nearest(summary.scores, summary.scores)
-    own = outlier_factor(summary.scores, summary.scores, apart)
-    its = outlier_factor(summary.standard.scores(features), summary.scores, apart)
-    return float(((own > its[:, None]).mean(axis=1) < RARE).mean())
 
 
 def spread(known: Library, name: str, sample: Sample, index: int) -> float:

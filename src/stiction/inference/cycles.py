@@ -9,12 +9,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, Indices
 from stiction.study.variables.zigzag import zigzag
-
-Indices = NDArray[np.int64]
 
 # of the span of the force once it is loaded: a larger fall is a slip, without noise and with much
 DROP = 0.3, 0.5

@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import Floats
-from stiction.inference.cycles import Cycles, Indices
+from stiction.arrays import Floats, Indices
+from stiction.inference.cycles import Cycles
 
 # shares of a loading, narrow where creep accelerates towards the slip
 EDGES = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.86, 0.91, 0.95, 0.98, 1.0])

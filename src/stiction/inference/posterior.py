@@ -145,7 +145,7 @@ class Fit:
         after, prior = dataset(plan, scores), dataset(plan, before)
         for its in estimates:
             after[last_part(its.name)].attrs["coverage_of_95_percent_intervals"] = its.coverage
-        farther = learned.summary.farther(observed)
+        farther = float(learned.summary.farther(observed[None])[0])
         count, ranks = len(library.scores), learned.ranks
         blocks = [each.features for each in seen]
         apart = disagreement([*plan.priors], library.scores, alone, blocks) if alone else None
@@ -202,16 +202,18 @@ class Fit:
     @property
     def beyond(self) -> list[str]:
         """The parameters whose posterior lies in a tail of the prior, where it hardly can."""
-        middles = np.median(self.scores, axis=0)
-        pairs = zip(self.estimates, middles, strict=True)
-        return [each.name for each, middle in pairs if abs(middle) > TAIL]
+        return self._out_by(TAIL)
 
     @property
     def at_an_end(self) -> list[str]:
         """The parameters with a median near an end of the prior, beyond which few per cent lie."""
+        return self._out_by(NEAR_AN_END)
+
+    def _out_by(self, score: float) -> list[str]:
+        """Return the parameters with a median farther from the prior's than a normal score."""
         middles = np.median(self.scores, axis=0)
         pairs = zip(self.estimates, middles, strict=True)
-        return [each.name for each, middle in pairs if abs(middle) > NEAR_AN_END]
+        return [each.name for each, middle in pairs if abs(middle) > score]
 
     @property
     def unidentified(self) -> list[str]:

@@ -120,16 +120,16 @@ class FeatureSummary(NamedTuple):
         spread = np.exp(0.5 * self.spread.predict(new, self.scores))
         return self.middle.predict(new, self.scores), spread
 
-    def farther(self, features: Floats) -> float:
-        """Return the share of the library that stands farther apart from others than a record (f,).
+    def farther(self, features: Floats) -> Floats:
+        """Return the share of the library that stands farther apart than each record (m, f), (m,).
 
         By the local outlier factor: simulations that hardly slip stand far apart, each from all,
         and beside them no record of another rig would.
         """
-        new = self.standard.scores(features[None])
+        new = self.standard.scores(features)
         apart = nearest(self.scores, self.scores)
         own, other = (outlier_factor(each, self.scores, apart) for each in (self.scores, new))
-        return float((own > other).mean())
+        return np.asarray((own > other[:, None]).mean(axis=1))
 
     @property
     def library(self) -> tuple[Floats, Floats]:
@@ -271,19 +271,25 @@ def outlier_factor(some: Floats, scores: Floats, apart: Floats) -> Floats:
     >>> outlier_factor(np.array([[50.5], [110.0]]), wide, nearest(wide, wide)).round(1)
     array([ 0.6, 38.4])
     """
-    return nearest(some, scores) / apart_around(some, scores, apart)
+    square = squares(some, scores)
+    return mean_of_nearest(square) / apart_around(square, apart)
 
 
-def apart_around(some: Floats, scores: Floats, apart: Floats) -> Floats:
-    """Return how far those of the library around each record stand apart, (m,)."""
-    count = min(AROUND, len(scores) // 2)
-    around = np.argpartition(squares(some, scores), count, axis=1)[:, :count]
+def apart_around(square: Floats, apart: Floats) -> Floats:
+    """Return how far those of the library around each record stand apart, (m,); see `squares`."""
+    count = min(AROUND, len(apart) // 2)
+    around = np.argpartition(square, count, axis=1)[:, :count]
     return np.asarray(np.median(apart[around], axis=1))
 
 
 def nearest(some: Floats, scores: Floats) -> Floats:
     """Return the mean squared distance of each record from its nearest others."""
-    return np.asarray(np.partition(squares(some, scores), OTHERS, axis=1)[:, :OTHERS].mean(axis=1))
+    return mean_of_nearest(squares(some, scores))
+
+
+def mean_of_nearest(square: Floats) -> Floats:
+    """Return the mean of the least squared distances of each record."""
+    return np.asarray(np.partition(square, OTHERS, axis=1)[:, :OTHERS].mean(axis=1))
 
 
 def squares(some: Floats, scores: Floats) -> Floats:

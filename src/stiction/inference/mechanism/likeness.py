@@ -11,7 +11,7 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.inference.learning.summary import apart_around
+from stiction.inference.learning.summary import apart_around, squares
 from stiction.inference.predictive import departures
 
 NEIGHBOURS = 150  # simulations from which a distance is measured
@@ -61,13 +61,12 @@ class Reference(NamedTuple):
     def of(cls, members: Floats, bends: Floats) -> Self:
         """Return the reference of simulations with these features."""
         apart = distances(members, members)
-        return cls(members, bends, apart, apart / apart_around(members, members, apart))
+        return cls(members, bends, apart, apart / apart_around(squares(members, members), apart))
 
     def likeness(self, record: Floats, bend: Floats) -> Likeness:
         """Return how like a record with features (f,) and bend (s,) is to the simulations."""
-        (its,) = distances(record[None], self.members) / apart_around(
-            record[None], self.members, self.apart
-        )
+        around = apart_around(squares(record[None], self.members), self.apart)
+        (its,) = distances(record[None], self.members) / around
         near = np.argsort(((self.members - record) ** 2).sum(axis=1))[:CURVES]
         apart, others = departures(bend, self.bends[near])
         larger = (1.0 + float((others >= apart).sum())) / (1.0 + len(others))
