@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.inference.jitter import Jitter, move
 from stiction.inference.mechanism.comparison import SHARE
+from stiction.inference.simulated.jitter import Jitter, move
 
 TEXT = """
 [slider]

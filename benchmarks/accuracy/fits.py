@@ -23,13 +23,16 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 from scipy.stats import kstest
 
+from stiction.inference.columns import features_from
 from stiction.inference.features import USED
 from stiction.inference.learning.calibration import Learned, learn_or_read
 from stiction.inference.learning.regression_abc import Sample, quantiles, rank
-from stiction.inference.library import Library, build, features_from, plan
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.posterior import RARE
-from stiction.inference.priors import Rig, Uniform
+from stiction.inference.priors import Uniform
+from stiction.inference.rig import Rig
+from stiction.inference.simulated.library import Library, build
+from stiction.inference.simulated.plan import plan
 from stiction.recording.sensor import LowPass
 
 Floats = NDArray[np.float64]

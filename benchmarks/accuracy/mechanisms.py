@@ -22,23 +22,19 @@ from scipy.special import ndtr
 
 from benchmarks.accuracy.fits import RIGS, rig_of
 from stiction.friction.laws import Anisotropic, Stribeck
+from stiction.inference.columns import bend_features, features_from
 from stiction.inference.features import USED
-from stiction.inference.library import (
-    Plan,
-    bend_features,
-    draw,
-    features_from,
-    have_cycles,
-    plan,
-    simulate_all,
-)
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, UNLIKE
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
-from stiction.inference.priors import Prior, Rig, Uniform
+from stiction.inference.priors import Prior, Uniform
+from stiction.inference.rig import Rig
+from stiction.inference.simulated.library import have_cycles, simulate_all
+from stiction.inference.simulated.plan import Plan, plan
+from stiction.inference.simulated.synthetic import draw
 from stiction.system.parameter import change_unchecked
 
 Floats = NDArray[np.float64]

@@ -27,7 +27,7 @@ from stiction.friction.laws import ExponentialWeakening as ExponentialWeakening
 from stiction.inference.fit import fit as fit
 from stiction.inference.mechanism.comparison import mechanism as mechanism
 from stiction.inference.next_test.design import design as design
-from stiction.inference.priors import Rig as Rig
+from stiction.inference.rig import Rig as Rig
 from stiction.linear_stability.examination import stability as stability
 from stiction.media.film import animate as animate
 from stiction.media.sound import listen as listen

@@ -10,7 +10,7 @@ knows the misalignment within half a degree.
 import numpy as np
 
 import stiction as st
-from stiction.inference.jitter import Jitter, move
+from stiction.inference.simulated.jitter import Jitter, move
 
 TEXT = """
 [slider]

@@ -9,7 +9,7 @@ odds of four mechanisms that could have made it: here the friction vector rotate
 import numpy as np
 
 import stiction as st
-from stiction.inference.jitter import Jitter, move
+from stiction.inference.simulated.jitter import Jitter, move
 
 TEXT = """
 [slider]

@@ -17,14 +17,14 @@ from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
-from stiction.inference.library import SIMULATIONS
 from stiction.inference.mechanism.comparison import SHARE, mechanism
 from stiction.inference.mechanism.odds import UNDECIDED, UNLIKE, Odds, near_one
 from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit
 from stiction.inference.predictive import Predictive, predict
-from stiction.inference.priors import Rig
+from stiction.inference.rig import Rig
+from stiction.inference.simulated.library import SIMULATIONS
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words

@@ -31,8 +31,8 @@ from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
-from stiction.inference.library import SIMULATIONS
-from stiction.inference.priors import Rig, rig_of
+from stiction.inference.rig import Rig, rig_of
+from stiction.inference.simulated.library import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
 from stiction.names import old_attributes

@@ -18,7 +18,7 @@ from stiction.auditing.progress import Progress, silent
 from stiction.auditing.simulated_test import creep_before_slip, simulate_coarsely
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
-from stiction.inference.priors import Rig
+from stiction.inference.rig import Rig
 from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider

@@ -13,7 +13,7 @@ from stiction.errors import StictionError, echo
 
 if TYPE_CHECKING:
     from stiction.analysis.record import Record
-    from stiction.inference.priors import Rig
+    from stiction.inference.rig import Rig
     from stiction.presets import Preset
     from stiction.system.description import Description
     from stiction.system.slider import Slider
@@ -221,7 +221,7 @@ def slider_from(
 
 def rig_from(config: Path | None, preset: str | None, given: dict[str, Any], trust: bool) -> Rig:
     """Do as `slider_from` for a rig: values may be uncertain."""
-    from stiction.inference.priors import Rig, rig_of
+    from stiction.inference.rig import Rig, rig_of
 
     found = choose(config, preset)
     if found is None:

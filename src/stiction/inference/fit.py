@@ -14,18 +14,13 @@ from stiction.friction import has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.library import (
-    LONGEST_CYCLE,
-    SIMULATIONS,
-    Library,
-    Plan,
-    build,
-    plan,
-    refuse_too_few,
-)
 from stiction.inference.observation import Conditions, Observation, Source, observe_all
 from stiction.inference.posterior import Fit
-from stiction.inference.priors import Normal, Prior, Rig, rig_of
+from stiction.inference.priors import Normal, Prior
+from stiction.inference.rig import Rig, rig_of
+from stiction.inference.simulated.library import SIMULATIONS, Library, build, refuse_too_few
+from stiction.inference.simulated.plan import Plan, plan
+from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 

@@ -16,8 +16,9 @@ from stiction.inference.disagreement import Disagreement, disagreement
 from stiction.inference.learning.calibration import Learned
 from stiction.inference.learning.regression_abc import Sample, quantiles
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.library import Library, Plan
 from stiction.inference.observation import TREND, Observation, Trend, steadiness
+from stiction.inference.simulated.library import Library
+from stiction.inference.simulated.plan import Plan
 from stiction.names import draw
 from stiction.result.file import new_netcdf
 from stiction.storage.files import NETCDF, placeable, whole

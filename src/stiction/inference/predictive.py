@@ -16,9 +16,10 @@ import numpy as np
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.inference.cycles import Cycles
-from stiction.inference.library import Plan, Synthetic, synthesise
 from stiction.inference.observation import Observation
 from stiction.inference.posterior import Fit
+from stiction.inference.simulated.plan import Plan
+from stiction.inference.simulated.synthetic import Synthetic, synthesise
 from stiction.study.execution.cores import Cores
 
 DRAWS = 60  # simulations with parameters of the posterior

@@ -12,26 +12,16 @@ A normal distribution ends where a value would be impossible, such as a stiffnes
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from math import inf, log
-from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from pydantic_core import PydanticCustomError
 
 from stiction.arrays import Floats
-from stiction.drive.recorded.reading import locator, with_rows
-from stiction.errors import DescriptionError, Fault, echo
-from stiction.friction import read_law
-from stiction.friction.user.loading import finder_for_descriptions, is_own
-from stiction.system.parameter import change_parameter, change_parameters, quantity, unit
-from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
-from stiction.text.paths import canonical
-from stiction.text.toml import folder_of, gather, read_toml
-from stiction.text.units import Kind, split_uncertain, to_si
+from stiction.errors import echo
+from stiction.text.units import Kind, to_si
 
 NORMAL = {"value", "uncertainty"}
 UNIFORM = {"low", "high"}
@@ -98,139 +88,6 @@ class Uniform:
 Prior = Normal | Uniform
 
 
-class Rig(NamedTuple):
-    """A rig as its description states it.
-
-    Parameters
-    ----------
-    slider : Slider
-        With every uncertain value in the middle of its prior.
-    priors : dict of str to Normal or Uniform
-        By the path of each uncertain parameter.
-
-    Examples
-    --------
-    >>> import stiction as st
-    >>> text = st.presets.nakano_popov_2020().to_toml().replace('"1 deg"', '"1 +- 0.5 deg"')
-    >>> list(st.Rig.from_toml(text).priors)
-    ['phi']
-    """
-
-    slider: Slider
-    priors: dict[str, Prior]
-
-    @classmethod
-    def from_toml(
-        cls, path: str | Path, changes: Mapping[str, Any] | None = None, *, trust: bool = False
-    ) -> Rig:
-        """Read the rig that a description states, uncertain values included.
-
-        Parameters
-        ----------
-        path, changes, trust
-            As of `stiction.Slider.from_toml`.
-
-        Raises
-        ------
-        DescriptionError
-            With every fault.
-
-        Examples
-        --------
-        >>> import stiction as st
-        >>> text = st.presets.nakano_popov_2020().to_toml().replace('"1 deg"', '"1 +- 0.5 deg"')
-        >>> Rig.from_toml(text).priors["phi"].mean * 180.0 / np.pi
-        1.0
-        """
-        folder = folder_of(path)
-        raw, lost = with_rows(read_toml(path, changes), locator(folder, trust))
-        wanted = {name: raw[name] for name in raw if name in SLIDER_TABLES}
-        stated: dict[str, Any] = {}
-        certain = {
-            name: dict(without_spread(table, (name,), stated))
-            if isinstance(table, Mapping)
-            else table
-            for name, table in wanted.items()
-        }
-        find = finder_for_descriptions(folder, trust)
-        slider = Slider.from_parts(
-            gather(
-                certain,
-                {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
-                absent=OPTIONAL_TABLES,
-                last=("friction",) if is_own(certain.get("friction")) else (),
-                known=lost,
-            )
-        )
-        priors = read_priors(slider, stated)
-        middles = {name: middle(prior) for name, prior in priors.items()}
-        given = {name: quantity(slider, name, value) for name, value in middles.items()}
-        slider = change_parameters(slider, given) if given else slider
-        return cls(slider, priors)
-
-
-def rig_of(source: Any) -> Rig:
-    """Return the rig that is given, that of a file or text, or a slider without priors.
-
-    Raises
-    ------
-    DescriptionError
-        If `source` is none of these.
-    """
-    if isinstance(source, Rig):
-        return source
-    return Rig.from_toml(source) if isinstance(source, str | Path) else Rig(slider_of(source), {})
-
-
-def without_spread(
-    table: Mapping[str, Any], keys: tuple[str, ...], stated: dict[str, Any]
-) -> Iterator[tuple[str, Any]]:
-    """Yield the items of a table, a plain value for each uncertain one; that is put in `stated`."""
-    for key, value in table.items():
-        parsed = spread(value)
-        if parsed is not None:
-            stated[canonical(".".join([*keys, key]))] = parsed
-            yield key, parsed["value"] if "value" in parsed else parsed["low"]
-        elif isinstance(value, Mapping):
-            yield key, dict(without_spread(value, (*keys, key), stated))
-        else:
-            yield key, value
-
-
-def spread(value: Any) -> dict[str, Any] | None:
-    """Return an uncertain value as a table; None for any other value.
-
-    >>> spread("2 +- 1 deg")
-    {'value': '2 deg', 'uncertainty': '1 deg'}
-    """
-    if isinstance(value, Mapping):
-        keys = set(value)
-        ours = keys >= NORMAL or keys >= UNIFORM
-        return dict(value) if ours else None
-    both = split_uncertain(value)
-    return None if both is None else {"value": both[0], "uncertainty": both[1]}
-
-
-def read_priors(slider: Slider, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Prior]:
-    """Return the prior of each uncertain parameter, or every fault."""
-    priors, faults = {}, []
-    for path, table in stated.items():
-        try:
-            its = unit(slider, path)
-            example = "1 deg" if its == "rad" else f"1 {its}".rstrip()
-            prior = read_prior(table, Kind(path, its, example))
-            priors[path] = within_range(slider, path, prior)
-        except PydanticCustomError as error:
-            faults.append(Fault(path, error.message()))
-        except ValueError as error:
-            faults.append(Fault(path, str(error)))
-        except DescriptionError as error:
-            faults += error.faults
-    if faults:
-        raise DescriptionError(faults)
-    return priors
-
-
 def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:
     """Return the prior that a table states, in SI.
 
@@ -264,26 +121,6 @@ def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:
 
 
 PLAIN = Kind("a number", "", "5")
-
-
-def within_range(slider: Slider, path: str, prior: Prior) -> Prior:
-    """Return a prior that ends where a value would be impossible.
-
-    Raises
-    ------
-    DescriptionError
-        If the value itself, or an end of a uniform prior, is impossible.
-    """
-    if isinstance(prior, Uniform):
-        for end in (prior.low, prior.high):
-            change_parameter(slider, path, quantity(slider, path, end))
-        return prior
-    change_parameter(slider, path, quantity(slider, path, prior.mean))
-    try:
-        change_parameter(slider, path, quantity(slider, path, -max(abs(prior.mean), 1e-30)))
-    except DescriptionError:
-        return Normal(prior.mean, prior.deviation, low=0.0)
-    return prior
 
 
 def middle(prior: Prior) -> float:

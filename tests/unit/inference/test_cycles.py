@@ -7,8 +7,8 @@ from scipy.signal import lfilter
 import stiction as st
 from stiction.errors import ResultError
 from stiction.inference.cycles import slip_cycles
-from stiction.inference.jitter import Jitter, first_loading, move
 from stiction.inference.observation import observe
+from stiction.inference.simulated.jitter import Jitter, first_loading, move
 from stiction.recording.noise import white_noise
 
 

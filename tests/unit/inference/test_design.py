@@ -7,13 +7,14 @@ import pytest
 from tests.uncertain import TEXT
 
 import stiction as st
-from stiction.inference.library import Plan, refuse_too_few
 from stiction.inference.next_test import design as module
 from stiction.inference.next_test import further
 from stiction.inference.next_test.advice import Advice, Expected, expectation, left_out_errors
 from stiction.inference.next_test.further import AGAIN, Wanted, further_tests
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.priors import Normal
+from stiction.inference.simulated.library import refuse_too_few
+from stiction.inference.simulated.plan import Plan
 from stiction.recording.sensor import LowPass
 
 RIGS = 200

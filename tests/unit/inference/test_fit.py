@@ -14,10 +14,11 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features, of_trend
 from stiction.inference.fit import plan_for
-from stiction.inference.jitter import Jitter, move, stretch
-from stiction.inference.library import build, draw, synthesise
 from stiction.inference.observation import Noise, Trend, near, observe, observe_all, trend
 from stiction.inference.priors import Normal
+from stiction.inference.simulated.jitter import Jitter, move, stretch
+from stiction.inference.simulated.library import build
+from stiction.inference.simulated.synthetic import draw, synthesise
 from stiction.recording.sensor import LowPass, low_pass
 
 

@@ -11,6 +11,7 @@ from tests.uncertain import record_of
 import stiction as st
 from stiction.errors import DescriptionError, ResultError
 from stiction.friction.laws import Anisotropic, Coulomb, LuGre, RateStateAgeing
+from stiction.inference.columns import bend_features
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import (
     ABOVE,
@@ -23,13 +24,12 @@ from stiction.inference.features import (
     of_slip,
 )
 from stiction.inference.fit import plan_for
-from stiction.inference.jitter import Jitter, laws, move
-from stiction.inference.library import bend_features
 from stiction.inference.mechanism.classifier import Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import CURVES, Likeness, Reference
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
 from stiction.inference.observation import observe, steadiness, trend
+from stiction.inference.simulated.jitter import Jitter, laws, move
 from stiction.plotting import plot_mechanism
 
 SIMULATIONS = 96  # of each mechanism: enough to tell these records apart

@@ -67,7 +67,7 @@ def audit(
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
-    from stiction.inference.library import cache_folder
+    from stiction.inference.simulated.library import cache_folder
 
     rig = rig_from(config, preset, changes(set), trust)
     title = str(config or preset)

@@ -30,8 +30,8 @@ from stiction.inference.learning.summary import (
     regression,
     single_threaded_algebra,
 )
-from stiction.inference.library import Progress, have_cycles, simulate_all
 from stiction.inference.mechanism.rivals import Mechanism
+from stiction.inference.simulated.library import Progress, have_cycles, simulate_all
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out

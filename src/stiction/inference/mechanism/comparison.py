@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
+from stiction.inference.columns import bend_features
 from stiction.inference.fit import check
-from stiction.inference.library import bend_features
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
-from stiction.inference.priors import Rig, rig_of
+from stiction.inference.rig import Rig, rig_of
 
 SIMULATIONS = 1000  # of each mechanism, by default
 SHARE = 4  # simulations of a fit for each that a mechanism gets beside it

@@ -24,9 +24,10 @@ from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.friction.laws import Coulomb, LuGre, RateStateAgeing, RateStateSlip
 from stiction.friction.laws.rate_and_state.common import least_direct_effect
 from stiction.inference.fit import plan_for
-from stiction.inference.library import Plan, plan
 from stiction.inference.observation import Conditions
-from stiction.inference.priors import Prior, Rig, Uniform, middle
+from stiction.inference.priors import Prior, Uniform, middle
+from stiction.inference.rig import Rig
+from stiction.inference.simulated.plan import Plan, plan
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 

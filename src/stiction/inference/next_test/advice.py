@@ -18,9 +18,10 @@ from scipy.special import ndtr
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats, xr
 from stiction.inference.learning.summary import learn
-from stiction.inference.library import Plan, have_cycles
 from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
+from stiction.inference.simulated.library import have_cycles
+from stiction.inference.simulated.plan import Plan
 from stiction.names import draw
 from stiction.text.paths import last_part
 from stiction.text.quantity_text import percent

@@ -9,14 +9,8 @@ from typing import Any
 from stiction.arguments import is_list
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.inference.columns import features_from
 from stiction.inference.fit import check, plan_for
-from stiction.inference.library import (
-    Plan,
-    features_from,
-    have_cycles,
-    refuse_too_few,
-    simulate_all,
-)
 from stiction.inference.next_test.advice import Advice, Expected, expectation, left_out_errors
 from stiction.inference.next_test.further import (
     AGAIN,
@@ -32,7 +26,9 @@ from stiction.inference.next_test.further import (
     with_noise,
 )
 from stiction.inference.observation import PER_CYCLE, Conditions, Source, observe, record_from
-from stiction.inference.priors import Rig, rig_of
+from stiction.inference.rig import Rig, rig_of
+from stiction.inference.simulated.library import have_cycles, refuse_too_few, simulate_all
+from stiction.inference.simulated.plan import Plan
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical
 from stiction.text.quantity_text import percent

@@ -11,9 +11,9 @@ from pydantic import AfterValidator, Field
 from stiction.drive import ConstantVelocity
 from stiction.inference.cycles import LEAST_CYCLES, slip_cycles
 from stiction.inference.features import USED
-from stiction.inference.jitter import Jitter, move
-from stiction.inference.library import LONGEST_CYCLE
 from stiction.inference.observation import PER_CYCLE, Conditions, Noise
+from stiction.inference.simulated.jitter import Jitter, move
+from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.system.slider import Slider
 from stiction.text.units import Angle, Force, PositiveLength, PositiveSpeed, Whole, in_words
 from stiction.text.validation import Described

@@ -91,10 +91,10 @@ def design(
     """
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
-    from stiction.inference.library import cache_folder
     from stiction.inference.next_test.design import design as find
     from stiction.inference.next_test.further import ANGLES
-    from stiction.inference.priors import Rig
+    from stiction.inference.rig import Rig
+    from stiction.inference.simulated.library import cache_folder
 
     if output is not None:
         from stiction.plotting.page.save import drawable

@@ -89,10 +89,10 @@ def fit(
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.fit import fit as infer
-    from stiction.inference.library import cache_folder
     from stiction.inference.mechanism.comparison import SHARE
     from stiction.inference.mechanism.comparison import mechanism as find
-    from stiction.inference.priors import Rig
+    from stiction.inference.rig import Rig
+    from stiction.inference.simulated.library import cache_folder
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
     placeable(output, NETCDF)

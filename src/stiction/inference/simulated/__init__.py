@@ -1,0 +1,1 @@
+"""Records simulated with parameters drawn from the priors, jitter and sensor inside."""

@@ -1,0 +1,147 @@
+"""A library: the features of simulated records, computed once and stored."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from math import ceil
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.arrays import Floats
+from stiction.errors import ResultError
+from stiction.inference.columns import dummy
+from stiction.inference.cycles import slip_cycles
+from stiction.inference.features import features
+from stiction.inference.simulated.plan import Plan
+from stiction.inference.simulated.synthetic import draw
+from stiction.storage.arrays import read_arrays, write_arrays
+from stiction.study.execution.cores import Cores
+
+Progress = Callable[[float], None] | None
+
+SIMULATIONS = 4000  # of a library, by default
+BLOCK = 32  # simulations that are stored together
+SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
+
+
+class Library(NamedTuple):
+    """Simulated records: normal scores (n, p) of their parameters, and their features (n, f).
+
+    `wanted` is the number of simulations; those without enough cycles are left out.
+    """
+
+    plan: Plan
+    scores: Floats
+    features: Floats
+    wanted: int
+
+
+def build(
+    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = None
+) -> Library:
+    """Simulate a library of `count` records, or continue one that is stored in a folder."""
+    scores, found = simulate_all(plan, count, folder, seed=seed, progress=progress)
+    kept = have_cycles(found)
+    return Library(plan, scores[kept], found[kept], count)
+
+
+def have_cycles(rows: Floats) -> NDArray[np.bool_]:
+    """Return which rows of features (n, f) are those of records with cycles."""
+    return np.asarray(np.isfinite(rows).all(axis=1))
+
+
+def simulate_all(
+    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = None
+) -> tuple[Floats, Floats]:
+    """Return normal scores (n, p) and features (n, f) of `count` simulations.
+
+    Features of a record with too few cycles are NaN. What a folder holds already is not simulated
+    again: simulation number i is the same whatever the number of others.
+    """
+    blocks = range((count + BLOCK - 1) // BLOCK)
+    done = (
+        {}
+        if folder is None
+        else {each: rows for each in blocks if (rows := read_block(folder, each)) is not None}
+    )
+    missing = [each for each in blocks if each not in done]
+
+    work = partial(simulate_block, plan, folder, seed)
+    for ready, (block, rows) in enumerate(Cores().results(work, missing), 1):
+        done[block] = rows
+        if progress is not None:
+            progress(ready / len(missing))
+    scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
+    return scores, found
+
+
+def simulate_block(
+    plan: Plan, folder: Path | None, seed: int, block: int, _: Callable[[], bool]
+) -> tuple[int, tuple[Floats, Floats]]:
+    """Simulate a block, keep it in the folder, and return its number, scores and features."""
+    rows = [simulate(plan, i, seed) for i in range(block * BLOCK, (block + 1) * BLOCK)]
+    found = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+    if folder is not None:
+        write_block(folder, block, *found)
+    return block, found
+
+
+def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
+    """Return the normal scores and features of one simulation; NaN where it has too few cycles."""
+    drawn, records = draw(plan, number, seed)
+    found = []
+    for conditions, made in zip(plan.conditions, records, strict=True):
+        scale = conditions.scale(plan.basis or plan.slider)
+        blank = dummy(conditions)
+        channels, cycles = made or (blank, slip_cycles(blank["force"]))
+        its = features(conditions.step, channels, scale, cycles)
+        found.append(its if made else np.full_like(its, np.nan))
+    return drawn, np.concatenate(found)
+
+
+def refuse_too_few(
+    what: str, usable: int, simulated: int, fewest: int, which: str = "", check: str = "the priors"
+) -> None:
+    """Refuse to learn from too few simulations with cycles; say how many would do.
+
+    `which` tells what is asked of the cycles, `check` what decides about them. Where fewer than a
+    tenth of the simulations that are needed are usable, more of them would not help.
+
+    Raises
+    ------
+    ResultError
+        If fewer than `fewest` have cycles.
+    """
+    if usable >= fewest:
+        return
+    enough = SAFE * fewest * simulated / max(usable, 1)
+    number = ceil(enough / 100.0) * 100
+    more = f", or simulate {number} (-n {number}, in Python simulations={number})"
+    raise ResultError(
+        f"only {usable} of {simulated} {what} have cycles of stick and slip{which}, {fewest} are "
+        f"needed: check {check}{more if 10 * usable > fewest else ''}"
+    )
+
+
+def cache_folder() -> Path:
+    """Return the folder of libraries in the user's cache."""
+    from platformdirs import user_cache_path
+
+    return user_cache_path("stiction") / "libraries"
+
+
+def write_block(folder: Path, block: int, scores: Floats, found: Floats) -> None:
+    """Write a block of simulations."""
+    write_arrays(folder / f"{block:05d}.npz", scores=scores, features=found)
+
+
+def read_block(folder: Path, block: int) -> tuple[Floats, Floats] | None:
+    """Return a stored block; None where there is none, so that it is simulated again."""
+    stored = read_arrays(folder / f"{block:05d}.npz")
+    if stored is None or not stored.keys() >= {"scores", "features"}:
+        return None
+    return stored["scores"], stored["features"]

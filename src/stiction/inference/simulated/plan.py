@@ -1,0 +1,70 @@
+"""What a library simulates: a rig, the priors of its parameters, and conditions of records."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from hashlib import sha256
+from typing import NamedTuple
+
+from stiction.arrays import Floats
+from stiction.inference.observation import Conditions
+from stiction.inference.priors import Normal, Prior, Uniform
+from stiction.system.slider import Slider
+
+JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
+FORMAT = 7  # of stored simulations and of what is learned from them
+
+
+class Plan(NamedTuple):
+    """What a library simulates.
+
+    Parameters
+    ----------
+    slider : Slider
+        The rig in the middle of its priors.
+    priors : dict of str to Normal or Uniform
+        Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force, the
+        drift of this zero in the first record, ``zero_drift`` (N/s), and ``drift``, the change of
+        the coefficients' logarithm over a record.
+    conditions : tuple of Conditions
+        Of each record.
+    basis : Slider, optional
+        What features are relative to, where it is not `slider`: plans with the same basis can be
+        compared.
+    """
+
+    slider: Slider
+    priors: dict[str, Prior]
+    conditions: tuple[Conditions, ...]
+    basis: Slider | None = None
+
+    @property
+    def key(self) -> str:
+        """A hash of all that decides what is simulated."""
+        parts = self.slider, self.priors, self.conditions, self.basis
+        text = json.dumps([FORMAT, *map(repr, parts)])
+        return sha256(text.encode()).hexdigest()[:16]
+
+    def parameters(self, scores: Floats) -> dict[str, float]:
+        """Return the parameters with these normal scores, (p,)."""
+        from scipy.special import ndtr  # slow to import
+
+        shares = ndtr(scores)
+        pairs = zip(self.priors.items(), shares, strict=True)
+        return {name: float(prior.quantile(share)) for (name, prior), share in pairs}
+
+
+def plan(slider: Slider, priors: Mapping[str, Prior], conditions: Sequence[Conditions]) -> Plan:
+    """Return the plan for records under these conditions."""
+    force = conditions[0].noise["force"]
+    own: dict[str, Prior] = {"jitter": JITTER}
+    if force.gain:
+        own["gain"] = Normal(1.0, force.gain, low=0.0)
+    if force.zero:
+        own["zero"] = Normal(0.0, force.zero)
+    if force.drift:
+        own["zero_drift"] = Normal(0.0, force.drift)
+    return Plan(
+        slider, {**priors, **{k: v for k, v in own.items() if k not in priors}}, tuple(conditions)
+    )

@@ -1,0 +1,98 @@
+"""Synthetic records of a plan: a motion with jitter, as its sensors show it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.analysis.record import cell_axis
+from stiction.arrays import Floats
+from stiction.inference.cycles import Cycles, slip_cycles
+from stiction.inference.observation import Conditions
+from stiction.inference.simulated.jitter import SPARE, Jitter, SampledMotion, first_loading, move
+from stiction.inference.simulated.plan import Plan
+from stiction.recording.sensor import FASTEST, low_pass
+from stiction.system.parameter import change_unchecked
+from stiction.system.slider import Slider
+
+LONGEST_CYCLE = 4.0  # of the measured cycles: simulations with longer ones end without
+NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names of priors
+
+
+class Synthetic(NamedTuple):
+    """A synthetic record: channels of samples a step apart, and the cycles that are used."""
+
+    channels: dict[str, Floats]
+    cycles: Cycles
+
+
+def draw(plan: Plan, number: int, seed: int) -> tuple[Floats, Iterator[Synthetic | None]]:
+    """Return normal scores drawn for one simulation, and its records."""
+    random = np.random.default_rng([seed, number])
+    drawn = random.standard_normal(len(plan.priors))
+    return drawn, synthesise(plan, drawn, random)
+
+
+def synthesise(
+    plan: Plan, scores: Floats, random: np.random.Generator
+) -> Iterator[Synthetic | None]:
+    """Yield a synthetic record under each of the conditions; None where it has too few cycles."""
+    values = plan.parameters(scores)
+    slider = plan.slider
+    for path, value in values.items():
+        if path not in NOT_OF_THE_SLIDER:
+            slider = change_unchecked(slider, path, value)
+    spread, common = values["jitter"], float(random.uniform())
+    for conditions in plan.conditions:
+        jitter = Jitter(spread, common, values.get("drift", 0.0) / conditions.cycles)
+        rig = conditions.slider_of(slider)
+        wanted, noise = conditions.cycles, conditions.noise["force"].level
+        most = LONGEST_CYCLE * (wanted + SPARE) * conditions.cycle + first_loading(rig)
+        times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
+        motion = move(
+            rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted, noise=noise
+        )
+        channels = measure(conditions, rig, motion, values, random)
+        values.pop("zero_drift", None)  # a zero drifts differently in each record
+        found = slip_cycles(channels["force"], noise)
+        enough = min(len(found.peak), len(motion.troughs)) >= wanted  # not of noise
+        last = Cycles(*(each[-wanted:] for each in found))
+        yield Synthetic(channels, last) if enough else None
+
+
+def measure(
+    conditions: Conditions, rig: Slider, motion: SampledMotion, values: Mapping[str, float],
+    random: np.random.Generator,
+) -> dict[str, Floats]:  # fmt: skip
+    """Return the channels of a motion as their sensors show them, along the load cell's axis."""
+    u_x, u_y = motion.rows[:, 0], motion.rows[:, 1]
+    x, y = cell_axis(rig)[:2]
+    c, s = rig.direction
+    way = -1.0 if conditions.velocity < 0.0 else 1.0
+    along, across = rig.k_x * u_x, rig.k_y * u_y
+    exact = {
+        "force": way * (x * along + y * across),
+        "force_across": way * (x * across - y * along),
+        "position": way * (conditions.velocity * motion.time - c * u_x - s * u_y),
+    }
+    found = {}
+    for name, noise in conditions.noise.items():
+        gain, zero = random.standard_normal(2) * (noise.gain, noise.zero) + (1.0, 0.0)
+        if name == "force":
+            gain, zero = values.get("gain", 1.0), values.get("zero", 0.0)
+        if noise.drift:
+            drift = noise.drift * random.standard_normal()
+            drift = values.get("zero_drift", drift) if name == "force" else drift
+            zero = zero + drift * (motion.time - start_time(motion, exact["force"], conditions))
+        shown = [each for each in noise.filters if each.cut * conditions.step <= FASTEST]
+        values_of = gain * low_pass(exact[name], shown, 1.0 / conditions.step) + zero
+        found[name] = values_of + noise.level * random.standard_normal(len(values_of))
+    return found
+
+
+def start_time(motion: SampledMotion, force: Floats, conditions: Conditions) -> float:
+    """Return when a record with the cycles that are used would have begun, s."""
+    used = slip_cycles(force).before[-conditions.cycles :]
+    return (float(motion.time[used[0]]) if len(used) else 0.0) - conditions.lead
