@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,19 +28,30 @@ class Mean(NamedTuple):
 
 
 def median(values: NDArray[np.float64] | NDArray[np.int64]) -> float:
-    """Return the median of some values, NaN where one is: `numpy.median` in a seventh of the time.
+    """Return the median of some values, NaN where one is, in a fraction of `numpy.median`'s time.
 
-    Of few values that looks longer at their type than at them.
+    Of few values that looks longer at their type than at them. Many are partitioned twenty times as
+    fast about one place as about the two or three that it names.
 
     >>> median(np.array([3.0, 1.0, 2.0])), median(np.array([4, 1, 2, 3]))
     (2.0, 2.5)
     """
-    half, last = len(values) // 2, len(values) - 1
-    low = half - 1 + len(values) % 2
-    ordered = np.partition(values, (low, half, last))
-    if np.isnan(ordered[last]):
+    half = len(values) // 2
+    ordered = np.partition(values, half)
+    if np.isnan(ordered[half:].max()):  # NaNs come last
         return np.nan
-    return 0.5 * (float(ordered[low]) + float(ordered[half]))
+    low = ordered[half] if len(values) % 2 else ordered[:half].max()
+    return 0.5 * (float(low) + float(ordered[half]))
+
+
+def median_of_three(first: NDArray[Any], second: NDArray[Any], third: NDArray[Any]) -> NDArray[Any]:
+    """Return the median of the three values at each place; none is NaN.
+
+    >>> median_of_three(*np.array([[3, 1], [1, 9], [2, 5]])).tolist()
+    [2, 5]
+    """
+    low, high = np.minimum(first, second), np.maximum(first, second)
+    return np.asarray(np.maximum(low, np.minimum(high, third)))
 
 
 def inner_product(first: Floats, second: Floats) -> float:
@@ -173,4 +184,4 @@ def _outliers(values: Floats) -> NDArray[np.bool_]:
 def _moves(values: Floats, at: Indices, way: int) -> Floats:
     """Return how far the signal moves on one side of samples: the median over three of them."""
     beside = values[at[:, None] + way * np.arange(1, BESIDE + 1)]
-    return np.asarray(np.median(np.abs(beside - values[at, None]), axis=1))
+    return median_of_three(*np.abs(beside - values[at, None]).T)

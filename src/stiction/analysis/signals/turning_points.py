@@ -22,7 +22,7 @@ from stiction.analysis.signals.reversals import (
     standing_out,
     taken_out,
 )
-from stiction.analysis.signals.robust import median
+from stiction.analysis.signals.robust import median, median_of_three
 from stiction.arrays import Floats, Indices
 
 PER_OCTAVE = 4  # edges tried in each factor of two of height
@@ -258,12 +258,11 @@ def without_spikes(values: NDArray[Number]) -> NDArray[Number]:
 
 def running_sums(counts: Counts) -> Iterator[Counts]:
     """Yield the signal, then its sums over 2, 4, 8 ... samples, single wild ones replaced."""
-    from scipy.ndimage import median_filter  # type: ignore[attr-defined]
-
     while len(counts) >= 2 * FEWEST_PER_CYCLE:
         yield counts
         pairs = counts[: len(counts) // 2 * 2].reshape(-1, 2).sum(axis=1)
-        counts = median_filter(pairs, 3, mode="nearest")
+        counts = pairs.copy()
+        counts[1:-1] = median_of_three(pairs[:-2], pairs[1:-1], pairs[2:])
 
 
 def typical_step(counts: Counts) -> float:
