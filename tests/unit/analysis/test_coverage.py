@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.signal import lfilter
+from tests.parts import assess
 
 import stiction as st
 from stiction.analysis.motion.drift import find_drift
@@ -24,7 +25,7 @@ def alike(random, size, share=0.9):
 
 
 def kinetic(force):
-    found = st.analyse(st.Record(time=TIME, force=force, normal_load=W)).friction.kinetic
+    found = assess(st.Record(time=TIME, force=force, normal_load=W)).friction.kinetic
     assert found is not None
     return found.force, found.error
 
@@ -68,7 +69,7 @@ def test_friction_of_few_cycles(count):
     for _ in range(40):
         force = saw(random, count, 0.05)
         record = st.Record(time=5e-3 * np.arange(len(force)), force=force, normal_load=W)
-        static = st.analyse(record).friction.static
+        static = assess(record).friction.static
         if static is not None:
             found.append((static.force, static.error))
     assert len(found) > 30
@@ -135,10 +136,8 @@ def test_the_rate_of_loading_of_few_cycles(drifts):
         force = 1.0 + k * V * (rise - 1) * 5e-3 * np.tile(one, count)
         time = 5e-3 * np.arange(len(force))
         force += 0.02 * alike(random, len(force)) + drifts * random.uniform(-0.05, 0.05) * time
-        seen = st.analyse(
-            st.Record(time=time, force=force, normal_load=W, stiffness=k, drive_velocity=V)
-        )
-        rate = [x for x in seen.parts["metadata"] if x.quantity == "stiffness times drive velocity"]
+        record = st.Record(time=time, force=force, normal_load=W, stiffness=k, drive_velocity=V)
+        rate = [x for x in assess(record).stated if x.quantity == "stiffness times drive velocity"]
         found += [(each.found, each.error) for each in rate[:1]]
     assert len(found) > 30
     values, errors = np.transpose(found)

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from tests.measured import read_measured
+from tests.parts import creep_of
 
 import stiction as st
 from stiction import theory
@@ -173,7 +174,7 @@ def test_jerks_that_are_slow_beside_what_weakens_friction_do_no_harm():
         friction=st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f=0.01),
         drive=st.ConstantVelocity("20 um/s"),
     )
-    found = st.analyse(st.simulate(slider, "120 s", sample_rate="100 Hz"))
+    found = creep_of(st.simulate(slider, "120 s", sample_rate="100 Hz"))
     assert found.misalignment is not None
     assert abs(found.misalignment.phi - slider.misalignment) < 2.0 * found.misalignment.phi_error
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from benchmarks.explore.draw import Draw
 from tests.drawn import SEED
+from tests.parts import creep_of
 
 import stiction as st
 
@@ -39,9 +40,7 @@ def beyond():
         if duration * (slider.k_y / slider.mass) ** 0.5 / (2.0 * pi) > MOST:
             continue
         run = st.simulate(slider, duration, sample_rate=800.0 / cycle)
-        analysis = st.analyse(run)
-        if analysis.divergence:
-            n = analysis.divergence
+        if n := creep_of(run).divergence:
             exponents.append(abs(n.exponent - 0.5) / n.exponent_error)
         time, force = (run.data[name].values for name in ("time", "spring_x"))
         noise = 1e-5 * np.ptp(force) * np.random.default_rng(number).standard_normal(len(force))

@@ -6,6 +6,7 @@ from benchmarks.explore.draw import Draw
 from scipy.signal import lfilter
 from tests.drawn import SEED, inside
 from tests.measured import read_measured
+from tests.parts import assess
 
 import stiction as st
 from stiction.analysis.motion.metadata import SWING, compare_metadata
@@ -68,9 +69,9 @@ def test_the_error_of_the_mass_holds_what_samples_and_noise_hide_of_a_slip():
         fall = 0.5 * (1.0 + np.cos(np.pi * (phase - stick)))
         force = 2.0 + np.where(phase < stick, phase / stick, fall)
         force += 10.0**noise * np.random.default_rng(seed).standard_normal(len(time))
-        its, _ = compare(force, time, stiffness=1.0, drive_velocity=1.0 / stick, mass=1.0)
-        if SWING in its:
-            swing = its[SWING]
+        known = {"stiffness": 1.0, "drive_velocity": 1.0 / stick, "mass": 1.0}
+        stated = assess(st.Record(time=time, force=force, **known)).stated
+        for swing in (each for each in stated if each.quantity == SWING):
             off.append(abs(swing.found - np.pi**2) / swing.error)
     assert len(off) >= 40
     assert np.mean(np.array(off) > 2.0) < 0.1
@@ -167,8 +168,8 @@ def drive_velocities(turns):
         there = leg * np.abs((time / leg + begin + 1.0) % 2.0 - 1.0) if legs > 1.0 else time
         white = np.random.default_rng(seed).standard_normal(len(time))
         noise = 1e-3 * lfilter([(1.0 - 0.81) ** 0.5], [1.0, -0.9], white)
-        its, _ = compare(np.ones(len(time)), time, drive_position=there + noise)
-        drive = its["drive velocity"]
+        record = st.Record(time=time, force=np.ones(len(time)), drive_position=there + noise)
+        (drive,) = (x for x in assess(record).stated if x.quantity == "drive velocity")
         found.append((abs(drive.found - 1.0), abs(drive.found - 1.0) / drive.error))
     return np.array(found)
 

@@ -1,0 +1,24 @@
+"""Parts of an analysis, of tests that ask hundreds of runs and records for one finding."""
+
+from __future__ import annotations
+
+import stiction as st
+from stiction.analysis.assessment import Assessment, assess_record, assess_run
+from stiction.analysis.creep.findings import CreepFound, find_creep
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.record import as_record
+
+
+def assess(record: st.Record) -> Assessment:
+    """Return cycles, friction, stated values and warnings as `st.analyse` finds them."""
+    found = swings(record)
+    return assess_record(record, found, regime_of(record, found))
+
+
+def creep_of(run: st.Trajectory) -> CreepFound:
+    """Return the creep of a run as `st.analyse` finds it, without an energy budget."""
+    record = as_record(run)
+    found = swings(record)
+    its = assess_run(run, record, found, regime_of(record, found))
+    return find_creep(run, record, its.sticking, None)
