@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from tests.drawn import inside
+from tests.parts import assess
 
 import stiction as st
 from stiction.analysis.motion.friction import find_friction
@@ -27,7 +28,7 @@ def force():
 
 
 def doubts_in_words(time: np.ndarray, force: np.ndarray, **changes: object) -> str:
-    return " ".join(st.analyse(st.Record(time=time, force=force, **KNOWN | changes)).warnings)
+    return " ".join(assess(st.Record(time=time, force=force, **KNOWN | changes)).warnings)
 
 
 def test_what_belongs_together_is_not_doubted(force) -> None:
@@ -105,10 +106,10 @@ def test_a_filter_that_smears_the_slips_is_named_where_it_is_stated(cut) -> None
     slider = st.presets.nakano_popov_2020()
     run = st.simulate(slider, 5.0, sample_rate="10 kHz")
     sensor = st.Sensor(filter=cut * slider.natural_frequency_x, noise="2 mN")
-    found = st.analyse(st.measure(run, sensor, seed=1))
-    assert any("smeared" in each for each in found.warnings) == (cut < 10.0)
-    silent = found.record.model_copy(update={"sensors": None})
-    assert not any("smeared" in each for each in st.analyse(silent).warnings)
+    record = st.measure(run, sensor, seed=1)
+    assert any("smeared" in each for each in assess(record).warnings) == (cut < 10.0)
+    silent = record.model_copy(update={"sensors": None})
+    assert not any("smeared" in each for each in assess(silent).warnings)
 
 
 def test_a_break_away_before_steady_sliding() -> None:
@@ -356,7 +357,7 @@ def test_a_mean_of_about_zero_is_doubted_whatever_its_sign() -> None:
     time = np.arange(0.0, 20.0, 1e-3)
     noise = 1e-3 * np.random.default_rng(1).normal(size=len(time))
     for force in (sawtooth(time / 0.7) - 1.49, np.sin(6.0 * np.pi * time), 1e3 * noise):
-        said = " ".join(st.analyse(st.Record(time=time, force=force + noise, **KNOWN)).warnings)
+        said = doubts_in_words(time, force + noise)
         assert "The mean friction is about zero" in said
         assert "kilonewtons? Give force_unit='kN'; or check the normal load" not in said
     assert "about zero" not in doubts_in_words(time, sawtooth(time / 0.7))
@@ -492,7 +493,7 @@ def slips_of_few_samples(samples, place, rests):
 )
 def test_slip_speeds_of_few_samples_are_named_with_their_error(samples, place, rests):
     record, true = slips_of_few_samples(samples, place, rests)
-    found = st.analyse(record)
+    found = assess(record)
     low = 1.0 - float(found.cycles["peak_slip_speed"].mean()) / true
     said = " ".join(found.warnings)
     if match := re.search(r"slip speeds are too low by about ([\d.]+) %", said):
@@ -535,12 +536,10 @@ def test_a_force_that_is_cut_off_contradicts_no_mass(share, noise, mass):
     time, force = saw(np.full(10, 1.0), np.full(10, np.pi * (mass / 1e3) ** 0.5), 2e-3)
     force += noise * np.random.default_rng(1).standard_normal(len(time))
     cut = np.minimum(force, 1.0 + share)
-    found = st.analyse(
-        st.Record(time=time, force=cut, stiffness=1e3, drive_velocity=1e-3, mass=mass)
-    )
+    found = assess(st.Record(time=time, force=cut, stiffness=1e3, drive_velocity=1e-3, mass=mass))
     assert any("the end of the load cell's range" in each for each in found.warnings)
     assert not any("check mass" in each for each in found.warnings)
-    assert "stiffness over mass" not in [each.quantity for each in found.parts["metadata"]]
+    assert "stiffness over mass" not in [each.quantity for each in found.stated]
 
 
 @pytest.mark.parametrize(("noise", "lasts"), inside(16, (0.001, 0.01), (0.5, 3.0)))
@@ -583,10 +582,10 @@ def test_a_slip_whose_ends_noise_hides_contradicts_no_mass(noise, seed):
     force = 1.0 + np.minimum(time % 1.0, 0.95) - 0.475 * (1.0 - np.cos(np.pi * phase))
     force += 0.95 * noise * np.random.default_rng(int(seed)).standard_normal(len(time))
     rig = {"stiffness": 1e3, "drive_velocity": 1e-3, "mass": 1e3 * (own / 2.0 / np.pi) ** 2}
-    found = st.analyse(st.Record(time=time, force=force, normal_load=10.0, **rig))
-    assert "check mass" not in " ".join(found.warnings)
-    heavy = found.record.model_copy(update={"mass": 30.0 * rig["mass"]})
-    assert "check mass" in " ".join(st.analyse(heavy).warnings)
+    record = st.Record(time=time, force=force, normal_load=10.0, **rig)
+    assert "check mass" not in " ".join(assess(record).warnings)
+    heavy = record.model_copy(update={"mass": 30.0 * rig["mass"]})
+    assert "check mass" in " ".join(assess(heavy).warnings)
 
 
 @pytest.mark.parametrize(("noise", "samples"), [(0.63, 100), (0.36, 24), (0.3, 60), (0.24, 10)])
