@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import median_filter
 
-from stiction.analysis.signals.robust import median
+from stiction.analysis.signals.robust import median, median_of_three
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 63, 64, 1001])
@@ -16,3 +17,11 @@ def test_the_median_is_that_of_numpy_to_the_last_bit(count):
     holed = random.standard_normal(count)
     holed[random.integers(count)] = np.nan
     assert np.isnan(median(holed))
+
+
+@pytest.mark.parametrize("size", [3, 4, 50])
+def test_the_median_of_three_in_a_row_is_that_of_a_filter(size):
+    values = np.random.default_rng(size).integers(-3, 3, size)  # with ties
+    found = median_of_three(values[:-2], values[1:-1], values[2:])
+    assert found.dtype == values.dtype
+    assert found.tolist() == median_filter(values, 3, mode="nearest")[1:-1].tolist()
