@@ -305,8 +305,8 @@ def test_sizes_have_no_sign_and_limits_no_warning():
 @pytest.mark.parametrize(
     ("stiffness", "said"),
     [
-        (pint.UnitRegistry().Quantity(1.0, "kN/m"), "not in kilonewton / meter"),
-        (pint.UnitRegistry().Quantity(np.ones(2), "N/m"), r"write .to_base_units\(\).magnitude"),
+        (pint.Quantity(1.0, "kN/m"), "not in kilonewton / meter"),
+        (pint.Quantity(np.ones(2), "N/m"), r"write .to_base_units\(\).magnitude"),
         (xr.DataArray(1.0, attrs={"units": "kN/m"}), "not in kN/m"),
     ],
 )

@@ -229,5 +229,4 @@ def test_what_is_known_of_a_zero_is_less_later_in_the_record():
 
 
 def test_a_level_may_be_a_quantity():
-    unit = pint.UnitRegistry()
-    assert st.Sensor(noise=2 * unit.mN).noise == st.Sensor(noise="2 mN").noise
+    assert st.Sensor(noise=pint.Quantity(2, "mN")).noise == st.Sensor(noise="2 mN").noise

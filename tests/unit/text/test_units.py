@@ -52,9 +52,9 @@ def test_a_damping_constant_is_read_however_it_is_written(text):
         (np.float64(3.0), FORCE, 3.0),
         (np.int64(3), FORCE, 3.0),
         (np.array(3.0), FORCE, 3.0),
-        (pint.UnitRegistry().Quantity(3, "kN"), FORCE, 3e3),
-        (pint.UnitRegistry().Quantity(np.float64(2.0), "mm / s"), VELOCITY, 2e-3),
-        (pint.UnitRegistry().Quantity(0.2, ""), NUMBER, 0.2),
+        (pint.Quantity(3, "kN"), FORCE, 3e3),
+        (pint.Quantity(np.float64(2.0), "mm / s"), VELOCITY, 2e-3),
+        (pint.Quantity(0.2, ""), NUMBER, 0.2),
         (xr.DataArray(2.0, attrs={"units": "mm/s"}), VELOCITY, 2e-3),
         (xr.DataArray(2.0, attrs={"units": "deg"}), ANGLE, np.pi / 90),
         (xr.DataArray(2.0, attrs={"long_name": "speed"}), VELOCITY, 2.0),
@@ -67,13 +67,12 @@ def test_other_quantities(text, kind, value):
 
 def test_common_units_are_those_of_the_registry():
     """Factors without the registry equal its own, and it finds the same dimensions."""
-    registry = pint.UnitRegistry()
     for name in COMMON:
-        known = registry.Quantity(1.0, name).to_base_units()
+        known = pint.Quantity(1.0, name).to_base_units()
         same = {"kilogram": "kg", "meter": "m", "second": "s"}
         base = "*".join(f"{same[each]}^{int(power)}" for each, power in known.units._units.items())
         assert factor(name, base) == pytest.approx(
-            registry.Quantity(1.0, name).to(base).magnitude, rel=1e-15
+            pint.Quantity(1.0, name).to(base).magnitude, rel=1e-15
         )
 
 
