@@ -99,18 +99,32 @@ def opened(browser, explorer):
 
 
 @pytest.fixture
-def page(opened, explorer):
-    """The page as it opens; a tab of its own for each test would take as long as the page."""
-    made, opened.said, opened.asked = opened, [], []
-    made.tab.set_viewport_size(SIZE)
-    made.tab.goto("about:blank")  # so that the page is loaded, and not only its state
-    made.visit("")
-    yield made
-    assert made.said == []  # no error, no warning, in any of these tests
+def tab(opened, explorer):
+    """The page as the last test left it; whatever a test does to it, it does in silence."""
+    opened.said, opened.asked = [], []
+    yield opened
+    assert opened.said == []  # no error, no warning, in any of these tests
     away = [
-        url for url in made.asked if f"//127.0.0.1:{explorer.port}/{explorer.token}/" not in url
+        url for url in opened.asked if f"//127.0.0.1:{explorer.port}/{explorer.token}/" not in url
     ]
     assert [url for url in away if not url.startswith(("blob:", "data:"))] == []
+
+
+@pytest.fixture
+def page(tab):
+    """The page as it opens; a tab of its own for each test would take as long as the page."""
+    tab.tab.set_viewport_size(SIZE)
+    tab.tab.goto("about:blank")  # so that the page is loaded, and not only its state
+    tab.visit("")
+    return tab
+
+
+@pytest.fixture
+def modules(tab):
+    """The page in any state, for what only calls functions of its modules."""
+    if not tab.tab.url.startswith("http"):
+        tab.visit("")
+    return tab
 
 
 def test_numbers_are_those_of_simulate(page):
@@ -164,7 +178,7 @@ def test_the_ends_of_each_slider_are_values_that_are_taken(page):
     assert page.row("slider.mass").locator("input[type=text]").input_value() == "1 g"
 
 
-def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(page):
+def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(modules):
     """Also where a parameter has no value yet, or 0."""
     made, known = form(), []
     for part in (made["tables"], made["laws"], made["pieces"]["drive"], made["pieces"]["load"]):
@@ -172,7 +186,7 @@ def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(page):
             known += each.get("fields", []) if isinstance(each, dict) else each
     known = [each for each in known if each["kind"] == "number"]
     assert len(known) > 90
-    ends = page.value(
+    ends = modules.value(
         module(
             "scale.js",
             """({ scaleOf }) => FIELDS.map((field) => [0, 2e-3, 1, 3e4].map((base) => {
@@ -437,9 +451,9 @@ def test_tooltips_are_plain_words_and_one_stick_is_one_interval(page):
     assert page.tab.inner_text("#status").startswith("1 stick interval, ")
 
 
-def test_ticks_of_a_study_have_the_prefix_of_its_axis(page):
+def test_ticks_of_a_study_have_the_prefix_of_its_axis(modules):
     """0.0003 and 0.0095 m/s reached into the name of the axis."""
-    made = page.value(
+    made = modules.value(
         """import(new URL("axis.js", document.querySelector("script[type=module]").src)).then(
         ({ cellAxis }) => cellAxis([3e-4, 9.5e-4, 3e-3, 9.5e-3, 0.03], "m/s"))"""
     )
@@ -454,9 +468,9 @@ def module(name, use):
     )
 
 
-def test_the_labels_of_ticks_are_not_cut_off_or_in_another_frame(page):
+def test_the_labels_of_ticks_are_not_cut_off_or_in_another_frame(modules):
     """Of 0.30 at the end of the time axis one saw 0.3; 0 and 1 of two strips lay on each other."""
-    across, up = page.value(
+    across, up = modules.value(
         module(
             "drawing.js",
             """({ frame }) => {
@@ -479,8 +493,8 @@ def test_the_labels_of_ticks_are_not_cut_off_or_in_another_frame(page):
 
 
 @pytest.mark.parametrize("damping", [1e-1, 1.0, 3e3, 2e7, 5e11])
-def test_the_numbers_in_the_damping_diagram_lie_apart(page, damping):
-    boxes = page.value(
+def test_the_numbers_in_the_damping_diagram_lie_apart(modules, damping):
+    boxes = modules.value(
         module(
             "views.js",
             """({ VIEWS }) => {
@@ -505,9 +519,9 @@ def test_the_numbers_in_the_damping_diagram_lie_apart(page, damping):
             assert left > other_right or other_left > right or abs(y - other) >= 14
 
 
-def test_what_does_not_move_has_no_magnification(page):
+def test_what_does_not_move_has_no_magnification(modules):
     """A rig without misalignment had "u_y × 0"."""
-    said = page.value(
+    said = modules.value(
         module(
             "scene.js",
             """({ Scene }) => {

@@ -27,7 +27,7 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     rig.write_text(TEXT)
     shutil.copytree(libraries, folder)
     blocks = sorted(folder.glob("*/*.npz"))
-    for block in blocks[::5]:
+    for block in blocks[:: len(blocks) // 2]:
         block.unlink()  # made again by the fit
     library = ("-n", SIMULATIONS, "--library", folder)
 

@@ -227,6 +227,11 @@ function lookCloser(anew = false) {
 
 const ahead = (micro) => (micro.end >= player.end - 1e-12 ? Infinity : micro.end - player.t);
 
+// Write what is another value than the last: otherwise the page at rest is laid out in each frame.
+function change(element, property, value) {
+  if (element[property] !== String(value)) element[property] = value;
+}
+
 function frame(time) {
   player.frame(time, player.playing ? sound.now() : null);
   if (player.playing) lookCloser();
@@ -234,9 +239,9 @@ function frame(time) {
   const now = { t, own: data.own, state: fine?.at(t), micro: page.micro && [page.micro.start, page.micro.end] };
   const key = `${t} ${now.own?.phi} ${now.own?.V} ${now.micro} ${page.shown?.arrived}`;
   for (const each of [scene, series, microscope, ...panels]) if (each.view !== null) each.layers.draw(now, key);
-  if (document.activeElement !== $("macro") || player.playing) $("macro").value = Math.round((1e5 * (t - player.start)) / (player.end - player.start || 1));
-  if (page.micro) $("micro").value = Math.round((4000 * (t - page.micro.start)) / (page.micro.end - page.micro.start || 1));
-  $("clock").textContent = clock(t, player.end, player.slow >= 100 ? 6 : 4);
+  if (document.activeElement !== $("macro") || player.playing) change($("macro"), "value", Math.round((1e5 * (t - player.start)) / (player.end - player.start || 1)));
+  if (page.micro) change($("micro"), "value", Math.round((4000 * (t - page.micro.start)) / (page.micro.end - page.micro.start || 1)));
+  change($("clock"), "textContent", clock(t, player.end, player.slow >= 100 ? 6 : 4));
   page.frames = player.frames.length;
   page.drawn = (page.drawn ?? 0) + 1;
   if (page.redraw) { // when the curves of a request have been drawn
