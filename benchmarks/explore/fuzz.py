@@ -31,6 +31,7 @@ from stiction.cli import main as main_line
 from stiction.cli.options import value as option
 from stiction.comparison import read_laws
 from stiction.result import file as run_file
+from stiction.result.attributes import SEAL
 from stiction.result.file import open_tables
 from stiction.study.store.seal import seal
 from stiction.text.toml import toml_text
@@ -315,7 +316,7 @@ def reseal(path: Path) -> None:
         samples, sticks, _ = open_tables(path)
         seal = run_file.seal_tables({"samples": samples, "sticks": sticks})
         with h5py.File(path, "r+") as file:
-            file.attrs[run_file.SEAL] = seal
+            file.attrs[SEAL] = seal
     run_file.sign(path)
 
 

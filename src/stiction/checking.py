@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from stiction.errors import ResultError, argument
 from stiction.recording.stored import read_stored, root_attributes
+from stiction.result.attributes import intact_description
 from stiction.result.file import (
     RECORD_KIND,
     TEXTS,
     DamageError,
-    intact_description,
     is_netcdf,
     read_tables,
 )

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +16,9 @@ from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.origin import Origin, Use
 from stiction.recording.sensor import Sensor
+from stiction.result.attributes import SEAL, list_attributes
 from stiction.result.file import (
     RECORD_KIND,
-    SEAL,
     as_written,
     damaged_parts,
     is_netcdf,
@@ -93,13 +92,6 @@ def root_attributes(path: Path) -> list[str] | None:
     except (OSError, ResultError):
         return None
     return names.split("\n")
-
-
-def list_attributes(path: str) -> str:
-    """Return the names of the attributes of an HDF5 file, a line each."""
-    h5py: Any = import_module("h5py")  # slow to import
-    with h5py.File(path) as file:
-        return "\n".join(map(str, file.attrs))
 
 
 def read_stored(path: Path) -> Measurement:

@@ -22,6 +22,7 @@ import numpy as np
 
 from stiction.errors import ResultError, argument
 from stiction.machine import shortage
+from stiction.result.attributes import DESCRIPTION, SEAL
 from stiction.result.table import STICKS, VARIABLES, Column, ColumnTable
 from stiction.storage.checksums import LENGTH, broken_parts, bytes_of, crc_of_file, seal
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
@@ -36,7 +37,6 @@ ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
 SHORTEST = 1e-100  # s, between two samples
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
-SEAL, DESCRIPTION = "checksums", "description"  # attributes of the file
 RECORD_KIND = "stiction_record"  # attribute of a stored record; its value: the layout
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
@@ -227,26 +227,6 @@ def seal_tables(tables: Mapping[str, ColumnTable]) -> str:
 def damaged_parts(known: str | None, tables: Mapping[str, ColumnTable]) -> list[str]:
     """Return the names of damaged parts, by the text of `seal_tables`."""
     return [SEAL] if known is None else broken_parts(known, _parts(tables))
-
-
-def intact_description(path: str | Path) -> str:
-    """Return the description from a result file whose other parts are damaged.
-
-    Raises
-    ------
-    ResultError
-        If the description is damaged too, or has no checksum.
-    """
-    h5py: Any = import_module("h5py")  # slow to import
-    lost = "too damaged to be repaired: its description cannot be read; run it again"
-    with opening(path, lost), h5py.File(path) as file:
-        if not {SEAL, DESCRIPTION} <= set(file.attrs):
-            raise ResultError(f"{path}: {lost}")
-        known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
-        whole = DESCRIPTION not in broken_parts(known, {DESCRIPTION: text.encode()})
-    if not whole:
-        raise ResultError(f"{path}: is damaged, and so is its description; run it again")
-    return text
 
 
 def _parts(tables: Mapping[str, ColumnTable]) -> dict[str, Any]:

@@ -1,0 +1,40 @@
+"""What is read of a file's attributes in another process, which imports little else (`apart`)."""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from stiction.errors import ResultError
+from stiction.storage.checksums import broken_parts
+from stiction.storage.foreign import opening
+
+SEAL, DESCRIPTION = "checksums", "description"
+
+
+def list_attributes(path: str) -> str:
+    """Return the names of the attributes of an HDF5 file, a line each."""
+    h5py: Any = import_module("h5py")  # slow to import
+    with h5py.File(path) as file:
+        return "\n".join(map(str, file.attrs))
+
+
+def intact_description(path: str | Path) -> str:
+    """Return the description from a result file whose other parts are damaged.
+
+    Raises
+    ------
+    ResultError
+        If the description is damaged too, or has no checksum.
+    """
+    h5py: Any = import_module("h5py")  # slow to import
+    lost = "too damaged to be repaired: its description cannot be read; run it again"
+    with opening(path, lost), h5py.File(path) as file:
+        if not {SEAL, DESCRIPTION} <= set(file.attrs):
+            raise ResultError(f"{path}: {lost}")
+        known, text = str(file.attrs[SEAL]), str(file.attrs[DESCRIPTION])
+        whole = DESCRIPTION not in broken_parts(known, {DESCRIPTION: text.encode()})
+    if not whole:
+        raise ResultError(f"{path}: is damaged, and so is its description; run it again")
+    return text
