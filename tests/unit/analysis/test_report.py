@@ -6,6 +6,7 @@ from math import degrees
 import numpy as np
 import pytest
 from tests.drawn import inside
+from tests.parts import assess, creep_of
 
 import stiction as st
 from stiction.analysis.creep.findings import calibrate
@@ -34,6 +35,17 @@ def test_a_run_says_everything_of_itself(found):
     assert found.phases.sizes["phase"] == 4  # the first loading is one
     assert float(found.energy["work"].sum()) > 0.0
     assert degrees(found.misalignment.phi) == pytest.approx(1.0, abs=0.02)
+
+
+def test_what_other_tests_ask_for_one_finding_is_what_an_analysis_finds(run, found):
+    its = creep_of(run)
+    assert (its.divergence, its.misalignment) == (found.divergence, found.misalignment)
+    record = st.measure(run, st.Sensor(noise="2 mN"), seed=1)
+    part, whole = assess(record), st.analyse(record)
+    assert part.stated
+    assert repr((part.stated, part.warnings)) == repr((whole.parts["metadata"], whole.warnings))
+    assert repr(part.friction) == repr(whole.friction)
+    assert part.cycles.identical(whole.cycles)
 
 
 @pytest.fixture(scope="module")
