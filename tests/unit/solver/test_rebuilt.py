@@ -1,5 +1,6 @@
 """A solver written from ``docs/method.md`` alone takes the steps of the compiled one."""
 
+from functools import cache
 from math import atan2, hypot
 
 import numpy as np
@@ -41,11 +42,17 @@ def check_agreement(run, rebuilt, duration):
     assert rebuilt.u == pytest.approx(u, rel=1e-12)
 
 
+@cache
+def solution(name):
+    slider, duration = CASES[name]
+    return Solver(slider, 1e-6).run(duration)
+
+
 @pytest.mark.parametrize("name", CASES)
 def test_the_rebuilt_solver_takes_the_same_steps(name):
     slider, duration = CASES[name]
     run = st.simulate(slider, duration, rtol=1e-6, sample_rate=0)
-    check_agreement(run, Solver(slider, 1e-6).run(duration), duration)
+    check_agreement(run, solution(name), duration)
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8])
@@ -65,7 +72,7 @@ def test_it_takes_the_same_steps_through_a_rapid_slip():
 
 
 def test_the_kinds_of_steps():
-    kinds = {kind for case in CASES.values() for kind in Solver(case[0], 1e-6).run(case[1]).kinds}
+    kinds = {kind for name in CASES for kind in solution(name).kinds}
     assert kinds == {"take-off", "slip", "landing", "laid over", "plain", "long"}
 
 
