@@ -25,7 +25,7 @@ from stiction.friction.laws import Anisotropic, Stribeck
 from stiction.inference.columns import bend_features, features_from
 from stiction.inference.features import USED
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
-from stiction.inference.mechanism.likeness import Reference
+from stiction.inference.mechanism.likeness import Reference, learn_or_read_references
 from stiction.inference.mechanism.odds import CLAIM, UNLIKE
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
@@ -95,12 +95,18 @@ class Part(NamedTuple):
     features: Floats
     bends: Floats
     labels: NDArray[np.int64]
+    parameters: tuple[Floats, ...]
 
     @classmethod
     def of(cls, records: Simulations, which: NDArray[np.bool_], bend: NDArray[np.bool_]) -> Self:
         """Return those of simulations with all channels."""
         rows = records.features
-        return cls(records.names, rows[:, which], rows[:, bend], records.labels)
+        return cls(records.names, rows[:, which], rows[:, bend], records.labels, records.parameters)
+
+    @property
+    def simulations(self) -> Simulations:
+        """The same without bends."""
+        return Simulations(self.names, self.features, self.labels, parameters=self.parameters)
 
 
 class Called(NamedTuple):
@@ -157,12 +163,9 @@ def report(
 ) -> None:  # fmt: skip
     """Print what becomes of records that no part has seen, with some channels."""
     start = perf_counter()
-    classifier = learn_or_read(Simulations(known.names, known.features, known.labels))
+    classifier = learn_or_read(known.simulations)
+    references = learn_or_read_references(known.simulations, classifier.scores, known.bends)
     took = perf_counter() - start
-    references = [
-        Reference.of(classifier.scores[own], known.bends[own])
-        for own in (known.labels == label for label in range(len(known.names)))
-    ]
     its, labels = call(classifier, references, unseen), unseen.labels
     right = its.likeliest == labels
     recall = [float(right[labels == label].mean()) for label in range(len(known.names))]

@@ -24,8 +24,13 @@ from stiction.inference.features import (
     of_slip,
 )
 from stiction.inference.fit import plan_for
-from stiction.inference.mechanism.classifier import Simulations, learn_or_read, simulate
-from stiction.inference.mechanism.likeness import CURVES, Likeness, Reference
+from stiction.inference.mechanism.classifier import (
+    Simulations,
+    common_columns,
+    learn_or_read,
+    simulate,
+)
+from stiction.inference.mechanism.likeness import CURVES, Likeness, learn_or_read_references
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
 from stiction.inference.observation import observe, steadiness, trend
@@ -269,24 +274,87 @@ def test_what_was_learned_is_stored_and_found_again(clouds, tmp_path):
     assert (learn_or_read(clouds, path).probabilities(new) == first.probabilities(new)).all()
 
 
-def test_a_record_of_the_mechanism_is_as_usual_as_any_and_one_beside_it_is_not():
+def features_of(parameters, random):
+    """Features that parameters (n, 2) show twice, on a bent surface, and noise."""
+    x, y = parameters.T
+    columns = [x, y, x + 0.3 * y * y, y - 0.3 * x, x * y, x - y]
+    return np.column_stack(columns) + 0.05 * random.standard_normal((len(parameters), 6))
+
+
+@pytest.fixture(scope="module")
+def two_mechanisms():
+    """Simulations of two mechanisms of which the parameters and features are known."""
     random = np.random.default_rng(2)
-    shear = random.standard_normal((4, 4))
-    members = random.standard_normal((900, 4)) @ shear
-    reference = Reference.of(members, members[:, :2])
-    new = random.standard_normal((300, 4)) @ shear
+    parameters = tuple(random.standard_normal((count, 2)) for count in (600, 400))
+    features = np.concatenate([features_of(each, random) for each in parameters])
+    return Simulations(("one", "other"), features, np.repeat([0, 1], [600, 400]), (), parameters)
+
+
+def test_a_record_of_the_mechanism_is_as_usual_as_any_and_one_beside_it_is_not(two_mechanisms):
+    features = two_mechanisms.features
+    reference, _ = learn_or_read_references(two_mechanisms, features, features[:, :2])
+    random = np.random.default_rng(3)
+    new = features_of(random.standard_normal((300, 2)), random)
     found = [reference.likeness(each, each[:2]) for each in new]
     farther = np.array([its.farther for its in found])
-    larger = np.array([its.larger for its in found])
     # uniform: the mean of 300 is 0.5 within three standard errors, and few are rare
     assert farther.mean() == pytest.approx(0.5, abs=3.0 * (1.0 / 12.0 / 300.0) ** 0.5)
     assert (farther < 0.05).mean() == pytest.approx(0.05, abs=3.0 * (0.05 * 0.95 / 300.0) ** 0.5)
-    assert larger.min() >= 1.0 / (CURVES + 1)
-    away = reference.likeness(8.0 * shear[0], np.zeros(2))
-    assert away.farther == 0.0
-    bent = reference.likeness(members[0], 8.0 * shear[0, :2])
+    assert min(its.larger for its in found) >= 1.0 / (CURVES + 1)
+    assert reference.likeness(8.0 * features[0], np.zeros(2)).farther == 0.0
+    bent = reference.likeness(features[0], np.array([8.0, 8.0]))
     assert bent.farther > 0.0
     assert bent.larger == pytest.approx(1.0 / (CURVES + 1))
+
+
+def test_a_record_that_contradicts_what_its_parameters_let_expect_is_unlike(two_mechanisms):
+    """Its distance from the nearest simulations does not show it in half of the cases."""
+    features = two_mechanisms.features
+    reference, _ = learn_or_read_references(two_mechanisms, features, features[:, :2])
+    random = np.random.default_rng(5)
+    wrong = features_of(0.5 * random.standard_normal((100, 2)), random)
+    wrong[:, 4] += 0.3  # six times the noise, where x y reaches 3
+    near = np.mean([reference.clouds[0].nearer(each, each) > 0.975 for each in wrong])
+    unlike = np.mean([reference.likeness(each, each[:2]).farther < 0.025 for each in wrong])
+    assert near < 0.6
+    assert unlike > 0.8
+
+
+def test_what_is_expected_is_stored_and_found_again(two_mechanisms, tmp_path):
+    path, features = tmp_path / "likeness.npz", two_mechanisms.features
+    new = np.random.default_rng(1).standard_normal(6)
+
+    def likenesses(simulated):
+        learned = learn_or_read_references(
+            simulated, simulated.features, simulated.features[:, :2], path
+        )
+        return [each.likeness(new, new[:2])[0] for each in learned]
+
+    first = likenesses(two_mechanisms)
+    assert path.is_file()
+    assert likenesses(two_mechanisms) == first
+    one, other = two_mechanisms.parameters
+    likenesses(
+        two_mechanisms._replace(
+            features=features[1:], labels=two_mechanisms.labels[1:], parameters=(one[1:], other)
+        )
+    )  # not those of other simulations
+    path.write_bytes(b"damaged")
+    assert likenesses(two_mechanisms) == first
+
+
+def test_parameters_of_several_laws_have_common_columns(rig, rotating):
+    rivals = mechanisms(rig, [observe(rotating, rig.slider).conditions])
+    (static,) = (each for each in rivals if each.name == STATIC)
+    scores = [np.full((2, len(plan.priors)), i + 1.0) for i, plan in enumerate(static.plans)]
+    found = common_columns(static.plans, scores)
+    paths = [*dict.fromkeys(path for plan in static.plans for path in plan.priors)]
+    assert found.shape == (4, len(paths) + 2)
+    own = paths.index("friction.mu_static")  # of the second law alone
+    assert found[:, own].tolist() == [0.0, 0.0, 2.0, 2.0]
+    assert found[:, paths.index("k_x")].tolist() == [1.0, 1.0, 2.0, 2.0]
+    assert found[:, -2:].tolist() == [[1.0, 0.0]] * 2 + [[0.0, 1.0]] * 2
+    assert common_columns(static.plans[:1], scores[:1]).shape == (2, len(static.plans[0].priors))
 
 
 def test_trends_are_found_where_there_are_some_and_only_there():
@@ -324,7 +392,7 @@ def test_a_claim_needs_every_part_to_agree():
     far, bent = USUAL._replace(farther=0.01), USUAL._replace(larger=0.01)
     for change, reason in (
         ({"probabilities": np.array([0.85, 0.1, 0.05])}, "0.85; a claim needs 0.9"),
-        ({"likeness": (far, USUAL, USUAL)}, "lie farther from their nearest ones"),
+        ({"likeness": (far, USUAL, USUAL)}, "are less like the others"),
         ({"likeness": (bent, USUAL, USUAL)}, "loading curve is not like"),
         ({"steady": 1e-3}, "Friction drifts"),
     ):

@@ -23,6 +23,7 @@ from stiction.errors import ResultError
 from stiction.inference.learning.summary import (
     Regression,
     Standard,
+    adapt_metrics,
     as_arrays,
     decompose,
     from_arrays,
@@ -32,6 +33,7 @@ from stiction.inference.learning.summary import (
 )
 from stiction.inference.mechanism.rivals import Mechanism
 from stiction.inference.simulated.library import Progress, have_cycles, simulate_all
+from stiction.inference.simulated.plan import Plan
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out
@@ -42,13 +44,15 @@ WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are disti
 class Simulations(NamedTuple):
     """Simulated records: features (n, f), and the place of each one's mechanism among `names` (n,).
 
-    `absent` are the mechanisms by which hardly any simulated record has cycles of stick and slip.
+    `absent` are the mechanisms by which hardly any simulated record has cycles of stick and slip;
+    `parameters` (m, p) are the normal scores of those of each mechanism's records, in their order.
     """
 
     names: tuple[str, ...]
     features: Floats
     labels: NDArray[np.int64]
     absent: tuple[str, ...] = ()
+    parameters: tuple[Floats, ...] = ()
 
 
 def simulate(
@@ -67,28 +71,48 @@ def simulate(
         If by no mechanism enough of them have cycles of stick and slip.
     """
     total = sum(len(rival.plans) for rival in rivals)
-    done, found, absent = 0, {}, []
+    done, found, parameters, absent = 0, {}, [], []
     for rival in rivals:
-        parts = []
+        parts, drawn = [], []
         for plan in rival.plans:
             place = None if folder is None else folder / f"{plan.key}-{seed}"
             wanted = -(-count // len(rival.plans))
             report = partial(tell, progress, done, total)
-            _, rows = simulate_all(plan, wanted, place, seed=seed, progress=report)
-            parts.append(rows[have_cycles(rows)])
+            scores, rows = simulate_all(plan, wanted, place, seed=seed, progress=report)
+            kept = have_cycles(rows)
+            parts.append(rows[kept])
+            drawn.append(scores[kept])
             done += 1
         features = np.concatenate(parts)
         if len(features) < FEWEST_SIMULATIONS:
             absent.append(rival.name)
         else:
             found[rival.name] = features
+            parameters.append(common_columns(rival.plans, drawn))
     if not found:
         raise ResultError(
             f"by no mechanism {FEWEST_SIMULATIONS} of {count} simulated records have cycles of "
             "stick and slip: check the priors, or simulate more"
         )
     labels = np.repeat(np.arange(len(found)), [len(each) for each in found.values()])
-    return Simulations((*found,), np.concatenate([*found.values()]), labels, (*absent,))
+    features = np.concatenate([*found.values()])
+    return Simulations((*found,), features, labels, (*absent,), (*parameters,))
+
+
+def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:
+    """Return parameters of several plans' simulations in common columns, (n, p).
+
+    In the middle of its prior, 0, is what a plan has not. Whose they are, where there are several,
+    is a column of each plan.
+    """
+    paths = [*dict.fromkeys(path for plan in plans for path in plan.priors)]
+    whose = np.eye(len(plans)) if len(plans) > 1 else np.zeros((1, 0))
+    found = []
+    for plan, some, its in zip(plans, scores, whose, strict=True):
+        rows = np.zeros((len(some), len(paths)))
+        rows[:, [paths.index(path) for path in plan.priors]] = some
+        found.append(np.hstack([rows, np.tile(its, (len(some), 1))]))
+    return np.concatenate(found)
 
 
 def tell(progress: Progress, done: int, total: int, fraction: float) -> None:
@@ -142,7 +166,8 @@ def learn_or_read(simulations: Simulations, path: Path | None = None) -> Classif
     scores = standard.scores(features)
     with single_threaded_algebra():
         parts = [(WIDTH, *decompose(kernel(scores, scores, WIDTH)))]
-        membership = regression(parts, np.eye(labels.max() + 1)[labels], scores.shape[1])
+        members = np.eye(labels.max() + 1)[labels]
+        membership = adapt_metrics(regression(parts, members, scores.shape[1]), scores, members)
         found = Classifier(standard, scores, membership, logistic(membership.library, labels))
     if path is not None:
         learned = as_arrays(standard=standard, membership=membership)

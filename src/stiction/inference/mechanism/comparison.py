@@ -13,8 +13,8 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.columns import bend_features
 from stiction.inference.fit import check
-from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
-from stiction.inference.mechanism.likeness import Reference
+from stiction.inference.mechanism.classifier import Simulations, learn_or_read, simulate
+from stiction.inference.mechanism.likeness import learn_or_read_references
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
@@ -84,8 +84,8 @@ def mechanism(
         raise ResultError(
             f"only {simulated.names[0]} sticks and slips on this rig: there is nothing to compare"
         )
-    kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}.npz"
-    return compare(simulated, learn_or_read(simulated, kept), known, seen)
+    kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}"
+    return compare(simulated, known, seen, kept)
 
 
 def key(rivals: Sequence[Mechanism]) -> str:
@@ -95,29 +95,33 @@ def key(rivals: Sequence[Mechanism]) -> str:
 
 
 def compare(
-    simulated: Simulations, classifier: Classifier, rig: Rig, seen: Sequence[Observation]
+    simulated: Simulations, rig: Rig, seen: Sequence[Observation], path: Path | None = None
 ) -> Odds:
-    """Return the odds of what was observed."""
+    """Return the odds of what was observed; what simulations teach is kept beside a path."""
     observed = np.concatenate([each.features for each in seen])
     bend = np.concatenate([bend_features(each.conditions, rig.slider) for each in seen])
+    classifier = learn_or_read(simulated, beside(path, "classifier"))
     record = classifier.standard.scores(observed)
+    references = learn_or_read_references(
+        simulated, classifier.scores, simulated.features[:, bend], beside(path, "likeness")
+    )
     labels = simulated.labels
-    places = [labels == label for label in range(len(simulated.names))]
-    bends = simulated.features[:, bend]
     return Odds(
         names=simulated.names,
         probabilities=classifier.probabilities(observed)[0],
         confusion=confusion(classifier.left_out, labels),
-        likeness=tuple(
-            Reference.of(classifier.scores[own], bends[own]).likeness(record, observed[bend])
-            for own in places
-        ),
+        likeness=tuple(each.likeness(record, observed[bend]) for each in references),
         bend=observed[bend],
         steady=steadiness(p for each in seen for p in each.trend),
-        counts=tuple(int(own.sum()) for own in places),
+        counts=tuple(np.bincount(labels).tolist()),
         absent=simulated.absent,
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),
     )
+
+
+def beside(path: Path | None, name: str) -> Path | None:
+    """Return where something of this name is kept; None where nothing is."""
+    return None if path is None else path.with_name(f"{path.name}-{name}.npz")
 
 
 def confusion(probabilities: Floats, labels: NDArray[np.int64]) -> Floats:

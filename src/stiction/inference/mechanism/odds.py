@@ -23,10 +23,10 @@ CLAIM = 0.9  # probability from which on a mechanism is claimed
 UNLIKE = 0.5 * RARE
 UNDECIDED = "undecided"
 EXPLAINED = (
-    "The odds before were even. Farther: the share of the mechanism's simulated records that lie "
-    "farther from their nearest ones than this record does; more bent: of those nearest to it, the "
-    "share whose loading departs more from their mean. Experimental: a law that was not simulated "
-    "may pass for one that was."
+    "The odds before were even. Farther: the share of the mechanism's simulated records that are "
+    "less like the others than this record is, by what they are nearest to or by what is expected "
+    "of their parameters; more bent: of those with its parameters, the share whose loading departs "
+    "more from their mean. Experimental: a law that was not simulated may pass for one that was."
 )
 CHANNEL = "force_across"  # without which the shape of the friction limit is not seen
 
@@ -108,7 +108,7 @@ class Odds:
         if its.farther < UNLIKE:
             found.append(
                 f"The record is not like those of {name}: {percent(its.farther)} of the simulated "
-                f"records lie farther from their nearest ones, {percent(UNLIKE)} are needed."
+                f"records are less like the others, {percent(UNLIKE)} are needed."
             )
         if its.larger < UNLIKE:
             found.append(

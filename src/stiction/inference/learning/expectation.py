@@ -1,0 +1,77 @@
+"""What features are expected of simulations with the parameters that a record seems to have.
+
+Features say what the parameters are, as far as they show; these say what all features would be. How
+far they are from that tells a record of another kind from one of the library, also where it lies
+between the library's records.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from stiction.arrays import Floats
+from stiction.inference.learning.summary import (
+    UNKNOWN,
+    Regression,
+    adapt_metrics,
+    decompose,
+    kernel,
+    regression,
+    single_threaded_algebra,
+)
+
+WIDTH = 1.0  # of the kernel by which features say what parameters are
+WIDTHS = (0.6, 1.0, 3.0)  # of the one by which these say what features are
+
+
+class Expectation(NamedTuple):
+    """Regressions of parameters over features, and of features over what these say of parameters.
+
+    Parameters
+    ----------
+    scores : ndarray
+        (n, f), standardised features of the library.
+    shown : ndarray
+        (p,), whether features say something of a parameter, 0 or 1.
+    estimates : Regression
+        Of the parameters.
+    expected : Regression
+        Of the features, over the estimates of those that are shown, in their standard deviations.
+    """
+
+    scores: Floats
+    shown: Floats
+    estimates: Regression
+    expected: Regression
+
+    @classmethod
+    def of(cls, scores: Floats, parameters: Floats) -> Self:
+        """Learn from a library's standardised features (n, f) and parameters (n, p)."""
+        with single_threaded_algebra():
+            part = WIDTH, *decompose(kernel(scores, scores, WIDTH))
+            first = regression([part], parameters, scores.shape[1])
+            estimates = adapt_metrics(first, scores, parameters)
+            errors = ((estimates.library - parameters) ** 2).mean(axis=0) / parameters.var(axis=0)
+            shown = (errors <= max(UNKNOWN, errors.min())).astype(np.float64)
+            places = in_deviations(estimates.library, estimates, shown)
+            parts = [(width, *decompose(kernel(places, places, width))) for width in WIDTHS]
+            return cls(scores, shown, estimates, regression(parts, scores, places.shape[1]))
+
+    @property
+    def library(self) -> tuple[Floats, Floats]:
+        """Estimates (n, q), and departures from what they let expect (n, f), from all others."""
+        places = in_deviations(self.estimates.library, self.estimates, self.shown)
+        return places, self.scores - self.expected.library
+
+    def __call__(self, new: Floats) -> tuple[Floats, Floats]:
+        """Return the same for new standardised features (m, f)."""
+        places = in_deviations(self.estimates.predict(new, self.scores), self.estimates, self.shown)
+        return places, new - self.expected.predict(places, self.library[0])
+
+
+def in_deviations(values: Floats, estimates: Regression, shown: Floats) -> Floats:
+    """Return estimates (m, p) of the parameters that are shown, in standard deviations, (m, q)."""
+    found: Floats = (values / estimates.library.std(axis=0))[:, shown > 0.0]
+    return found
