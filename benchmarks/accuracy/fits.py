@@ -132,7 +132,8 @@ def compare(known: Library, learned: Learned, unseen: Library, features: Floats)
         pairs = zip(sample.scores.T, truth, strict=True)
         ranks.append([rank(each, sample.weights, its) for each, its in pairs])
         widths.append([spread(known, each, sample, i) for i, each in enumerate(names)])
-    unlike = float((learned.summary.farther(features) < RARE).mean())
+    scores = learned.summary.standard.scores(features)
+    unlike = float((learned.typicality.farther(scores) < RARE).mean())
     return Trial(names, np.array(inside), np.array(ranks), np.array(widths), unlike, seconds)
 
 

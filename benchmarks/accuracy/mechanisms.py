@@ -24,8 +24,9 @@ from benchmarks.accuracy.fits import RIGS, rig_of
 from stiction.friction.laws import Anisotropic, Stribeck
 from stiction.inference.columns import bend_features, features_from
 from stiction.inference.features import USED
+from stiction.inference.mechanism import likeness
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
-from stiction.inference.mechanism.likeness import Reference, learn_or_read_references
+from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, UNLIKE
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
@@ -164,7 +165,7 @@ def report(
     """Print what becomes of records that no part has seen, with some channels."""
     start = perf_counter()
     classifier = learn_or_read(known.simulations)
-    references = learn_or_read_references(known.simulations, classifier.scores, known.bends)
+    references = likeness.learn_or_read(known.simulations, classifier.scores, known.bends)
     took = perf_counter() - start
     its, labels = call(classifier, references, unseen), unseen.labels
     right = its.likeliest == labels

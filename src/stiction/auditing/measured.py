@@ -227,8 +227,8 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
         f"{conditions.cycles} cycles of {in_words(_length(found, conditions), 's')}, with "
         f"{channels}, beside {fit.simulations} simulated records.",
         curve(found.predictive),
-        f"{percent(fit.farther)} of the simulated records stand farther apart from those around "
-        f"them than the measured one, by their features; below {percent(RARE)} it is unlike them.",
+        f"{percent(fit.farther)} of the simulated records are less like the others than the "
+        f"measured one, by their features; below {percent(RARE)} it is unlike them.",
     ]
     if found.odds is not None:
         lines += [f"Among the mechanisms compared: {each}" for each in found.odds.sentences()[:1]]

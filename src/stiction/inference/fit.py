@@ -12,7 +12,7 @@ from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
 from stiction.friction.registry import LAWS
-from stiction.inference.learning.calibration import learn_or_read
+from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
 from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import Conditions, Observation, Source, observe_all
 from stiction.inference.posterior import Fit
@@ -159,7 +159,7 @@ def _alone(
     ends = np.cumsum([len(each.features) for each in seen])[:-1]
     for number, features in enumerate(np.split(library.features, ends, axis=1), 1):
         place = _place(folder, library, f"-record-{number}")
-        yield learn_or_read(np.ascontiguousarray(features), library.scores, place).summary
+        yield learn_or_read_summary(np.ascontiguousarray(features), library.scores, place)
 
 
 def _place(folder: Path | None, library: Library, of: str = "") -> Path | None:

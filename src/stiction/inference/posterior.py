@@ -101,8 +101,7 @@ class Fit:
     scores : ndarray
         (n, p), the draws of `data` as normal scores.
     farther : float
-        Share of the simulated records that stand farther apart from those around them than the
-        measured one does.
+        Share of the simulated records that are less like the others than the measured one is.
     trend : Trend
         p-values of a trend of peaks and of drops from cycle to cycle, in all records together.
     disagreement : Disagreement or None
@@ -146,7 +145,8 @@ class Fit:
         after, prior = dataset(plan, scores), dataset(plan, before)
         for its in estimates:
             after[last_part(its.name)].attrs["coverage_of_95_percent_intervals"] = its.coverage
-        farther = float(learned.summary.farther(observed[None])[0])
+        record = learned.summary.standard.scores(observed[None])
+        farther = float(learned.typicality.farther(record)[0])
         count, ranks = len(library.scores), learned.ranks
         blocks = [each.features for each in seen]
         apart = disagreement([*plan.priors], library.scores, alone, blocks) if alone else None
@@ -228,10 +228,10 @@ class Fit:
         if self.farther < RARE:
             found.append(
                 "The records are not like those of the rig as described, whatever the uncertain "
-                f"values are: {percent(self.farther)} of the simulated records stand as far apart "
-                f"from those around them, {percent(RARE)} are needed. The values below mean "
-                "nothing until that is explained: is it this rig's record, are drive and load as "
-                "stated, does the load cell lie along the axis that the rig states?"
+                f"values are: {percent(self.farther)} of the simulated records are less like the "
+                f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
+                "explained: is it this rig's record, are drive and load as stated, does the load "
+                "cell lie along the axis that the rig states?"
             )
         if self.disagreement is not None and self.disagreement.p_value < CONTRADICTS:
             found.append(

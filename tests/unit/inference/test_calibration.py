@@ -5,7 +5,7 @@ import pytest
 from scipy.special import ndtr
 from scipy.stats import kstest
 
-from stiction.inference.learning.calibration import learn_or_read, read
+from stiction.inference.learning.calibration import learn_or_read, read, read_summary
 from stiction.inference.learning.regression_abc import Known, marginal, quantiles, rank
 
 PARAMETERS = 4
@@ -77,10 +77,13 @@ def test_a_metric_of_its_own_ignores_what_says_nothing(learned):
 def test_what_was_learned_is_read_again(learned, tmp_path):
     features, truth = draw(1, 1500)
     path = tmp_path / "learned.npz"
-    assert read(path, features) is None
+    assert read_summary(path, features) is None
     small = features[:400], truth[:400]
     first, again = (learn_or_read(*small, path) for _ in range(2))
     assert np.array_equal(first.ranks, again.ranks)
     pairs = zip(first.posteriors(features[-3:]), again.posteriors(features[-3:]), strict=True)
     assert all(np.array_equal(a.scores, b.scores) for a, b in pairs)
-    assert read(path, features) is None  # of another library
+    new = learned.summary.standard.scores(features[-9:])
+    assert np.array_equal(first.typicality.farther(new), again.typicality.farther(new))
+    assert read_summary(path, features) is None  # of another library
+    assert read(path.with_name("learned-calibration.npz"), learned.summary) is None

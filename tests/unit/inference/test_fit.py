@@ -77,8 +77,8 @@ def test_a_stored_library_is_used_again(found, rig, record, copied):
     again = st.fit(record, rig, simulations=SIMULATIONS, library=copied, progress=reports.append)
     assert reports == []
     assert again.estimates == found.estimates
-    (learned,) = copied.glob("*/learned-*.npz")
-    learned.write_bytes(learned.read_bytes()[:5000])  # damaged: it is learned again
+    for learned in copied.glob("*/learned-*.npz"):
+        learned.write_bytes(learned.read_bytes()[:5000])  # damaged: it is learned again
     again = st.fit(record, rig, simulations=SIMULATIONS, library=copied)
     assert again.estimates == found.estimates
 

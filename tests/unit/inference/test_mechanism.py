@@ -24,13 +24,14 @@ from stiction.inference.features import (
     of_slip,
 )
 from stiction.inference.fit import plan_for
+from stiction.inference.mechanism import likeness
 from stiction.inference.mechanism.classifier import (
     Simulations,
     common_columns,
     learn_or_read,
     simulate,
 )
-from stiction.inference.mechanism.likeness import CURVES, Likeness, learn_or_read_references
+from stiction.inference.mechanism.likeness import CURVES, Likeness
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
 from stiction.inference.observation import observe, steadiness, trend
@@ -292,7 +293,7 @@ def two_mechanisms():
 
 def test_a_record_of_the_mechanism_is_as_usual_as_any_and_one_beside_it_is_not(two_mechanisms):
     features = two_mechanisms.features
-    reference, _ = learn_or_read_references(two_mechanisms, features, features[:, :2])
+    reference, _ = likeness.learn_or_read(two_mechanisms, features, features[:, :2])
     random = np.random.default_rng(3)
     new = features_of(random.standard_normal((300, 2)), random)
     found = [reference.likeness(each, each[:2]) for each in new]
@@ -310,12 +311,12 @@ def test_a_record_of_the_mechanism_is_as_usual_as_any_and_one_beside_it_is_not(t
 def test_a_record_that_contradicts_what_its_parameters_let_expect_is_unlike(two_mechanisms):
     """Its distance from the nearest simulations does not show it in half of the cases."""
     features = two_mechanisms.features
-    reference, _ = learn_or_read_references(two_mechanisms, features, features[:, :2])
+    reference, _ = likeness.learn_or_read(two_mechanisms, features, features[:, :2])
     random = np.random.default_rng(5)
     wrong = features_of(0.5 * random.standard_normal((100, 2)), random)
     wrong[:, 4] += 0.3  # six times the noise, where x y reaches 3
-    near = np.mean([reference.clouds[0].nearer(each, each) > 0.975 for each in wrong])
-    unlike = np.mean([reference.likeness(each, each[:2]).farther < 0.025 for each in wrong])
+    near = (reference.typicality.near.nearer(wrong, wrong) > 0.975).mean()
+    unlike = (reference.typicality.farther(wrong) < 0.025).mean()
     assert near < 0.6
     assert unlike > 0.8
 
@@ -325,7 +326,7 @@ def test_what_is_expected_is_stored_and_found_again(two_mechanisms, tmp_path):
     new = np.random.default_rng(1).standard_normal(6)
 
     def likenesses(simulated):
-        learned = learn_or_read_references(
+        learned = likeness.learn_or_read(
             simulated, simulated.features, simulated.features[:, :2], path
         )
         return [each.likeness(new, new[:2])[0] for each in learned]

@@ -3,7 +3,9 @@
 import numpy as np
 import pytest
 
-from stiction.inference.learning.summary import Standard, nearest, outlier_factor
+from stiction.inference.learning.expectation import Expectation, estimate
+from stiction.inference.learning.summary import Standard
+from stiction.inference.learning.typicality import Typicality
 
 
 def library_of(seed: int, count: int, wide: float):
@@ -14,27 +16,26 @@ def library_of(seed: int, count: int, wide: float):
     return found
 
 
-def share_beyond(library, records):
-    """Return the share of the library that stands farther apart from others than each record."""
-    apart = nearest(library, library)
-    own, its = (outlier_factor(each, library, apart) for each in (library, records))
-    return (own > its[:, None]).mean(axis=1)
+@pytest.fixture(scope="module", params=[1.0, 10.0, 40.0])
+def wide(request):
+    """How much farther apart the tenth stands."""
+    return request.param
 
 
-@pytest.mark.parametrize("wide", [1.0, 10.0, 40.0])
-def test_a_record_beside_a_dense_part_of_the_library_is_unlike_it(wide):
-    """By its distances alone nothing was, where a tenth of the library stands farther apart."""
-    library = library_of(1, 1500, wide)
-    beside = np.full((1, 6), 3.5)
-    assert share_beyond(library, beside) < 0.05
-    if wide > 10.0:
-        distances = (nearest(library, library) > nearest(beside, library)).mean()
-        assert distances > 0.05
+@pytest.fixture(scope="module")
+def typical(wide):
+    """Of records whose first features are their parameters."""
+    library = library_of(1, 1000, wide)
+    parameters = library[:, :2]
+    return Typicality.of(Expectation.of(library, parameters, estimate(library, parameters)))
 
 
-@pytest.mark.parametrize("wide", [1.0, 10.0, 40.0])
-def test_records_of_the_library_s_own_kind_are_unlike_as_seldom_as_stated(wide):
-    shares = share_beyond(library_of(1, 1500, wide), library_of(2, 1000, wide))
+def test_a_record_beside_a_dense_part_of_the_library_is_unlike_it(typical):
+    assert typical.farther(np.full((1, 6), 3.5)) < 0.05
+
+
+def test_records_of_the_library_s_own_kind_are_unlike_as_seldom_as_stated(typical, wide):
+    shares = typical.farther(library_of(2, 1000, wide))
     assert (shares < 0.05).mean() == pytest.approx(0.05, abs=0.03)  # three deviations of both
 
 

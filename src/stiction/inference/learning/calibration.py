@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.inference.learning.expectation import Expectation
 from stiction.inference.learning.regression_abc import (
     Known,
     Sample,
@@ -30,6 +31,7 @@ from stiction.inference.learning.summary import (
     learn,
     single_threaded_algebra,
 )
+from stiction.inference.learning.typicality import Typicality
 from stiction.storage.arrays import read_arrays, write_arrays
 
 RANKED = 500  # records of the library whose ranks are found
@@ -47,11 +49,14 @@ class Learned(NamedTuple):
         (n, p), scores of the library.
     ranks : ndarray
         (m, p), of the truth in the posterior of each of some records, from all others.
+    typicality : Typicality
+        How like the records are to each other.
     """
 
     summary: FeatureSummary
     truth: Floats
     ranks: Floats
+    typicality: Typicality
 
     def posteriors(self, features: Floats) -> Iterator[Sample]:
         """Yield the posteriors of records with these features (m, f)."""
@@ -76,19 +81,6 @@ def estimates(summary: FeatureSummary, truth: Floats) -> Iterator[Known]:
         yield Known(middles, spreads, scores)
 
 
-def learn_or_read(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
-    """Learn from features (n, f) and scores (n, p), or read from a file what was learned."""
-    stored = read(path, features)
-    if stored is not None:
-        return Learned(stored[0], truth, stored[1])
-    summary = learn(features, truth)
-    with single_threaded_algebra():
-        found = Learned(summary, truth, ranks(summary, truth))
-    if path is not None:
-        write(path, found)
-    return found
-
-
 def ranks(summary: FeatureSummary, truth: Floats) -> Floats:
     """Return the ranks of the truth of the last records of the library, each from all others."""
     last = range(max(len(truth) - RANKED, 0), len(truth))
@@ -99,15 +91,46 @@ def ranks(summary: FeatureSummary, truth: Floats) -> Floats:
     return np.array(columns).T
 
 
-def write(path: Path, found: Learned) -> None:
-    """Write what was learned."""
-    summary = found.summary
-    own = as_arrays(standard=summary.standard, middle=summary.middle, spread=summary.spread)
-    write_arrays(path, ranks=found.ranks, **own)
+def learn_or_read(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
+    """Learn from features (n, f) and scores (n, p), or read from a file what was learned."""
+    summary = learn_or_read_summary(features, truth, path)
+    beside = None if path is None else path.with_name(f"{path.stem}-calibration.npz")
+    stored = read(beside, summary)
+    if stored is None:
+        with single_threaded_algebra():
+            expectation = Expectation.of(summary.scores, truth, summary.middle)
+            stored = ranks(summary, truth), Typicality.of(expectation)
+        if beside is not None:
+            write_arrays(beside, ranks=stored[0], **stored[1].arrays())
+    return Learned(summary, truth, *stored)
 
 
-def read(path: Path | None, features: Floats) -> tuple[FeatureSummary, Floats] | None:
-    """Return a stored summary and its ranks; None where there is none of these features."""
+def read(path: Path | None, summary: FeatureSummary) -> tuple[Floats, Typicality] | None:
+    """Return stored ranks and typicality; None where there are none of this summary's library."""
+    arrays = read_arrays(path)
+    try:
+        if arrays is None:
+            return None
+        return arrays["ranks"], Typicality.read(arrays, summary.scores, summary.middle)
+    except KeyError:
+        return None
+
+
+def learn_or_read_summary(features: Floats, truth: Floats, path: Path | None) -> FeatureSummary:
+    """Learn what features say, or read it from a file."""
+    stored = read_summary(path, features)
+    if stored is not None:
+        return stored
+    found = learn(features, truth)
+    if path is not None:
+        write_arrays(
+            path, **as_arrays(standard=found.standard, middle=found.middle, spread=found.spread)
+        )
+    return found
+
+
+def read_summary(path: Path | None, features: Floats) -> FeatureSummary | None:
+    """Return a stored summary; None where there is none of these features."""
     arrays = read_arrays(path)
     try:
         if arrays is None or arrays["standard_middle"].shape != features.shape[1:]:
@@ -116,6 +139,6 @@ def read(path: Path | None, features: Floats) -> tuple[FeatureSummary, Floats] |
         both = [Regression(*from_arrays(x, Regression._fields, arrays)) for x in REGRESSIONS]
         if len(both[0].library) != len(features):
             return None
-        return FeatureSummary(standard, standard.scores(features), *both), arrays["ranks"]
+        return FeatureSummary(standard, standard.scores(features), *both)
     except KeyError:
         return None

@@ -23,7 +23,7 @@ from stiction.inference.learning.summary import (
 )
 
 WIDTH = 1.0  # of the kernel by which features say what parameters are
-WIDTHS = (0.6, 1.0, 3.0)  # of the one by which these say what features are
+NARROW = 0.6  # of the one by which these say what features are, which are bent in few of them
 
 
 class Expectation(NamedTuple):
@@ -47,17 +47,14 @@ class Expectation(NamedTuple):
     expected: Regression
 
     @classmethod
-    def of(cls, scores: Floats, parameters: Floats) -> Self:
-        """Learn from a library's standardised features (n, f) and parameters (n, p)."""
+    def of(cls, scores: Floats, parameters: Floats, estimates: Regression) -> Self:
+        """Learn from a library's standardised features (n, f), parameters (n, p) and estimates."""
+        errors = ((estimates.library - parameters) ** 2).mean(axis=0) / parameters.var(axis=0)
+        shown = (errors <= max(UNKNOWN, errors.min())).astype(np.float64)
+        places = in_deviations(estimates.library, estimates, shown)
         with single_threaded_algebra():
-            part = WIDTH, *decompose(kernel(scores, scores, WIDTH))
-            first = regression([part], parameters, scores.shape[1])
-            estimates = adapt_metrics(first, scores, parameters)
-            errors = ((estimates.library - parameters) ** 2).mean(axis=0) / parameters.var(axis=0)
-            shown = (errors <= max(UNKNOWN, errors.min())).astype(np.float64)
-            places = in_deviations(estimates.library, estimates, shown)
-            parts = [(width, *decompose(kernel(places, places, width))) for width in WIDTHS]
-            return cls(scores, shown, estimates, regression(parts, scores, places.shape[1]))
+            part = NARROW, *decompose(kernel(places, places, NARROW))
+            return cls(scores, shown, estimates, regression([part], scores, places.shape[1]))
 
     @property
     def library(self) -> tuple[Floats, Floats]:
@@ -69,6 +66,13 @@ class Expectation(NamedTuple):
         """Return the same for new standardised features (m, f)."""
         places = in_deviations(self.estimates.predict(new, self.scores), self.estimates, self.shown)
         return places, new - self.expected.predict(places, self.library[0])
+
+
+def estimate(scores: Floats, parameters: Floats) -> Regression:
+    """Learn what standardised features (n, f) say of parameters (n, p)."""
+    with single_threaded_algebra():
+        part = WIDTH, *decompose(kernel(scores, scores, WIDTH))
+        return adapt_metrics(regression([part], parameters, scores.shape[1]), scores, parameters)
 
 
 def in_deviations(values: Floats, estimates: Regression, shown: Floats) -> Floats:

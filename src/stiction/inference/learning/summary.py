@@ -26,8 +26,6 @@ from stiction.arrays import Floats
 WIDTHS = (1.0, 3.0)  # of the kernel, over the typical distance between records
 FINER = 0.3  # ridge with the metric of a parameter, over that without
 UNKNOWN = 0.8  # error of a target over its variance, above which features say nothing of it
-OTHERS = 5  # records of the library whose distance says how far a record stands apart
-AROUND = 20  # records around it, with whose distances that is compared
 ROUND = 0.05  # share of the first metric that remains
 RIDGES = 10.0 ** np.arange(-6.0, 2.1, 0.5)
 STRAIGHT = 1.0  # share of the linear kernel beside the curved one
@@ -119,17 +117,6 @@ class FeatureSummary(NamedTuple):
         new = self.standard.scores(np.atleast_2d(features))
         spread = np.exp(0.5 * self.spread.predict(new, self.scores))
         return self.middle.predict(new, self.scores), spread
-
-    def farther(self, features: Floats) -> Floats:
-        """Return the share of the library that stands farther apart than each record (m, f), (m,).
-
-        By the local outlier factor: simulations that hardly slip stand far apart, each from all,
-        and beside them no record of another rig would.
-        """
-        new = self.standard.scores(features)
-        apart = nearest(self.scores, self.scores)
-        own, other = (outlier_factor(each, self.scores, apart) for each in (self.scores, new))
-        return np.asarray((own > other[:, None]).mean(axis=1))
 
     @property
     def library(self) -> tuple[Floats, Floats]:
@@ -248,56 +235,6 @@ def gaussian(a: Floats, b: Floats, width: float) -> Floats:
     square = (a * a).mean(axis=1)[:, None] + (b * b).mean(axis=1)[None, :]
     square -= 2.0 / a.shape[1] * (a @ b.T)
     return np.asarray(np.exp(-0.5 * np.maximum(square, 0.0) / width**2))
-
-
-def outlier_factor(some: Floats, scores: Floats, apart: Floats) -> Floats:
-    """Return how far each record stands apart, over how far the records around it do.
-
-    After M. M. Breunig, H.-P. Kriegel, R. T. Ng & J. Sander, SIGMOD 2000, 93
-    (doi:10.1145/342009.335388), with a median for the mean.
-
-    Parameters
-    ----------
-    some, scores : ndarray
-        (m, f) and (n, f), of the records and of the library.
-    apart : ndarray
-        (n,), how far each of the library stands from its `nearest`.
-
-    Examples
-    --------
-    Among records that lie widely apart, one between two others is nothing unusual:
-
-    >>> wide = np.linspace(0.0, 100.0, 101)[:, None]
-    >>> outlier_factor(np.array([[50.5], [110.0]]), wide, nearest(wide, wide)).round(1)
-    array([ 0.6, 38.4])
-    """
-    square = squares(some, scores)
-    return mean_of_nearest(square) / apart_around(square, apart)
-
-
-def apart_around(square: Floats, apart: Floats) -> Floats:
-    """Return how far those of the library around each record stand apart, (m,); see `squares`."""
-    count = min(AROUND, len(apart) // 2)
-    around = np.argpartition(square, count, axis=1)[:, :count]
-    return np.asarray(np.median(apart[around], axis=1))
-
-
-def nearest(some: Floats, scores: Floats) -> Floats:
-    """Return the mean squared distance of each record from its nearest others."""
-    return mean_of_nearest(squares(some, scores))
-
-
-def mean_of_nearest(square: Floats) -> Floats:
-    """Return the mean of the least squared distances of each record."""
-    return np.asarray(np.partition(square, OTHERS, axis=1)[:, :OTHERS].mean(axis=1))
-
-
-def squares(some: Floats, scores: Floats) -> Floats:
-    """Return the squared distances (m, n) of records from those of the library, but themselves."""
-    square = (some * some).sum(axis=1)[:, None] + (scores * scores).sum(axis=1)[None, :]
-    square -= 2.0 * (some @ scores.T)
-    square[square < LEAST] = np.inf
-    return np.asarray(square)
 
 
 def decompose(matrix: Floats) -> tuple[Floats, Floats]:

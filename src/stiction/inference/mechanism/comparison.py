@@ -13,8 +13,8 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.columns import bend_features
 from stiction.inference.fit import check
-from stiction.inference.mechanism.classifier import Simulations, learn_or_read, simulate
-from stiction.inference.mechanism.likeness import learn_or_read_references
+from stiction.inference.mechanism import classifier, likeness
+from stiction.inference.mechanism.classifier import Simulations, simulate
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
@@ -100,16 +100,16 @@ def compare(
     """Return the odds of what was observed; what simulations teach is kept beside a path."""
     observed = np.concatenate([each.features for each in seen])
     bend = np.concatenate([bend_features(each.conditions, rig.slider) for each in seen])
-    classifier = learn_or_read(simulated, beside(path, "classifier"))
-    record = classifier.standard.scores(observed)
-    references = learn_or_read_references(
-        simulated, classifier.scores, simulated.features[:, bend], beside(path, "likeness")
+    learned = classifier.learn_or_read(simulated, beside(path, "classifier"))
+    record = learned.standard.scores(observed)
+    references = likeness.learn_or_read(
+        simulated, learned.scores, simulated.features[:, bend], beside(path, "likeness")
     )
     labels = simulated.labels
     return Odds(
         names=simulated.names,
-        probabilities=classifier.probabilities(observed)[0],
-        confusion=confusion(classifier.left_out, labels),
+        probabilities=learned.probabilities(observed)[0],
+        confusion=confusion(learned.left_out, labels),
         likeness=tuple(each.likeness(record, observed[bend]) for each in references),
         bend=observed[bend],
         steady=steadiness(p for each in seen for p in each.trend),
