@@ -27,7 +27,7 @@ from stiction.inference.features import USED
 from stiction.inference.mechanism import likeness
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import Reference
-from stiction.inference.mechanism.odds import CLAIM, UNLIKE
+from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
@@ -136,7 +136,7 @@ def call(classifier: Classifier, references: Sequence[Reference], records: Part)
         for label, each in zip(likeliest, zip(scores, records.bends, strict=True), strict=True)
     ]
     sure = probabilities.max(axis=1) >= CLAIM
-    usual = [its.farther >= UNLIKE and its.larger >= UNLIKE for its in found]
+    usual = [its.farther >= UNLIKE and its.larger >= BENT for its in found]
     return Called(likeliest, sure, sure & np.array(usual))
 
 

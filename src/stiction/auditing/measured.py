@@ -18,7 +18,7 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
 from stiction.inference.mechanism.comparison import SHARE, mechanism
-from stiction.inference.mechanism.odds import UNDECIDED, UNLIKE, Odds, near_one
+from stiction.inference.mechanism.odds import BENT, UNDECIDED, UNLIKE, Odds, near_one
 from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit
@@ -195,7 +195,7 @@ def alternatives(odds: Odds | None) -> str:
     if odds is not None and odds.decision == ROTATION:
         others = (its for name, its in zip(odds.names, odds.likeness, strict=True)
                   if name != ROTATION)  # fmt: skip
-        excluded = all(min(its.farther, its.larger) < UNLIKE for its in others)
+        excluded = all(its.farther < UNLIKE or its.larger < BENT for its in others)
         probability = near_one(odds.probabilities.max())
         return (
             "the other mechanisms compared do not explain it"
@@ -252,7 +252,7 @@ def is_unusual_rotation(odds: Odds) -> bool:
     An explanation and a claim compare that curve with different simulations (`BOTH_HOLD`).
     """
     its = odds.likeness[odds.likeliest]
-    return odds.names[odds.likeliest] == ROTATION and its.larger < UNLIKE
+    return odds.names[odds.likeliest] == ROTATION and its.larger < BENT
 
 
 def curve(found: Predictive | None) -> str:

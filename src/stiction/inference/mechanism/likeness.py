@@ -14,7 +14,7 @@ from stiction.inference.mechanism.classifier import Simulations
 from stiction.inference.predictive import departures
 from stiction.storage.arrays import read_arrays, write_arrays
 
-CURVES = 60  # simulations with whose loading that of the record is compared
+CURVES = 150  # simulations with whose loading that of the record is compared
 
 
 class Likeness(NamedTuple):

@@ -18,9 +18,10 @@ from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
-# share below which a record is unlike simulations in one of two ways: a mechanism's own records are
-# refused by both together in 5 % of cases at most (O. J. Dunn, J. Am. Stat. Assoc. 56, 52 (1961))
-UNLIKE = 0.5 * RARE
+# shares below which a record is unlike simulations by its features, and by its loading's bend, of
+# which the features tell too: a mechanism's own records are refused by both together in 5 % of
+# cases at most (O. J. Dunn, J. Am. Stat. Assoc. 56, 52 (1961))
+UNLIKE, BENT = 0.8 * RARE, 0.2 * RARE
 UNDECIDED = "undecided"
 EXPLAINED = (
     "The odds before were even. Farther: the share of the mechanism's simulated records that are "
@@ -110,10 +111,10 @@ class Odds:
                 f"The record is not like those of {name}: {percent(its.farther)} of the simulated "
                 f"records are less like the others, {percent(UNLIKE)} are needed."
             )
-        if its.larger < UNLIKE:
+        if its.larger < BENT:
             found.append(
                 f"The loading curve is not like those of {name}: {percent(its.larger)} of the "
-                f"simulated ones depart as far from their mean, {percent(UNLIKE)} are needed."
+                f"simulated ones depart as far from their mean, {percent(BENT)} are needed."
             )
         if self.steady < TREND:
             found.append(
