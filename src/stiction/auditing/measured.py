@@ -36,8 +36,8 @@ DESCRIBED = (
 REPEAT = ": write the fitted values into the description, and audit again"
 BOTH_HOLD = (
     "Both hold, as the loading curve is compared with two sets of simulations: those with the "
-    "fitted values have one like it, which is enough for an explanation; of those nearest to the "
-    "record among all values of the priors few have, and a claim of rotation needs both."
+    "fitted values have one like it, which is enough for an explanation; of those with "
+    "the parameters that its features suggest few have, and a claim of rotation needs both."
 )
 WARNINGS, GROUNDS = "Warnings about the record", "What that rests on"
 CHANGES = "What would change it"

@@ -24,7 +24,7 @@ from stiction.inference.features import (
     of_slip,
 )
 from stiction.inference.fit import plan_for
-from stiction.inference.mechanism import likeness
+from stiction.inference.mechanism import classifier, likeness
 from stiction.inference.mechanism.classifier import (
     Simulations,
     common_columns,
@@ -264,10 +264,19 @@ def test_left_out_probabilities_are_calibrated(learned, clouds):
         assert share == pytest.approx(said, abs=3.0 * (0.25 / some.sum()) ** 0.5)
 
 
-def test_what_was_learned_is_stored_and_found_again(clouds, tmp_path):
+def test_a_metric_of_its_own_ignores_what_says_nothing(learned):
+    """The first feature tells the mechanisms apart, the other two are noise."""
+    metric = np.abs(learned.membership.metric[0])
+    assert np.diag(metric)[1:].max() < 0.3 * metric[0, 0]
+
+
+def test_what_was_learned_is_stored_and_found_again(clouds, tmp_path, monkeypatch):
     path = tmp_path / "learned.npz"
-    first, second = learn_or_read(clouds, path), learn_or_read(clouds, path)
+    first = learn_or_read(clouds, path)
     new = np.random.default_rng(1).standard_normal((5, 3))
+    with monkeypatch.context() as patch:
+        patch.setattr(classifier, "logistic", None)
+        second = learn_or_read(clouds, path)  # read
     assert (first.probabilities(new) == second.probabilities(new)).all()
     fewer = clouds._replace(features=clouds.features[1:], labels=clouds.labels[1:])
     assert len(learn_or_read(fewer, path).left_out) == 799  # not those of other simulations
@@ -301,7 +310,6 @@ def test_a_record_of_the_mechanism_is_as_usual_as_any_and_one_beside_it_is_not(t
     # uniform: the mean of 300 is 0.5 within three standard errors, and few are rare
     assert farther.mean() == pytest.approx(0.5, abs=3.0 * (1.0 / 12.0 / 300.0) ** 0.5)
     assert (farther < 0.05).mean() == pytest.approx(0.05, abs=3.0 * (0.05 * 0.95 / 300.0) ** 0.5)
-    assert min(its.larger for its in found) >= 1.0 / (CURVES + 1)
     assert reference.likeness(8.0 * features[0], np.zeros(2)).farther == 0.0
     bent = reference.likeness(features[0], np.array([8.0, 8.0]))
     assert bent.farther > 0.0
@@ -321,25 +329,46 @@ def test_a_record_that_contradicts_what_its_parameters_let_expect_is_unlike(two_
     assert unlike > 0.8
 
 
-def test_what_is_expected_is_stored_and_found_again(two_mechanisms, tmp_path):
-    path, features = tmp_path / "likeness.npz", two_mechanisms.features
-    new = np.random.default_rng(1).standard_normal(6)
+def test_a_parameter_that_features_do_not_show_lets_expect_nothing(two_mechanisms):
+    random = np.random.default_rng(9)
+    parameters = np.column_stack([two_mechanisms.parameters[0], random.standard_normal(600)])
+    typical = likeness.learn(two_mechanisms.features[:600], parameters)
+    assert typical.expectation.shown.tolist() == [1.0, 1.0, 0.0]
 
-    def likenesses(simulated):
+
+def test_the_loading_is_compared_with_those_of_the_same_parameters(two_mechanisms):
+    features, (parameters, _) = two_mechanisms.features, two_mechanisms.parameters
+    reference, _ = likeness.learn_or_read(two_mechanisms, features, features[:, :2])
+    random = np.random.default_rng(8)
+    truth = random.standard_normal((40, 2))
+    records = features_of(truth, random)
+    for record, its in zip(records, truth, strict=True):
+        alike = parameters[reference.typicality.alike(record, 20)]
+        others = np.abs(parameters - its).mean(axis=0)
+        assert (np.abs(alike - its).mean(axis=0) < 0.5 * others).all()
+    larger = [reference.likeness(each, each[:2]).larger for each in records]
+    assert np.mean(np.array(larger) < 0.025) < 0.1  # two are expected of 40, as the bends go along
+
+
+def test_what_is_expected_is_stored_and_found_again(two_mechanisms, tmp_path, monkeypatch):
+    path, features = tmp_path / "likeness.npz", two_mechanisms.features
+    new = features_of(np.array([[0.5, -0.5]]), np.random.default_rng(1))[0]
+
+    def likenesses(simulated, path=path):
         learned = likeness.learn_or_read(
             simulated, simulated.features, simulated.features[:, :2], path
         )
         return [each.likeness(new, new[:2])[0] for each in learned]
 
-    first = likenesses(two_mechanisms)
-    assert path.is_file()
+    first = likenesses(two_mechanisms, None)
+    assert min(first) > 0.0
     assert likenesses(two_mechanisms) == first
-    one, other = two_mechanisms.parameters
-    likenesses(
-        two_mechanisms._replace(
-            features=features[1:], labels=two_mechanisms.labels[1:], parameters=(one[1:], other)
-        )
-    )  # not those of other simulations
+    with monkeypatch.context() as patch:
+        patch.setattr(likeness, "learn", None)
+        assert likenesses(two_mechanisms) == first  # read
+        others = two_mechanisms._replace(features=features + 1e-3)  # of another library
+        with pytest.raises(TypeError):
+            likenesses(others)
     path.write_bytes(b"damaged")
     assert likenesses(two_mechanisms) == first
 
@@ -355,7 +384,24 @@ def test_parameters_of_several_laws_have_common_columns(rig, rotating):
     assert found[:, own].tolist() == [0.0, 0.0, 2.0, 2.0]
     assert found[:, paths.index("k_x")].tolist() == [1.0, 1.0, 2.0, 2.0]
     assert found[:, -2:].tolist() == [[1.0, 0.0]] * 2 + [[0.0, 1.0]] * 2
-    assert common_columns(static.plans[:1], scores[:1]).shape == (2, len(static.plans[0].priors))
+    alone = common_columns(static.plans[:1], [np.eye(2, len(static.plans[0].priors))])
+    assert alone.tolist() == [[1.0, 0.0], [0.0, 1.0]]
+
+
+def test_a_law_that_never_slips_is_no_parameter_of_the_others(rig, rotating):
+    """Its column, and those of its parameters, are the same for all: they were divided by 0."""
+    rivals = mechanisms(rig, [observe(rotating, rig.slider).conditions])
+    (static,) = (each for each in rivals if each.name == STATIC)
+    random = np.random.default_rng(7)
+    some, none = (np.empty((count, len(plan.priors)))
+                  for count, plan in zip((100, 0), static.plans, strict=True))  # fmt: skip
+    some[:] = random.standard_normal(some.shape)
+    parameters = common_columns(static.plans, [some, none])
+    assert parameters.shape == some.shape
+    unknown = random.standard_normal((100, 5))  # says nothing of any parameter
+    typical = likeness.learn(unknown, parameters)
+    assert typical.expectation.shown.sum() >= 1.0
+    assert 0.0 <= typical.farther(unknown[:1])[0] <= 1.0
 
 
 def test_trends_are_found_where_there_are_some_and_only_there():

@@ -1,8 +1,8 @@
-"""What features are expected of simulations with the parameters that a record seems to have.
+"""The features that are expected of a record with the parameters that it seems to have.
 
-Features say what the parameters are, as far as they show; these say what all features would be. How
-far they are from that tells a record of another kind from one of the library, also where it lies
-between the library's records.
+One regression estimates the parameters from the features, another one the features from these
+estimates. How far a record's features are from it tells a record of another kind, also one that
+lies between the library's records.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Expectation(NamedTuple):
         return places, self.scores - self.expected.library
 
     def __call__(self, new: Floats) -> tuple[Floats, Floats]:
-        """Return the same for new standardised features (m, f)."""
+        """Return estimates (m, q) and departures (m, f) for new standardised features (m, f)."""
         places = in_deviations(self.estimates.predict(new, self.scores), self.estimates, self.shown)
         return places, new - self.expected.predict(places, self.library[0])
 

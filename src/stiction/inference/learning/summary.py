@@ -86,9 +86,10 @@ class Regression(NamedTuple):
     def predict(self, new: Floats, scores: Floats) -> Floats:
         """Return predictions for new scores (m, f), given those of the library."""
         found = np.empty((len(new), self.weights.shape[1]))
-        for i, weights in enumerate(self.weights.T):
-            metric = self.metric[min(i, len(self.metric) - 1)]
-            found[:, i] = kernel(new @ metric, scores @ metric, self.width[i]) @ weights
+        metrics = np.minimum(np.arange(found.shape[1]), len(self.metric) - 1)
+        for number, width in {*zip(metrics.tolist(), self.width.tolist(), strict=True)}:
+            some, metric = (metrics == number) & (self.width == width), self.metric[number]
+            found[:, some] = kernel(new @ metric, scores @ metric, width) @ self.weights[:, some]
         return found + self.mean
 
 

@@ -28,6 +28,7 @@ AROUND = 20  # records around one, with whose distances its own is compared
 SHRINKAGE = 0.1  # of correlations between features, which so few records do not show well
 ITSELF = 1e-8  # squared distance
 LEAST = 1e-12
+CLOUDS, KEPT = ("near", "beside"), ("apart", "own")  # what is stored of which
 
 
 class Cloud(NamedTuple):
@@ -57,7 +58,7 @@ class Cloud(NamedTuple):
         return cls(places, points, apart, apart / apart_around(square, apart))
 
     def nearer(self, places: Floats, points: Floats) -> Floats:
-        """Return the share of the points no farther from their nearest than each new one, (m,)."""
+        """Return, for each new point, the share of the points that lie as near or nearer, (m,)."""
         square = squares(places, self.places)
         its = distances(square, points, self.points) / apart_around(square, self.apart)
         return np.searchsorted(np.sort(self.own), its, side="right") / len(self.own)
@@ -105,8 +106,8 @@ class Typicality(NamedTuple):
     def arrays(self, of: str = "") -> dict[str, Floats]:
         """Return what `read` needs, `of` something by name, but the estimates."""
         found = as_arrays(**{f"expected{of}": self.expectation.expected})
-        for name, cloud in (("near", self.near), ("beside", self.beside)):
-            found |= {f"{name}{of}_apart": cloud.apart, f"{name}{of}_own": cloud.own}
+        for name, cloud in zip(CLOUDS, (self.near, self.beside), strict=True):
+            found |= {f"{name}{of}_{part}": getattr(cloud, part) for part in KEPT}
         return found | {f"shown{of}": self.expectation.shown}
 
     @classmethod
@@ -115,14 +116,22 @@ class Typicality(NamedTuple):
     ) -> Self:
         """Return what was stored by name, of a library with these scores; KeyError without it."""
         expected = Regression(*from_arrays(f"expected{of}", Regression._fields, arrays))
-        if expected.library.shape != scores.shape:
+        shown = arrays[f"shown{of}"]
+        lengths = {len(arrays[f"{cloud}{of}_{name}"]) for cloud in CLOUDS for name in KEPT}
+        same = expected.library.shape == scores.shape and lengths == {len(scores)}
+        if not same or shown.shape != estimates.mean.shape or not of_library(expected, scores):
             raise KeyError(of)
-        expectation = Expectation(scores, arrays[f"shown{of}"], estimates, expected)
+        expectation = Expectation(scores, shown, estimates, expected)
         near, beside = (
-            Cloud(*each, arrays[f"{name}{of}_apart"], arrays[f"{name}{of}_own"])
-            for name, each in (("near", (scores, scores)), ("beside", expectation.library))
+            Cloud(*each, *(arrays[f"{name}{of}_{part}"] for part in KEPT))
+            for name, each in zip(CLOUDS, ((scores, scores), expectation.library), strict=True)
         )
         return cls(expectation, near, beside)
+
+
+def of_library(expected: Regression, scores: Floats) -> bool:
+    """Return whether expected features were learned from a library with these scores (n, f)."""
+    return bool(np.allclose(expected.mean, scores.mean(axis=0), rtol=1e-9, atol=1e-12))
 
 
 def distances(square: Floats, some: Floats, points: Floats) -> Floats:

@@ -102,8 +102,8 @@ def simulate(
 def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:
     """Return parameters of several plans' simulations in common columns, (n, p).
 
-    In the middle of its prior, 0, is what a plan has not. Whose they are, where there are several,
-    is a column of each plan.
+    A parameter that a plan lacks is 0, the middle of its prior. Of several plans, each has an
+    indicator column. Columns without variance are left out: those of a plan without simulations.
     """
     paths = [*dict.fromkeys(path for plan in plans for path in plan.priors)]
     whose = np.eye(len(plans)) if len(plans) > 1 else np.zeros((1, 0))
@@ -112,7 +112,8 @@ def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:
         rows = np.zeros((len(some), len(paths)))
         rows[:, [paths.index(path) for path in plan.priors]] = some
         found.append(np.hstack([rows, np.tile(its, (len(some), 1))]))
-    return np.concatenate(found)
+    united = np.concatenate(found)
+    return united[:, np.ptp(united, axis=0) > 0.0]
 
 
 def tell(progress: Progress, done: int, total: int, fraction: float) -> None:

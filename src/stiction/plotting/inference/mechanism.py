@@ -38,8 +38,8 @@ def plot_mechanism(odds: Odds, axes: Sequence[Axes] | None = None) -> NDArray[np
     ndarray of Axes
         Probabilities, and the one that a claim needs; how often simulated records of each mechanism
         (rows) are called each (columns); the loading's departure from a straight line, of the
-        record and, on average, in simulations that are nearest to it; the band holds 95 % of those
-        of the most probable mechanism.
+        record and, on average, in simulations with the parameters that its features suggest; the
+        band holds 95 % of those of the most probable mechanism.
     """
     with style():
         panels = grid_of(axes, (PAGE, 2.9), 1, 3, width_ratios=(1, 1.35, 1.25))
