@@ -44,7 +44,8 @@ WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are disti
 class Simulations(NamedTuple):
     """Simulated records: features (n, f), and the place of each one's mechanism among `names` (n,).
 
-    `absent` are the mechanisms by which hardly any simulated record has cycles of stick and slip;
+    `absent` are the mechanisms by which hardly any simulated record has cycles of stick and slip
+    that are not far longer than the measured ones;
     `parameters` (m, p) are the normal scores of those of each mechanism's records, in their order.
     """
 

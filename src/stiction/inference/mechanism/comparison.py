@@ -19,6 +19,7 @@ from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
 from stiction.inference.rig import Rig, rig_of
+from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 
 SIMULATIONS = 1000  # of each mechanism, by default
 SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
@@ -82,7 +83,9 @@ def mechanism(
     simulated = simulate(rivals, simulations, place, seed=seed, progress=progress)
     if len(simulated.names) < 2:
         raise ResultError(
-            f"only {simulated.names[0]} sticks and slips on this rig: there is nothing to compare"
+            f"only by {simulated.names[0]} do simulated records have cycles no longer than "
+            f"{LONGEST_CYCLE:g} times the measured ones: there is nothing to compare, which itself "
+            "speaks for it"
         )
     kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}"
     return compare(simulated, known, seen, kept)

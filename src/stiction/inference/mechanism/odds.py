@@ -13,6 +13,7 @@ from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rivals import LUGRE, RATE_AND_STATE, ROTATION, STATIC
 from stiction.inference.observation import TREND
 from stiction.inference.posterior import RARE, STATE_DRIFT
+from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.names import draw
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
@@ -54,7 +55,8 @@ class Odds:
     counts : tuple of int
         Number of simulations of each mechanism.
     absent : tuple of str
-        Mechanisms that are not compared: on this rig they hardly ever stick and slip.
+        Mechanisms that are not compared: hardly any record simulated by them has cycles of stick
+        and slip, or none that are not far longer than the measured ones.
     channels : tuple of str
         What was measured.
     """
@@ -177,7 +179,11 @@ class Odds:
                 f"not among the mechanisms compared and may pass for {self.decision}."
             )
         if self.absent:
-            found.append(f"Hardly ever sticks and slips on this rig: {', '.join(self.absent)}.")
+            found.append(
+                f"Not compared: {', '.join(self.absent)}. Hardly any record simulated by it has "
+                f"cycles no longer than {LONGEST_CYCLE:g} times the measured ones, which speaks "
+                "against it."
+            )
         return found
 
     @property
