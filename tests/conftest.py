@@ -1,6 +1,5 @@
 """Runs that many tests use, computed once."""
 
-import gc
 import os
 import shutil
 import sys
@@ -17,17 +16,6 @@ import stiction as st
 from stiction.solver.compilation import machine_code
 
 os.environ["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "30m"  # not 30 s: the machine may be busy
-
-
-def pytest_collection() -> None:
-    """Search for no garbage among modules and tests while they are collected: all of them stay."""
-    gc.disable()
-
-
-def pytest_collection_finish() -> None:
-    """Search for garbage among what tests make from here on, and not among the tests."""
-    gc.freeze()
-    gc.enable()
 
 
 @pytest.fixture(autouse=True)
