@@ -14,7 +14,9 @@ from stiction.inference.mechanism.classifier import Simulations
 from stiction.inference.predictive import departures
 from stiction.storage.arrays import read_arrays, write_arrays
 
-CURVES = 150  # simulations with whose loading that of the record is compared
+# simulations with whose loading that of the record is compared: the fewest by which one in a
+# hundred can be told (`odds.BENT`), as more have other parameters
+CURVES = 100
 
 
 class Likeness(NamedTuple):
