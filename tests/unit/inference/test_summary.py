@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from stiction.inference.learning.expectation import Expectation, estimate
-from stiction.inference.learning.summary import Standard
+from stiction.inference.learning.expectation import Expectation
+from stiction.inference.learning.summary import Standard, estimate
 from stiction.inference.learning.typicality import Typicality
 
 

@@ -24,11 +24,9 @@ from stiction.inference.learning.regression_abc import (
 )
 from stiction.inference.learning.summary import (
     FeatureSummary,
-    Regression,
-    Standard,
     as_arrays,
-    from_arrays,
     learn,
+    read_regressions,
     single_threaded_algebra,
 )
 from stiction.inference.learning.typicality import Typicality
@@ -107,10 +105,8 @@ def learn_or_read(features: Floats, truth: Floats, path: Path | None = None) -> 
 
 def read(path: Path | None, summary: FeatureSummary) -> tuple[Floats, Typicality] | None:
     """Return stored ranks and typicality; None where there are none of this summary's library."""
-    arrays = read_arrays(path)
+    arrays = read_arrays(path) or {}
     try:
-        if arrays is None:
-            return None
         return arrays["ranks"], Typicality.read(arrays, summary.scores, summary.middle)
     except KeyError:
         return None
@@ -131,14 +127,8 @@ def learn_or_read_summary(features: Floats, truth: Floats, path: Path | None) ->
 
 def read_summary(path: Path | None, features: Floats) -> FeatureSummary | None:
     """Return a stored summary; None where there is none of these features."""
-    arrays = read_arrays(path)
     try:
-        if arrays is None or arrays["standard_middle"].shape != features.shape[1:]:
-            return None
-        standard = Standard(*from_arrays("standard", Standard._fields, arrays))
-        both = [Regression(*from_arrays(x, Regression._fields, arrays)) for x in REGRESSIONS]
-        if len(both[0].library) != len(features):
-            return None
-        return FeatureSummary(standard, standard.scores(features), *both)
+        standard, both = read_regressions(read_arrays(path) or {}, features, *REGRESSIONS)
     except KeyError:
         return None
+    return FeatureSummary(standard, standard.scores(features), *both)

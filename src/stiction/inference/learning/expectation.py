@@ -15,15 +15,13 @@ from stiction.arrays import Floats
 from stiction.inference.learning.summary import (
     UNKNOWN,
     Regression,
-    adapt_metrics,
     decompose,
     kernel,
     regression,
     single_threaded_algebra,
 )
 
-WIDTH = 1.0  # of the kernel by which features say what parameters are
-NARROW = 0.6  # of the one by which these say what features are, which are bent in few of them
+NARROW = 0.6  # width of the kernel by which estimates say what features are: these are more bent
 
 
 class Expectation(NamedTuple):
@@ -57,22 +55,19 @@ class Expectation(NamedTuple):
             return cls(scores, shown, estimates, regression([part], scores, places.shape[1]))
 
     @property
+    def places(self) -> Floats:
+        """Estimates of the library's records (n, q), each from all others."""
+        return in_deviations(self.estimates.library, self.estimates, self.shown)
+
+    @property
     def library(self) -> tuple[Floats, Floats]:
         """Estimates (n, q), and departures from what they let expect (n, f), from all others."""
-        places = in_deviations(self.estimates.library, self.estimates, self.shown)
-        return places, self.scores - self.expected.library
+        return self.places, self.scores - self.expected.library
 
     def __call__(self, new: Floats) -> tuple[Floats, Floats]:
         """Return estimates (m, q) and departures (m, f) for new standardised features (m, f)."""
         places = in_deviations(self.estimates.predict(new, self.scores), self.estimates, self.shown)
-        return places, new - self.expected.predict(places, self.library[0])
-
-
-def estimate(scores: Floats, parameters: Floats) -> Regression:
-    """Learn what standardised features (n, f) say of parameters (n, p)."""
-    with single_threaded_algebra():
-        part = WIDTH, *decompose(kernel(scores, scores, WIDTH))
-        return adapt_metrics(regression([part], parameters, scores.shape[1]), scores, parameters)
+        return places, new - self.expected.predict(places, self.places)
 
 
 def in_deviations(values: Floats, estimates: Regression, shown: Floats) -> Floats:

@@ -137,6 +137,13 @@ def learn(features: Floats, parameters: Floats) -> FeatureSummary:
     return FeatureSummary(standard, scores, middle, spread)
 
 
+def estimate(scores: Floats, targets: Floats) -> Regression:
+    """Learn what standardised features (n, f) say of targets (n, p), each by its own metric."""
+    with single_threaded_algebra():
+        part = WIDTHS[0], *decompose(kernel(scores, scores, WIDTHS[0]))
+        return adapt_metrics(regression([part], targets, scores.shape[1]), scores, targets)
+
+
 def as_arrays(**parts: Standard | Regression) -> dict[str, Floats]:
     """Return the fields of named parts as they are stored: ``standard_middle``, and so on."""
     pairs = ((name, part._asdict()) for name, part in parts.items())
@@ -146,6 +153,18 @@ def as_arrays(**parts: Standard | Regression) -> dict[str, Floats]:
 def from_arrays(name: str, fields: Sequence[str], arrays: Mapping[str, Floats]) -> list[Floats]:
     """Return the fields of a stored part; a KeyError if one is not there."""
     return [arrays[f"{name}_{field}"] for field in fields]
+
+
+def read_regressions(
+    arrays: Mapping[str, Floats], features: Floats, *names: str
+) -> tuple[Standard, list[Regression]]:
+    """Return what was stored by `as_arrays` of these features (n, f); a KeyError if nothing was."""
+    standard = Standard(*from_arrays("standard", Standard._fields, arrays))
+    found = [Regression(*from_arrays(name, Regression._fields, arrays)) for name in names]
+    same = standard.middle.shape == features.shape[1:]
+    if not same or any(len(each.library) != len(features) for each in found):
+        raise KeyError(names)
+    return standard, found
 
 
 def single_threaded_algebra() -> AbstractContextManager[object]:

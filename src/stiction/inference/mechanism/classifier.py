@@ -23,12 +23,9 @@ from stiction.errors import ResultError
 from stiction.inference.learning.summary import (
     Regression,
     Standard,
-    adapt_metrics,
     as_arrays,
-    decompose,
-    from_arrays,
-    kernel,
-    regression,
+    estimate,
+    read_regressions,
     single_threaded_algebra,
 )
 from stiction.inference.mechanism.rivals import Mechanism
@@ -37,7 +34,6 @@ from stiction.inference.simulated.plan import Plan
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out
-WIDTH = 1.0  # of the kernel, over the typical distance between records
 WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are distinguished for sure
 
 
@@ -166,11 +162,10 @@ def learn_or_read(simulations: Simulations, path: Path | None = None) -> Classif
         return stored
     standard = Standard.of(features)
     scores = standard.scores(features)
+    membership = estimate(scores, np.eye(labels.max() + 1)[labels])
     with single_threaded_algebra():
-        parts = [(WIDTH, *decompose(kernel(scores, scores, WIDTH)))]
-        members = np.eye(labels.max() + 1)[labels]
-        membership = adapt_metrics(regression(parts, members, scores.shape[1]), scores, members)
-        found = Classifier(standard, scores, membership, logistic(membership.library, labels))
+        slopes = logistic(membership.library, labels)
+    found = Classifier(standard, scores, membership, slopes)
     if path is not None:
         learned = as_arrays(standard=standard, membership=membership)
         write_arrays(path, slopes=found.slopes, **learned)
@@ -179,14 +174,9 @@ def learn_or_read(simulations: Simulations, path: Path | None = None) -> Classif
 
 def read(path: Path | None, features: Floats) -> Classifier | None:
     """Return a stored classifier of simulations with these features (n, f); None without one."""
-    arrays = read_arrays(path)
+    arrays = read_arrays(path) or {}
     try:
-        if arrays is None or arrays["standard_middle"].shape != features.shape[1:]:
-            return None
-        standard = Standard(*from_arrays("standard", Standard._fields, arrays))
-        membership = Regression(*from_arrays("membership", Regression._fields, arrays))
-        if len(membership.library) != len(features):
-            return None
+        standard, (membership,) = read_regressions(arrays, features, "membership")
         return Classifier(standard, standard.scores(features), membership, arrays["slopes"])
     except KeyError:
         return None

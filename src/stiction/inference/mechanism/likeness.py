@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from stiction.arrays import Floats
-from stiction.inference.learning.expectation import Expectation, estimate
-from stiction.inference.learning.summary import Regression, as_arrays, from_arrays
+from stiction.inference.learning.expectation import Expectation
+from stiction.inference.learning.summary import Regression, as_arrays, estimate, from_arrays
 from stiction.inference.learning.typicality import Typicality
 from stiction.inference.mechanism.classifier import Simulations
 from stiction.inference.predictive import departures
@@ -102,9 +102,7 @@ def write(path: Path, learned: Sequence[Typicality]) -> None:
 
 def read(path: Path | None, members: Sequence[Floats]) -> list[Typicality] | None:
     """Return what was learned of simulations with these features; None without such a file."""
-    arrays = read_arrays(path)
-    if arrays is None:
-        return None
+    arrays = read_arrays(path) or {}
     found = []
     try:
         for number, scores in enumerate(members):
