@@ -12,7 +12,6 @@ import numpy as np
 from stiction.analysis.record import Record
 from stiction.analysis.report import analyse
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
-from stiction.auditing.progress import silent
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
@@ -23,6 +22,7 @@ from stiction.inference.mechanism.rivals import ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit
 from stiction.inference.predictive import Predictive, predict
+from stiction.inference.progress import silent
 from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import SIMULATIONS
 from stiction.text.quantity_text import percent

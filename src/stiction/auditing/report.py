@@ -13,7 +13,6 @@ from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
 from stiction.auditing.chain_words import chain_sections
 from stiction.auditing.prediction import Prediction, predict
-from stiction.auditing.progress import Progress, part, silent
 from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
@@ -31,6 +30,7 @@ from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
+from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated.library import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding

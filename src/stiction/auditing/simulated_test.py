@@ -20,7 +20,7 @@ from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, record_of
 from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
-from stiction.auditing.progress import Progress, silent
+from stiction.inference.progress import Progress, silent
 from stiction.linear_stability import Linearisation, growth_rate
 from stiction.simulation import simulate
 from stiction.system.initial import Initial

@@ -14,10 +14,10 @@ import numpy as np
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.auditing.prediction import predict
-from stiction.auditing.progress import Progress, silent
 from stiction.auditing.simulated_test import creep_before_slip, simulate_coarsely
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
+from stiction.inference.progress import Progress, silent
 from stiction.inference.rig import Rig
 from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_parameters, quantity

@@ -17,6 +17,7 @@ from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import Conditions, Observation, Source, observe_all
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Normal, Prior
+from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated.library import SIMULATIONS, Library, build, refuse_too_few
 from stiction.inference.simulated.plan import Plan, plan
@@ -78,8 +79,9 @@ def fit(
     seen = observe_all(records, known.slider)
     plan_of = plan_for(known, [each.conditions for each in seen])
     folder = None if library is None else Path(library) / f"{plan_of.key}-{seed}"
-    simulated = build(plan_of, simulations, folder, seed=seed, progress=progress)
-    return compare(simulated, seen, folder)
+    whole = progress or silent
+    simulated = build(plan_of, simulations, folder, seed=seed, progress=part(whole, 0, 10, of=7))
+    return compare(simulated, seen, folder, part(whole, 7, 10, of=3))
 
 
 def check(rig: Rig) -> None:
@@ -128,7 +130,12 @@ def one_sided(prior: Prior) -> Prior:
     return Normal(prior.mean, prior.deviation, 0.0, prior.high)
 
 
-def compare(library: Library, seen: Sequence[Observation], folder: Path | None = None) -> Fit:
+def compare(
+    library: Library,
+    seen: Sequence[Observation],
+    folder: Path | None = None,
+    progress: Progress = silent,
+) -> Fit:
     """Return what the features of records say, by comparison with a library.
 
     What is learned from the library is kept in `folder`.
@@ -145,13 +152,16 @@ def compare(library: Library, seen: Sequence[Observation], folder: Path | None =
         "the record is stick-slip at all: `stiction analyse` tells",
     )  # fmt: skip
     observed = np.concatenate([each.features for each in seen])
-    learned = learn_or_read(library.features, library.scores, _place(folder, library))
+    count = 1 + len(seen)
+    learned = learn_or_read(
+        library.features, library.scores, _place(folder, library), part(progress, 0, count)
+    )
     (sample,) = learned.posteriors(observed[None])
-    return Fit.of(library, sample, seen, learned, [*_alone(library, seen, folder)])
+    return Fit.of(library, sample, seen, learned, [*_alone(library, seen, folder, progress)])
 
 
 def _alone(
-    library: Library, seen: Sequence[Observation], folder: Path | None
+    library: Library, seen: Sequence[Observation], folder: Path | None, progress: Progress
 ) -> Iterator[FeatureSummary]:
     """Yield what the features of each of several records say by themselves."""
     if len(seen) < 2:
@@ -159,7 +169,9 @@ def _alone(
     ends = np.cumsum([len(each.features) for each in seen])[:-1]
     for number, features in enumerate(np.split(library.features, ends, axis=1), 1):
         place = _place(folder, library, f"-record-{number}")
-        yield learn_or_read_summary(np.ascontiguousarray(features), library.scores, place)
+        own = np.ascontiguousarray(features)
+        report = part(progress, number, 1 + len(seen))
+        yield learn_or_read_summary(own, library.scores, place, report)
 
 
 def _place(folder: Path | None, library: Library, of: str = "") -> Path | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from math import floor, log10
+from math import floor, hypot, log10
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,7 +20,7 @@ from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
 from stiction.inference.cycles import LEAST_CYCLES, Cycles, slip_cycles
 from stiction.inference.features import USED, FeatureScale, features
-from stiction.recording.noise import ROUNDING_SPREAD, white_noise
+from stiction.recording.noise import ROUNDING_SPREAD, lattice, resolved_noise
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
@@ -30,6 +30,7 @@ Source = Record | Trajectory | str | Path  # of a record: a run is taken as if m
 
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 PER_CYCLE = 200  # samples: more are averaged
+MOST_READINGS = 8  # of which a simulated sample is the mean: more are as good as so many
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
@@ -37,6 +38,7 @@ DIGITS = 4  # of the sampling interval: times of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
+DITHER = 0.5  # of a step: noise that hides it, so that rounding is noise too
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 
 
@@ -46,13 +48,15 @@ class Noise(NamedTuple):
     Parameters
     ----------
     level : float
-        Standard deviation of its noise.
+        Standard deviation of their white noise.
     gain, zero : float
         Uncertainty of its gain and of its zero.
     filters : tuple
         Its bandwidth and its anti-alias filter, as `LowPass`.
     drift : float
         Uncertainty of its zero's drift, in its unit over s.
+    quantisation : float
+        Step between its readings, where noise does not hide it; 0 where that is part of the noise.
     """
 
     level: float
@@ -60,6 +64,12 @@ class Noise(NamedTuple):
     zero: float = 0.0
     filters: tuple[LowPass, ...] = ()
     drift: float = 0.0
+    quantisation: float = 0.0
+
+    @property
+    def error(self) -> float:
+        """Standard deviation of a sample from noise and rounding."""
+        return hypot(self.level, ROUNDING_SPREAD * self.quantisation)
 
 
 class Conditions(NamedTuple):
@@ -79,6 +89,8 @@ class Conditions(NamedTuple):
         Of each channel.
     lead : float
         Time from the start of the record to its first whole cycle, s, where a zero drifts.
+    block : int
+        Readings of which a simulated sample is the mean.
     """
 
     velocity: float
@@ -89,6 +101,7 @@ class Conditions(NamedTuple):
     cycle: float
     noise: dict[str, Noise]
     lead: float = 0.0
+    block: int = 1
 
     def slider_of(self, slider: Slider) -> Slider:
         """Return a slider under these conditions."""
@@ -182,16 +195,14 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         )
     refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
-    found = slip_cycles(channels["force"], noise["force"].level)
+    found = slip_cycles(channels["force"], noise["force"].error)
     refuse_few(name, len(found.peak))
     refuse_other_sign(name, channels["force"], found)
     cycle = near(float(np.mean(found.after - found.before)) * step)
     block = max(round(cycle / step / PER_CYCLE), 1)
     thin = {each: block_means(values, block) for each, values in channels.items()}
-    thin_noise = {
-        each: its._replace(level=round_up(its.level / block**0.5)) for each, its in noise.items()
-    }
-    found = slip_cycles(thin["force"], thin_noise["force"].level)
+    thin_noise = {each: noise_of_means(its, block) for each, its in noise.items()}
+    found = slip_cycles(thin["force"], thin_noise["force"].error)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = Cycles(*(each[:number] for each in found))
     drifts = any(each.drift for each in noise.values())
@@ -199,6 +210,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         drive_velocity(record, slider), float(record.normal_load or slider.normal_load), 0.0,
         step * block, number, cycle, thin_noise,
         lead=near(step * block * int(found.before[0])) if drifts else 0.0,
+        block=min(block, MOST_READINGS),
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, its, thin["force"], found)
@@ -262,18 +274,26 @@ def record_from(source: Source) -> Record:
 
 
 def noise_of(record: Record, channel: str, values: Floats) -> Noise:
-    """Return the noise of a channel, as its sensor states it or as its samples show it."""
+    """Return the noise of a channel, as its sensor states it or as its samples show it.
+
+    `values` are its samples on an even grid, between which they are interpolated.
+    """
     sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
-    level = (
-        0.0
-        if sensor is None
-        else float(np.hypot(sensor.noise, ROUNDING_SPREAD * sensor.quantisation))
-    )
-    level = level or white_noise(values)
+    stated = (0.0, 0.0) if sensor is None else (sensor.noise, sensor.quantisation)
+    step = stated[1] or lattice(getattr(record, channel))
+    level = stated[0] or resolved_noise(values, step)
+    if level > DITHER * step:
+        level, step = hypot(level, ROUNDING_SPREAD * step), 0.0
     if sensor is None:
-        return Noise(level)
+        return Noise(level, quantisation=step)
     errors = sensor.gain_uncertainty, sensor.zero_uncertainty
-    return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty)
+    return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty, step)
+
+
+def noise_of_means(noise: Noise, block: int) -> Noise:
+    """Return the noise of means of blocks, rounded so that many records share it."""
+    level, step = round_up(noise.level / block**0.5), near(noise.quantisation)
+    return noise._replace(level=level, quantisation=step)
 
 
 def block_means(values: Floats, block: int) -> Floats:

@@ -18,9 +18,12 @@ LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
 ROUNDING_SPREAD = 12.0**-0.5  # of a step: standard deviation of the rounding to it
-TWO_CODES, FEW_CODES = 1.5, 8.0  # steps: values within 1.5 are of two codes at most
-HIDDEN = 1 / 3  # of a step of rounding: noise that does not average it away
-
+TWO_CODES = 1.5  # steps: values within it are of two codes at most
+HIDDEN = 0.05  # of a step of rounding: less noise than that cannot be told from it
+WITHIN = 2.0  # steps: noise by which the rounding of a ramp is white, and more
+WINDOW = 16  # differences, in which a force rises steadily
+SLIPS = 3.0  # times the usual span of these differences: a slip is among them
+HARMONICS = 6  # of a rounded ramp: the next adds less than 0.01 of a step to its noise
 
 SEEMING = 20.0  # standard deviations: what moves by less may be at rest
 
@@ -56,10 +59,39 @@ def resolved_noise(values: Floats, step: float) -> float:
     """Return the standard deviation of white noise on multiples of a step; 0 if it is hidden.
 
     A quantisation of step q adds q^2/12 to the variance (B. Widrow & I. Kollar, Quantization Noise,
-    Cambridge 2008, chapter 4). Noise below a third of a step is not resolved.
+    Cambridge 2008, chapter 4), if the noise is larger. Noise below a twentieth of a step is hidden.
     """
-    left = white_noise(values, step) ** 2 - (ROUNDING_SPREAD * step) ** 2
-    return sqrt(left) if left > (HIDDEN * step) ** 2 else 0.0
+    found = white_noise(values, step)
+    if found > WITHIN * step:
+        return sqrt(found**2 - (ROUNDING_SPREAD * step) ** 2)
+    within = min(step * noise_within_steps(values / step), found)
+    return within if within > HIDDEN * step else 0.0
+
+
+def noise_within_steps(values: Floats) -> float:
+    """Return the standard deviation of white noise of a few steps, before rounding to integers.
+
+    The rounding of a ramp is not white. A ramp that rises by s a sample, at any height, with noise
+    of variance v and rounded has differences of variance
+
+    2 v + 1/6 - sum_k cos(2 pi k s) exp(-4 pi^2 k^2 v) / (pi k)^2,
+
+    since a rounded difference d is floor(d) or floor(d) + 1 at random. Variance and s are those of
+    short windows, in each of which s is a line; windows with a slip are left out.
+    """
+    rises = np.diff(values)
+    windows = rises[: len(rises) // WINDOW * WINDOW].reshape(-1, WINDOW)
+    line = np.polynomial.legendre.legvander(np.linspace(-1.0, 1.0, WINDOW), 1)
+    slopes = windows @ np.linalg.pinv(line).T @ line.T
+    left = windows - slopes
+    spans = np.ptp(left, axis=1)
+    quiet = spans <= SLIPS * max(float(np.median(spans)), 1.0)
+    harmonics = np.arange(1, HARMONICS + 1)
+    waves = np.cos(2.0 * pi * harmonics * slopes[quiet][..., None]).mean(axis=(0, 1))
+    levels = np.linspace(0.0, 2.0 * WITHIN, 401)
+    fading = np.exp(-4.0 * pi**2 * np.outer(levels**2, harmonics**2)) / (pi * harmonics) ** 2
+    variances = 2.0 * levels**2 + 1.0 / 6.0 - fading @ waves
+    return float(np.interp(np.mean(left[quiet] ** 2), variances, levels))
 
 
 def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> float:
@@ -83,18 +115,11 @@ def dither_remainder(values: Floats, step: float) -> float:
 
     It is the characteristic function of Gaussian noise at a frequency of one over the step (B.
     Widrow & I. Kollar, Quantization Noise, Cambridge 2008).
-    Where a force stays within few steps, no median but the mean square of its differences tells the
-    noise, and between two codes nothing does: it seems to be half a step.
+    Between two codes nothing tells the noise: it seems to be half a step.
     """
-    spans = float(np.ptp(values)) / step
-    if spans < TWO_CODES or len(values) <= ORDER:
+    if float(np.ptp(values)) < TWO_CODES * step or len(values) <= WINDOW:
         return 1.0
-    if spans < FEW_CODES:
-        square = float(np.mean(np.diff(values / step, ORDER) ** 2)) / comb(2 * ORDER, ORDER)
-    else:
-        square = (white_noise(values, step) / step) ** 2
-    before = max(square - ROUNDING_SPREAD**2, 0.0)  # the variance that rounding has not added
-    return exp(-2.0 * pi**2 * before)
+    return exp(-2.0 * pi**2 * noise_within_steps(values / step) ** 2)
 
 
 def _median(values: Floats, step: float) -> float:

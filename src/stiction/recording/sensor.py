@@ -204,9 +204,7 @@ class Sensor(Described):
         found = self.gain * values + self.zeros(time)
         if self.noise:
             found = found + self.noise * np.random.default_rng(seed).standard_normal(len(found))
-        if self.quantisation:
-            found = self.quantisation * np.rint(found / self.quantisation)
-        return np.asarray(found, dtype=np.float64)
+        return digitise(np.asarray(found, dtype=np.float64), self.quantisation)
 
     def behind(self) -> Sensor:
         """Return the sensor of a channel whose readings have been turned into values."""
@@ -247,6 +245,11 @@ def _split(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
         else:
             read[name], read[name + OF] = both
     return read, wrong
+
+
+def digitise(values: Floats, step: float) -> Floats:
+    """Return values rounded to multiples of a step; as they are where it is 0."""
+    return step * np.rint(values / step) if step else values
 
 
 def low_pass(values: Floats, filters: Iterable[LowPass], rate: float) -> Floats:

@@ -19,7 +19,6 @@ from stiction.auditing.advice import advise, advise_one, nearest
 from stiction.auditing.assumptions import suppositions
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict
-from stiction.auditing.progress import silent
 from stiction.auditing.report import Audit, sections
 from stiction.auditing.report import audit as examine
 from stiction.auditing.simulated_test import (
@@ -38,6 +37,7 @@ from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import margin, motions, stability, verdict
 from stiction.cli import main
+from stiction.inference.progress import silent
 from stiction.linear_stability import Critical, critical, steady_sliding
 from stiction.text.quantity_text import percent
 

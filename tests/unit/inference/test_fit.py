@@ -14,7 +14,15 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features, of_trend
 from stiction.inference.fit import plan_for
-from stiction.inference.observation import Noise, Trend, near, observe, observe_all, trend
+from stiction.inference.observation import (
+    Noise,
+    Trend,
+    block_means,
+    near,
+    observe,
+    observe_all,
+    trend,
+)
 from stiction.inference.priors import Normal
 from stiction.inference.simulated.jitter import Jitter, move, stretch
 from stiction.inference.simulated.library import build
@@ -188,6 +196,42 @@ def test_simulated_records_pass_the_filters_that_show_between_their_samples(rig,
     assert np.array_equal(filtered["position"], plain["position"])
     assert np.array_equal(filtered["force"], low_pass(plain["force"], [slow], rate))
     assert np.ptp(filtered["force"] - plain["force"]) > 0.05  # N: it smears the slips
+
+
+@pytest.mark.parametrize("block", [1, 4])
+def test_a_simulated_sample_is_the_mean_of_as_many_readings_as_that_of_the_record(
+    rig, record, block
+):
+    """Each reading is rounded; a slip within a block is smeared as it is in the record."""
+    conditions = observe(record, rig.slider).conditions._replace(block=block)
+    fine = conditions._replace(step=conditions.step / block, block=1)
+    channels = []
+    for each, noise in ((conditions, 0.004), (fine, 0.004 * block**0.5)):
+        for step in (0.0, 0.05):
+            its = each._replace(noise={"force": Noise(noise, quantisation=step)})
+            (made,) = draw(plan_for(rig, [its]), 1, 0)[1]
+            channels.append(made.channels["force"])
+    means, rounded_means, readings, rounded = channels
+    assert np.allclose(means, block_means(readings, block), rtol=1e-12, atol=1e-12)
+    assert np.array_equal(rounded, 0.05 * np.rint(readings / 0.05))
+    assert np.allclose(rounded_means, block_means(rounded, block), rtol=1e-12, atol=1e-12)
+
+
+@pytest.mark.parametrize("stated", [False, True])
+def test_rounding_that_noise_does_not_hide_is_simulated(rig, record, stated):
+    sensor = st.Sensor(quantisation="30 mN") if stated else None
+    for noise, hidden in ((0.003, False), (0.03, True)):
+        random = np.random.default_rng(6)
+        force = record.force + noise * random.standard_normal(len(record.force))
+        its = {
+            "force": 0.03 * np.rint(force / 0.03),
+            "sensors": {"force": sensor} if stated else {},
+        }
+        found = observe(record.model_copy(update=its), rig.slider).conditions.noise["force"]
+        assert found.quantisation == (0.0 if hidden else near(0.03))
+        of_rounding = 0.03 / 12**0.5 if hidden else 0.0
+        assert found.level == pytest.approx(np.hypot(0.005 + noise, of_rounding), abs=0.006)
+        assert found.error >= found.level
 
 
 def test_the_drift_of_a_zero_belongs_to_the_conditions_of_a_record(rig, record):

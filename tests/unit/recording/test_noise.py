@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stiction.recording.noise import lattice, noise_level, white_noise
+from stiction.recording.noise import lattice, noise_level, resolved_noise, white_noise
 
 
 def sawtooth(count=20000, drop=0.05, every=997):
@@ -42,6 +42,20 @@ def test_noise_that_is_less_than_the_steps_is_not_invented():
     level = noise_level(values)
     assert level.noise == 0.0
     assert level.quantisation == pytest.approx(2e-3, rel=1e-12)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1, 0.2, 0.4, 0.8])
+def test_the_rounding_of_a_ramp_is_not_noise(noise):
+    """It is not white: fourth differences took that of half a step a sample for 0.6 of a step."""
+    random = np.random.default_rng(5)
+    found = []
+    for rise in random.uniform(0.02, 1.5, 40):
+        steady = np.cumsum(rise * (1.0 + 0.3 * np.sin(np.arange(4000) / 60.0)))
+        force = steady % random.uniform(50.0, 70.0) + noise * random.standard_normal(4000)
+        found.append(resolved_noise(np.rint(force + random.uniform()), 1.0))
+    assert np.median(found) == pytest.approx(noise, abs=0.02)
+    # half a step a sample, where differences tell least: 2 v + 2 exp(-4 pi^2 v)/pi^2 is flat
+    assert found == pytest.approx(np.full(40, noise), abs=0.15)
 
 
 def test_a_swing_is_no_noise():

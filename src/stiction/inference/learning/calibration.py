@@ -30,6 +30,7 @@ from stiction.inference.learning.summary import (
     single_threaded_algebra,
 )
 from stiction.inference.learning.typicality import Typicality
+from stiction.inference.progress import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
 RANKED = 500  # records of the library whose ranks are found
@@ -89,14 +90,17 @@ def ranks(summary: FeatureSummary, truth: Floats) -> Floats:
     return np.array(columns).T
 
 
-def learn_or_read(features: Floats, truth: Floats, path: Path | None = None) -> Learned:
+def learn_or_read(
+    features: Floats, truth: Floats, path: Path | None = None, progress: Progress = silent
+) -> Learned:
     """Learn from features (n, f) and scores (n, p), or read from a file what was learned."""
-    summary = learn_or_read_summary(features, truth, path)
+    summary = learn_or_read_summary(features, truth, path, part(progress, 0, 10, of=8))
     beside = None if path is None else path.with_name(f"{path.stem}-calibration.npz")
     stored = read(beside, summary)
     if stored is None:
         with single_threaded_algebra():
             expectation = Expectation.of(summary.scores, truth, summary.middle)
+            progress(0.9)
             stored = ranks(summary, truth), Typicality.of(expectation)
         if beside is not None:
             write_arrays(beside, ranks=stored[0], **stored[1].arrays())
@@ -112,12 +116,14 @@ def read(path: Path | None, summary: FeatureSummary) -> tuple[Floats, Typicality
         return None
 
 
-def learn_or_read_summary(features: Floats, truth: Floats, path: Path | None) -> FeatureSummary:
+def learn_or_read_summary(
+    features: Floats, truth: Floats, path: Path | None, progress: Progress = silent
+) -> FeatureSummary:
     """Learn what features say, or read it from a file."""
     stored = read_summary(path, features)
     if stored is not None:
         return stored
-    found = learn(features, truth)
+    found = learn(features, truth, progress)
     if path is not None:
         write_arrays(
             path, **as_arrays(standard=found.standard, middle=found.middle, spread=found.spread)

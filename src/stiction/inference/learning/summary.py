@@ -22,6 +22,7 @@ from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri  # type: ignore[attr-defi
 from threadpoolctl import threadpool_limits
 
 from stiction.arrays import Floats
+from stiction.inference.progress import Progress, part, silent
 
 WIDTHS = (1.0, 3.0)  # of the kernel, over the typical distance between records
 FINER = 0.3  # ridge with the metric of a parameter, over that without
@@ -125,23 +126,25 @@ class FeatureSummary(NamedTuple):
         return self.middle.library, np.exp(0.5 * self.spread.library)
 
 
-def learn(features: Floats, parameters: Floats) -> FeatureSummary:
+def learn(features: Floats, parameters: Floats, progress: Progress = silent) -> FeatureSummary:
     """Learn the summary of a library: features (n, f) and parameters (n, p)."""
     standard = Standard.of(features)
     scores = standard.scores(features)
     with single_threaded_algebra():
         parts = [(width, *decompose(kernel(scores, scores, width))) for width in WIDTHS]
-        middle = adapt_metrics(regression(parts, parameters, scores.shape[1]), scores, parameters)
+        first = regression(parts, parameters, scores.shape[1])
+        middle = adapt_metrics(first, scores, parameters, part(progress, 4, 10, of=6))
         apart = parameters - middle.library
         spread = regression(parts, np.log(apart * apart + LEAST), scores.shape[1])
     return FeatureSummary(standard, scores, middle, spread)
 
 
-def estimate(scores: Floats, targets: Floats) -> Regression:
+def estimate(scores: Floats, targets: Floats, progress: Progress = silent) -> Regression:
     """Learn what standardised features (n, f) say of targets (n, p), each by its own metric."""
     with single_threaded_algebra():
-        part = WIDTHS[0], *decompose(kernel(scores, scores, WIDTHS[0]))
-        return adapt_metrics(regression([part], targets, scores.shape[1]), scores, targets)
+        only = WIDTHS[0], *decompose(kernel(scores, scores, WIDTHS[0]))
+        first = regression([only], targets, scores.shape[1])
+        return adapt_metrics(first, scores, targets, part(progress, 3, 10, of=7))
 
 
 def as_arrays(**parts: Standard | Regression) -> dict[str, Floats]:
@@ -195,7 +198,9 @@ def regression(
     return Regression(width, chosen, np.eye(features)[None], weights, mean, library + mean)
 
 
-def adapt_metrics(first: Regression, scores: Floats, targets: Floats) -> Regression:
+def adapt_metrics(
+    first: Regression, scores: Floats, targets: Floats, progress: Progress = silent
+) -> Regression:
     """Return a regression in which each target has a metric of its own, where that is better.
 
     A metric that has seen a record would predict it too well, and new ones worse. So each half of
@@ -205,6 +210,7 @@ def adapt_metrics(first: Regression, scores: Floats, targets: Floats) -> Regress
     metric = np.repeat(first.metric, targets.shape[1], axis=0)
     even = np.arange(len(scores)) % 2 == 0
     for i, target in enumerate((targets - first.mean).T):
+        progress(i / targets.shape[1])
         if error(first.library[:, i], targets[:, i]) > UNKNOWN * target.var():
             continue  # no metric helps, and this is what learning takes most of its time for
         width, ridge = first.width[i], first.ridge[i]
@@ -259,7 +265,7 @@ def gaussian(a: Floats, b: Floats, width: float) -> Floats:
 
 def decompose(matrix: Floats) -> tuple[Floats, Floats]:
     """Return eigenvalues, none below zero, and eigenvectors."""
-    values, vectors = eigh(matrix, driver="evd", check_finite=False, overwrite_a=True)
+    values, vectors = np.linalg.eigh(matrix)  # SciPy's holds Python back, a progress bar too
     return np.maximum(values, 0.0), vectors
 
 

@@ -9,7 +9,6 @@ however many of its simulations have cycles: the odds before are even.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -29,7 +28,8 @@ from stiction.inference.learning.summary import (
     single_threaded_algebra,
 )
 from stiction.inference.mechanism.rivals import Mechanism
-from stiction.inference.simulated.library import Progress, have_cycles, simulate_all
+from stiction.inference.progress import Progress, part, silent
+from stiction.inference.simulated.library import have_cycles, simulate_all
 from stiction.inference.simulated.plan import Plan
 from stiction.storage.arrays import read_arrays, write_arrays
 
@@ -58,7 +58,7 @@ def simulate(
     folder: Path | None,
     *,
     seed: int = 0,
-    progress: Progress = None,
+    progress: Progress = silent,
 ) -> Simulations:
     """Simulate `count` records of each mechanism, the same number by each of its plans.
 
@@ -74,7 +74,7 @@ def simulate(
         for plan in rival.plans:
             place = None if folder is None else folder / f"{plan.key}-{seed}"
             wanted = -(-count // len(rival.plans))
-            report = partial(tell, progress, done, total)
+            report = part(progress, done, total)
             scores, rows = simulate_all(plan, wanted, place, seed=seed, progress=report)
             kept = have_cycles(rows)
             parts.append(rows[kept])
@@ -113,12 +113,6 @@ def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:
     return united[:, np.ptp(united, axis=0) > 0.0]
 
 
-def tell(progress: Progress, done: int, total: int, fraction: float) -> None:
-    """Report the fraction done of all, when one of several is done to a fraction."""
-    if progress is not None:
-        progress((done + fraction) / total)
-
-
 class Classifier(NamedTuple):
     """What tells mechanisms apart.
 
@@ -154,7 +148,9 @@ class Classifier(NamedTuple):
         return found
 
 
-def learn_or_read(simulations: Simulations, path: Path | None = None) -> Classifier:
+def learn_or_read(
+    simulations: Simulations, path: Path | None = None, progress: Progress = silent
+) -> Classifier:
     """Learn to tell mechanisms apart, or read from a file what was learned."""
     features, labels = simulations.features, simulations.labels
     stored = read(path, features)
@@ -162,7 +158,7 @@ def learn_or_read(simulations: Simulations, path: Path | None = None) -> Classif
         return stored
     standard = Standard.of(features)
     scores = standard.scores(features)
-    membership = estimate(scores, np.eye(labels.max() + 1)[labels])
+    membership = estimate(scores, np.eye(labels.max() + 1)[labels], progress)
     with single_threaded_algebra():
         slopes = logistic(membership.library, labels)
     found = Classifier(standard, scores, membership, slopes)

@@ -18,6 +18,7 @@ from stiction.inference.mechanism.classifier import Simulations, simulate
 from stiction.inference.mechanism.odds import CLAIM, Odds
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
+from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 
@@ -80,7 +81,9 @@ def mechanism(
     seen = observe_all(records, known.slider)
     rivals = mechanisms(known, [each.conditions for each in seen])
     place = None if library is None else Path(library)
-    simulated = simulate(rivals, simulations, place, seed=seed, progress=progress)
+    whole = progress or silent
+    simulating = part(whole, 0, 10, of=8)
+    simulated = simulate(rivals, simulations, place, seed=seed, progress=simulating)
     if len(simulated.names) < 2:
         raise ResultError(
             f"only by {simulated.names[0]} do simulated records have cycles no longer than "
@@ -88,7 +91,7 @@ def mechanism(
             "speaks for it"
         )
     kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}"
-    return compare(simulated, known, seen, kept)
+    return compare(simulated, known, seen, kept, part(whole, 8, 10, of=2))
 
 
 def key(rivals: Sequence[Mechanism]) -> str:
@@ -98,15 +101,20 @@ def key(rivals: Sequence[Mechanism]) -> str:
 
 
 def compare(
-    simulated: Simulations, rig: Rig, seen: Sequence[Observation], path: Path | None = None
+    simulated: Simulations,
+    rig: Rig,
+    seen: Sequence[Observation],
+    path: Path | None = None,
+    progress: Progress = silent,
 ) -> Odds:
     """Return the odds of what was observed; what simulations teach is kept beside a path."""
     observed = np.concatenate([each.features for each in seen])
     bend = np.concatenate([bend_features(each.conditions, rig.slider) for each in seen])
-    learned = classifier.learn_or_read(simulated, beside(path, "classifier"))
+    to_tell, to_compare = part(progress, 0, 2), part(progress, 1, 2)
+    learned = classifier.learn_or_read(simulated, beside(path, "classifier"), to_tell)
     record = learned.standard.scores(observed)
     references = likeness.learn_or_read(
-        simulated, learned.scores, simulated.features[:, bend], beside(path, "likeness")
+        simulated, learned.scores, simulated.features[:, bend], beside(path, "likeness"), to_compare
     )
     labels = simulated.labels
     return Odds(

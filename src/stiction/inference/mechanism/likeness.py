@@ -12,6 +12,7 @@ from stiction.inference.learning.summary import Regression, as_arrays, estimate,
 from stiction.inference.learning.typicality import Typicality
 from stiction.inference.mechanism.classifier import Simulations
 from stiction.inference.predictive import departures
+from stiction.inference.progress import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
 # simulations with whose loading that of the record is compared: the fewest by which one in a
@@ -63,7 +64,11 @@ class Reference(NamedTuple):
 
 
 def learn_or_read(
-    simulated: Simulations, scores: Floats, bends: Floats, path: Path | None = None
+    simulated: Simulations,
+    scores: Floats,
+    bends: Floats,
+    path: Path | None = None,
+    progress: Progress = silent,
 ) -> tuple[Reference, ...]:
     """Learn the reference of each mechanism, or read from a file what was learned.
 
@@ -75,20 +80,25 @@ def learn_or_read(
         (n, f) and (n, s), their standardised features, and their loading's departure from straight.
     path : Path, optional
         Of the file.
+    progress : callable, optional
+        Called with the fraction done.
     """
     places = [simulated.labels == label for label in range(len(simulated.names))]
     members = [scores[own] for own in places]
     learned = read(path, members)
     if learned is None:
-        learned = [learn(*each) for each in zip(members, simulated.parameters, strict=True)]
+        pairs = zip(members, simulated.parameters, strict=True)
+        count = len(members)
+        learned = [learn(*each, part(progress, done, count)) for done, each in enumerate(pairs)]
         if path is not None:
             write(path, learned)
     return tuple(Reference(its, bends[own]) for its, own in zip(learned, places, strict=True))
 
 
-def learn(scores: Floats, parameters: Floats) -> Typicality:
+def learn(scores: Floats, parameters: Floats, progress: Progress = silent) -> Typicality:
     """Learn from simulations of a mechanism: features (n, f) and parameters (n, p)."""
-    return Typicality.of(Expectation.of(scores, parameters, estimate(scores, parameters)))
+    estimates = estimate(scores, parameters, progress)
+    return Typicality.of(Expectation.of(scores, parameters, estimates))
 
 
 def write(path: Path, learned: Sequence[Typicality]) -> None:

@@ -26,6 +26,7 @@ from stiction.inference.next_test.further import (
     with_noise,
 )
 from stiction.inference.observation import PER_CYCLE, Conditions, Source, observe, record_from
+from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated.library import have_cycles, refuse_too_few, simulate_all
 from stiction.inference.simulated.plan import Plan
@@ -124,12 +125,15 @@ def design(
     records = [test.record for test in tests if test.record is not None]
     trial = plan_for(known, [present, *records], "force_across" in measured)
     folder = None if library is None else Path(library) / f"{trial.key}-{seed}"
-    scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=progress)
-    found = expectations(trial, Further("the present test", measured), tests, scores, features)
+    whole = progress or silent
+    simulating, learning = part(whole, 0, 10, of=7), part(whole, 7, 10, of=3)
+    scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=simulating)
+    usual = Further("the present test", measured)
+    found = tuple(expectations(trial, usual, tests, scores, features, learning))
     assumed = assumptions(() if record is None else measured, present, wanted)
     columns = features.shape[1] // len(trial.conditions)
     usable = int(have_cycles(features[:, :columns]).sum())
-    return Advice(trial, name, tuple(found), (*skipped,), (*assumed,), usable)
+    return Advice(trial, name, found, (*skipped,), (*assumed,), usable)
 
 
 def several(given: Any) -> tuple[Any, ...]:
@@ -181,7 +185,12 @@ def split(tests: Iterator[Further], slider: Slider) -> tuple[list[Further], list
 
 
 def expectations(
-    trial: Plan, present: Further, tests: Sequence[Further], scores: Floats, features: Floats
+    trial: Plan,
+    present: Further,
+    tests: Sequence[Further],
+    scores: Floats,
+    features: Floats,
+    progress: Progress = silent,
 ) -> Iterator[Expected]:
     """Yield what the present test leaves open, and each further one.
 
@@ -202,7 +211,8 @@ def expectations(
     before = left_out_errors([seen(0, present.channels)[complete]], truth)
     yield expectation(trial, present.name, truth, before, before)
     further = iter(range(1, 1 + len(others)))
-    for test in tests:
+    for done, test in enumerate(tests, 1):
+        progress(done / (1 + len(tests)))
         records = [seen(0, test.channels)[complete]]
         if test.record is not None:
             records.append(seen(next(further), test.channels)[complete])
@@ -216,11 +226,11 @@ def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) ->
     if not recorded:
         found.append(f"Assumed: {CYCLES} cycles in each record, {PER_CYCLE} samples in each cycle.")
     if wanted.noise is None and not recorded:
-        level = in_words(noise["force"].level, "N", 2)
+        level = in_words(noise["force"].error, "N", 2)
         found.append(
             f"Assumed: a noise of {level} in each force, {percent(NOISE)} of that of friction."
         )
     if wanted.position_noise is None and "position" not in recorded:
-        level = in_words(noise["position"].level, "m", 2)
+        level = in_words(noise["position"].error, "m", 2)
         found.append(f"Assumed: a noise of {level} in the displacement.")
     return found

@@ -77,7 +77,7 @@ def usual_conditions(slider: Slider) -> Conditions:
 def with_noise(conditions: Conditions, slider: Slider, wanted: Wanted) -> Conditions:
     """Return conditions in which every channel has a noise: what is given, known, or usual."""
     known = conditions.noise
-    own = known["force"].level if "force" in known else NOISE * slider.F_0
+    own = known["force"].error if "force" in known else NOISE * slider.F_0
     force = wanted.noise or own
     usual = {
         "force": Noise(force),

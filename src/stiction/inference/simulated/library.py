@@ -16,12 +16,11 @@ from stiction.errors import ResultError
 from stiction.inference.columns import dummy
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features
+from stiction.inference.progress import Progress, silent
 from stiction.inference.simulated.plan import Plan
 from stiction.inference.simulated.synthetic import draw
 from stiction.storage.arrays import read_arrays, write_arrays
 from stiction.study.execution.cores import Cores
-
-Progress = Callable[[float], None] | None
 
 SIMULATIONS = 4000  # of a library, by default
 BLOCK = 32  # simulations that are stored together
@@ -41,7 +40,7 @@ class Library(NamedTuple):
 
 
 def build(
-    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = None
+    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = silent
 ) -> Library:
     """Simulate a library of `count` records, or continue one that is stored in a folder."""
     scores, found = simulate_all(plan, count, folder, seed=seed, progress=progress)
@@ -55,7 +54,7 @@ def have_cycles(rows: Floats) -> NDArray[np.bool_]:
 
 
 def simulate_all(
-    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = None
+    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = silent
 ) -> tuple[Floats, Floats]:
     """Return normal scores (n, p) and features (n, f) of `count` simulations.
 
@@ -73,8 +72,7 @@ def simulate_all(
     work = partial(simulate_block, plan, folder, seed)
     for ready, (block, rows) in enumerate(Cores().results(work, missing), 1):
         done[block] = rows
-        if progress is not None:
-            progress(ready / len(missing))
+        progress(ready / len(missing))
     scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
     return scores, found
 

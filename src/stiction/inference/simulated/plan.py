@@ -13,7 +13,7 @@ from stiction.inference.priors import Normal, Prior, Uniform
 from stiction.system.slider import Slider
 
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
-FORMAT = 7  # of stored simulations and of what is learned from them
+FORMAT = 8  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):

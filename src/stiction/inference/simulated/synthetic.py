@@ -10,10 +10,10 @@ import numpy as np
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.inference.cycles import Cycles, slip_cycles
-from stiction.inference.observation import Conditions
+from stiction.inference.observation import Conditions, block_means
 from stiction.inference.simulated.jitter import SPARE, Jitter, SampledMotion, first_loading, move
 from stiction.inference.simulated.plan import Plan
-from stiction.recording.sensor import FASTEST, low_pass
+from stiction.recording.sensor import FASTEST, digitise, low_pass
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 
@@ -48,9 +48,10 @@ def synthesise(
     for conditions in plan.conditions:
         jitter = Jitter(spread, common, values.get("drift", 0.0) / conditions.cycles)
         rig = conditions.slider_of(slider)
-        wanted, noise = conditions.cycles, conditions.noise["force"].level
+        wanted, noise = conditions.cycles, conditions.noise["force"].error
         most = LONGEST_CYCLE * (wanted + SPARE) * conditions.cycle + first_loading(rig)
-        times: Floats = conditions.step * np.arange(int(most / conditions.step) + 1.0)
+        step = conditions.step / conditions.block
+        times: Floats = step * np.arange(int(most / step) + 1.0)
         motion = move(
             rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted, noise=noise
         )
@@ -77,7 +78,7 @@ def measure(
         "force_across": way * (x * across - y * along),
         "position": way * (conditions.velocity * motion.time - c * u_x - s * u_y),
     }
-    found = {}
+    found, block, step = {}, conditions.block, conditions.step / conditions.block
     for name, noise in conditions.noise.items():
         gain, zero = random.standard_normal(2) * (noise.gain, noise.zero) + (1.0, 0.0)
         if name == "force":
@@ -86,9 +87,11 @@ def measure(
             drift = noise.drift * random.standard_normal()
             drift = values.get("zero_drift", drift) if name == "force" else drift
             zero = zero + drift * (motion.time - start_time(motion, exact["force"], conditions))
-        shown = [each for each in noise.filters if each.cut * conditions.step <= FASTEST]
-        values_of = gain * low_pass(exact[name], shown, 1.0 / conditions.step) + zero
-        found[name] = values_of + noise.level * random.standard_normal(len(values_of))
+        shown = [each for each in noise.filters if each.cut * step <= FASTEST]
+        values_of = gain * low_pass(exact[name], shown, 1.0 / step) + zero
+        noisy = values_of + noise.level * block**0.5 * random.standard_normal(len(values_of))
+        rounded = digitise(noisy, noise.quantisation)
+        found[name] = block_means(rounded, block)
     return found
 
 

@@ -102,7 +102,7 @@ def design(
         drawable(output)
     known = Rig.from_toml(rig, changes(set), trust=trust)
     given = None if record is None else record_in(record, measured, trust)
-    with progress("simulating") as report:
+    with progress("simulating and learning") as report:
         found = find(
             known,
             given,

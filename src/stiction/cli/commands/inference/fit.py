@@ -101,7 +101,7 @@ def fit(
     known = Rig.from_toml(rig, changes(set), trust=trust)
     given = [record_in(path, measured, trust) for path in records]
     kept = cache_folder() if library is None else library
-    with progress("simulating") as report:
+    with progress("simulating and learning") as report:
         found = infer(
             given, known, simulations=simulations, library=kept, seed=seed, progress=report
         )
@@ -109,7 +109,7 @@ def fit(
     sections, groups = [*origins, *warnings(records, given), *found.tables()], {}
     plots: dict[str, Any] = {"posterior": found, "corner": found}
     if mechanism:
-        with progress("simulating other mechanisms") as report:
+        with progress("simulating and telling mechanisms apart") as report:
             odds = find(
                 given, known, simulations=simulations // SHARE, library=kept, seed=seed,
                 progress=report,

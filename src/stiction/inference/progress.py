@@ -1,4 +1,4 @@
-"""The progress of an audit, of which each simulation is a part."""
+"""The progress of long work, of which simulations and what is learned from them are parts."""
 
 from __future__ import annotations
 
