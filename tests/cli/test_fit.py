@@ -90,7 +90,7 @@ def test_a_design_says_what_to_measure_next(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(further, "CYCLES", 6)  # short, to see that it works
     rig = tmp_path / "rig.toml"
     rig.write_text(TEXT)
-    options = ["--angles", "3 deg", "--velocities", "1 m/s", "--loads", "1 kN", "-n", 128]
+    options = ["--angles", "3 deg", "--velocities", "1 m/s", "--loads", "1 kN", "-n", 200]
     files = ["--library", tmp_path, "-o", tmp_path / "design.png"]
     assert inside("design", rig, *options, *files) == 0
     said = " ".join(capsys.readouterr().out.split())

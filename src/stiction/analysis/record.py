@@ -19,9 +19,9 @@ from stiction.names import draw
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.noise import ORDER, white_noise
 from stiction.recording.origin import Origin
-from stiction.recording.request import SignedForce
+from stiction.recording.request import KNOWN, SignedForce
 from stiction.recording.sensor import Sensor
-from stiction.recording.stored import KNOWN, write_stored
+from stiction.recording.stored import write_stored
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.text.samples import as_numbers, samples_to_si
@@ -30,6 +30,7 @@ from stiction.text.units import (
     LENGTH,
     TIME,
     VELOCITY,
+    Angle,
     Force,
     Mass,
     PositiveSpeed,
@@ -137,6 +138,9 @@ class Record(Described):
         (n,), displacement of the drive, m, if it was measured.
     zero : float or str, optional
         N, reading of the load cell without load; it is subtracted from the force, then set to 0.
+    turned : float or str, optional
+        Angle, rad, by which the rig was turned on purpose for this record: a fit adds it to the
+        misalignment of the rig's description.
     sensors : dict, optional
         From a channel to its `stiction.Sensor`: what is known of noise, gain and zero.
     origin : Origin, optional
@@ -165,6 +169,7 @@ class Record(Described):
     stiffness: Stiffness | None = None
     drive_velocity: PositiveSpeed | None = None
     mass: Mass | None = None
+    turned: Angle | None = None
     position: Samples = None
     slip_speed: Samples = None
     zero: SignedForce | None = None

@@ -113,6 +113,9 @@ class RecordOptions:
     zero
         Reading of the load cell without load, which is subtracted from the force. Example: --zero
         "3 mN".
+    turned
+        Angle by which the rig was turned on purpose for this record; a fit adds it to the
+        misalignment of the rig's description. Example: --turned "2 deg".
     interval
         Time between two samples, for a file without a column of times. Example: --interval "1 ms".
     times
@@ -156,6 +159,7 @@ class RecordOptions:
     drive_velocity: str | None = None
     mass: str | None = None
     zero: str | None = None
+    turned: str | None = None
     interval: str | None = None
     times: Literal["clock", "intervals"] | None = None
     decimal: Literal["point", "comma"] | None = None

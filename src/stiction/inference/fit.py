@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +15,15 @@ from stiction.friction import has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.observation import Conditions, Observation, Source, observe_all
+from stiction.inference.observation import (
+    Conditions,
+    Observation,
+    Source,
+    observe_all,
+    sign_seen,
+)
 from stiction.inference.posterior import Fit
-from stiction.inference.priors import Normal, Prior
+from stiction.inference.priors import Prior, middle
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated.library import SIMULATIONS, Library, build, refuse_too_few
@@ -49,7 +56,8 @@ def fit(
     records : Record, Trajectory, str, Path or sequence of Record, Trajectory, str or Path
         Records of one rig, or their files, at the same or at other velocities and loads, with at
         least six whole cycles of stick and slip each. A run is taken as if it was measured.
-        ``drive_velocity`` and ``normal_load`` of a record replace those of the rig.
+        ``drive_velocity`` and ``normal_load`` of a record replace those of the rig, ``turned``
+        is added to its misalignment.
     rig : Rig, str or Path
         The description with its priors; see `stiction.inference.priors`.
     simulations : int, optional
@@ -107,27 +115,25 @@ def _is_fitted(law: type[Any]) -> bool:
     return "mu_0" in getattr(law, "_fields", ()) and not has_state(law)
 
 
-def plan_for(rig: Rig, conditions: Sequence[Conditions], across: bool | None = None) -> Plan:
+def plan_for(rig: Rig, conditions: Sequence[Conditions], signed: bool | None = None) -> Plan:
     """Return the plan of a library for records under these conditions.
 
-    Where the force across is not measured, which `across` tells if not the channels of the
-    conditions, a misalignment has the sign of its prior's middle.
+    Where records show no sign of the misalignment, which `signed` tells if not the conditions, it
+    has that of its prior's middle.
     """
-    if across is None:
-        across = any("force_across" in each.noise for each in conditions)
+    if signed is None:
+        signed = sign_seen(conditions)
     priors = {**rig.priors}
-    if not across and "phi" in priors:
+    if not signed and "phi" in priors:
         priors["phi"] = one_sided(priors["phi"])
     return plan(rig.slider, priors, conditions)
 
 
 def one_sided(prior: Prior) -> Prior:
     """Return the prior of an angle whose sign is not seen, on the side of its middle."""
-    if not isinstance(prior, Normal):
-        return prior
-    if prior.mean < 0.0:
-        return Normal(prior.mean, prior.deviation, prior.low, 0.0)
-    return Normal(prior.mean, prior.deviation, 0.0, prior.high)
+    if middle(prior) < 0.0:
+        return replace(prior, high=min(prior.high, 0.0))
+    return replace(prior, low=max(prior.low, 0.0))
 
 
 def compare(

@@ -34,7 +34,7 @@ MOST_READINGS = 8  # of which a simulated sample is the mean: more are as good a
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
-DIGITS = 4  # of the sampling interval: times of many records differ by rounding
+DIGITS = 4  # of sampling interval and quantisation: those of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
@@ -207,8 +207,8 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     found = Cycles(*(each[:number] for each in found))
     drifts = any(each.drift for each in noise.values())
     conditions = Conditions(
-        drive_velocity(record, slider), float(record.normal_load or slider.normal_load), 0.0,
-        step * block, number, cycle, thin_noise,
+        drive_velocity(record, slider), float(record.normal_load or slider.normal_load),
+        float(record.turned or 0.0), step * block, number, cycle, thin_noise,
         lead=near(step * block * int(found.before[0])) if drifts else 0.0,
         block=min(block, MOST_READINGS),
     )  # fmt: skip
@@ -228,6 +228,11 @@ def even_channels(record: Record, name: str) -> tuple[float, dict[str, Floats]]:
     measured = {each: getattr(record, each, None) for each in USED}
     channels = {each: grid.on(values) for each, values in measured.items() if values is not None}
     return float(f"{grid.step:.{DIGITS}g}"), channels
+
+
+def sign_seen(conditions: Iterable[Conditions]) -> bool:
+    """Return whether records show the sign of a misalignment: by the force across, or turned."""
+    return any("force_across" in each.noise or each.yaw for each in conditions)
 
 
 def drive_velocity(record: Record, slider: Slider) -> float:
@@ -292,8 +297,8 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
 
 def noise_of_means(noise: Noise, block: int) -> Noise:
     """Return the noise of means of blocks, rounded so that many records share it."""
-    level, step = round_up(noise.level / block**0.5), near(noise.quantisation)
-    return noise._replace(level=level, quantisation=step)
+    step = float(f"{noise.quantisation:.{DIGITS}g}")
+    return noise._replace(level=round_up(noise.level / block**0.5), quantisation=step)
 
 
 def block_means(values: Floats, block: int) -> Floats:

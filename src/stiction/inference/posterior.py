@@ -16,7 +16,7 @@ from stiction.inference.disagreement import Disagreement, disagreement
 from stiction.inference.learning.calibration import Learned
 from stiction.inference.learning.regression_abc import Sample, quantiles
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.observation import TREND, Observation, Trend, steadiness
+from stiction.inference.observation import TREND, Observation, Trend, sign_seen, steadiness
 from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import Plan
 from stiction.names import draw
@@ -263,7 +263,7 @@ class Fit:
     @property
     def sign_unseen(self) -> bool:
         """Whether no channel shows the sign of phi."""
-        return not any("force_across" in each.noise for each in self.plan.conditions)
+        return not sign_seen(self.plan.conditions)
 
     def _repr_html_(self) -> str:
         return as_html(self.tables())

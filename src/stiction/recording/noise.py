@@ -62,7 +62,7 @@ def resolved_noise(values: Floats, step: float) -> float:
     Cambridge 2008, chapter 4), if the noise is larger. Noise below a twentieth of a step is hidden.
     """
     found = white_noise(values, step)
-    if found > WITHIN * step:
+    if found >= WITHIN * step:  # or nothing is rounded
         return sqrt(found**2 - (ROUNDING_SPREAD * step) ** 2)
     within = min(step * noise_within_steps(values / step), found)
     return within if within > HIDDEN * step else 0.0

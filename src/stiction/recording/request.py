@@ -14,6 +14,7 @@ from stiction.recording.sensor import Sensor
 from stiction.text.toml import read_toml
 from stiction.text.units import (
     LENGTH,
+    Angle,
     Duration,
     Force,
     Mass,
@@ -55,11 +56,12 @@ class KnownApparatus(Described):
     drive_velocity: PositiveSpeed | None = None
     mass: Mass | None = None
     zero: SignedForce | None = None
+    turned: Angle | None = None
 
 
 KNOWN = {  # its fields and their units
     "normal_load": "N", "stiffness": "N/m", "stiffness_across": "N/m", "drive_velocity": "m/s",
-    "mass": "kg", "zero": "N",
+    "mass": "kg", "zero": "N", "turned": "rad",
 }  # fmt: skip
 
 

@@ -15,6 +15,7 @@ from stiction.formats.channels import CHANNELS
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.origin import Origin, Use
+from stiction.recording.request import KNOWN
 from stiction.recording.sensor import Sensor
 from stiction.result.attributes import SEAL, list_attributes
 from stiction.result.file import (
@@ -33,15 +34,6 @@ from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 from stiction.storage.version import own_version
-
-KNOWN = {  # of the apparatus, stored as attributes with their units
-    "normal_load": "N",
-    "stiffness": "N/m",
-    "stiffness_across": "N/m",
-    "drive_velocity": "m/s",
-    "mass": "kg",
-    "zero": "N",
-}
 
 
 def write_stored(

@@ -23,7 +23,7 @@ from stiction.inference.observation import (
     observe_all,
     trend,
 )
-from stiction.inference.priors import Normal
+from stiction.inference.priors import Normal, Uniform
 from stiction.inference.simulated.jitter import Jitter, move, stretch
 from stiction.inference.simulated.library import build
 from stiction.inference.simulated.synthetic import draw, synthesise
@@ -198,6 +198,22 @@ def test_simulated_records_pass_the_filters_that_show_between_their_samples(rig,
     assert np.ptp(filtered["force"] - plain["force"]) > 0.05  # N: it smears the slips
 
 
+def test_a_rig_that_was_turned_on_purpose_is_simulated_so(rig, record, tmp_path):
+    """A design advises it; two records contradicted each other, as none said which was turned."""
+    turned = record.model_copy(update={"turned": np.radians(2.0)})
+    seen = [observe(each, rig.slider).conditions for each in (record, turned)]
+    assert [each.yaw for each in seen] == [0.0, np.radians(2.0)]
+    assert seen[1].slider_of(rig.slider).phi == rig.slider.phi + np.radians(2.0)
+    path = turned.save(tmp_path / "turned.nc")
+    assert st.read_record(path).turned == turned.turned
+    said = st.read_record(path, turned="-3 deg")
+    assert said.turned == np.radians(-3.0)
+    either = st.Rig(rig.slider, {"phi": Uniform(-0.1, 0.05)})
+    one, two = plan_for(either, seen[:1]), plan_for(either, seen)
+    assert one.priors["phi"] == Uniform(-0.1, 0.0)  # a sign that is not seen: that of the middle
+    assert two.priors["phi"] == Uniform(-0.1, 0.05)
+
+
 @pytest.mark.parametrize("block", [1, 4])
 def test_a_simulated_sample_is_the_mean_of_as_many_readings_as_that_of_the_record(
     rig, record, block
@@ -228,7 +244,7 @@ def test_rounding_that_noise_does_not_hide_is_simulated(rig, record, stated):
             "sensors": {"force": sensor} if stated else {},
         }
         found = observe(record.model_copy(update=its), rig.slider).conditions.noise["force"]
-        assert found.quantisation == (0.0 if hidden else near(0.03))
+        assert found.quantisation == (0.0 if hidden else 0.03)
         of_rounding = 0.03 / 12**0.5 if hidden else 0.0
         assert found.level == pytest.approx(np.hypot(0.005 + noise, of_rounding), abs=0.006)
         assert found.error >= found.level

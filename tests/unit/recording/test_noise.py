@@ -41,6 +41,7 @@ def test_noise_that_is_less_than_the_steps_is_not_invented():
     values = 2e-3 * np.rint(sawtooth() / 2e-3)
     level = noise_level(values)
     assert level.noise == 0.0
+    assert resolved_noise(np.arange(200.0), 0.0) == 0.0
     assert level.quantisation == pytest.approx(2e-3, rel=1e-12)
 
 

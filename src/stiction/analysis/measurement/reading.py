@@ -44,6 +44,7 @@ class ReadArguments(TypedDict, total=False):
     drive_velocity: Quantity | None
     mass: Quantity | None
     zero: Quantity | None
+    turned: Quantity | None
 
 
 def read_record(
@@ -66,7 +67,7 @@ def read_record(
         The column of a channel by name or number, its unit, or both: ``"Fx"``, 3, ``"mN"``,
         ``"Fx=mN"``, ``"3=mN"``. A number multiplies the unit: ``"-1 N"`` turns the sign,
         ``"CH1=2.5 N/V"`` scales volts.
-    normal_load, stiffness, stiffness_across, drive_velocity, mass, zero : float or str, optional
+    normal_load, stiffness, stiffness_across, drive_velocity, mass, zero, turned : optional
         Of the apparatus; see `stiction.Record`.
     interval : float or str, optional
         Between two samples, for a file without times.
@@ -230,8 +231,11 @@ def _record(path: str | Path, found: Measurement) -> Record:
         found = part_between(path, found, begin, end)
     if stroke is not None:
         found = stroke_of(path, found, stroke)
+    known = {**found.known}
+    if isinstance(turned := known.get("turned"), float):
+        known["turned"] = f"{turned!r} rad"  # of an angle a record asks for the unit
     try:
-        return Record(**found.channels, **found.known, sensors=found.sensors, origin=found.origin)
+        return Record(**found.channels, **known, sensors=found.sensors, origin=found.origin)
     except DescriptionError as error:
         faults = [
             Fault(f"{path}: {x.path.removeprefix('Record.')}", x.message) for x in error.faults

@@ -1,106 +1,23 @@
-"""Which further test to make: how far each narrows what is known, in sentences and tables.
-
-Simulated rigs are measured in each test. A regression over all others says where the parameters of
-a left-out one lie; how far off it is, on average, is what the test leaves open. The mean square is
-the expected variance of the posterior, if the regression is as good as its mean (P. Fearnhead & D.
-Prangle, J. R. Stat. Soc. B 74, 419 (2012)).
-"""
+"""Which further test to make: how far each narrows what is known, in sentences and tables."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
-from scipy.special import ndtr
 
-from stiction.analysis.signals.correlated_noise import BOUNDS_95
-from stiction.arrays import Floats, xr
-from stiction.inference.learning.summary import learn
+from stiction.arrays import xr
+from stiction.inference.next_test.expected import FEWEST_RIGS, NUMBERS, Expected
 from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
-from stiction.inference.simulated.library import have_cycles
 from stiction.inference.simulated.plan import Plan
 from stiction.names import draw
 from stiction.text.paths import last_part
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
-
-RESAMPLED = 1000  # times, for the interval of a ratio
-
-
-class Expected(NamedTuple):
-    """What a test leaves open of each parameter, (p,) each.
-
-    Parameters
-    ----------
-    test : str
-        Its name.
-    width : ndarray
-        Of the posterior over the prior, as normal scores: 1 if nothing is learned.
-    error : ndarray
-        Root mean square of what the estimate is off by, in SI.
-    ratio, low, high : ndarray
-        The width over that of the present test, with its 95 % interval.
-    usable : float
-        Share of the simulated rigs that show enough cycles in it.
-    """
-
-    test: str
-    width: Floats
-    error: Floats
-    ratio: Floats
-    low: Floats
-    high: Floats
-    usable: float
-
-
-def left_out_errors(records: Sequence[Floats], truth: Floats) -> Floats:
-    """Return the leave-one-out errors of the parameters (n, p), as normal scores.
-
-    A regression of each record's features first says what it tells alone; where there are several,
-    another one joins these. So few simulations do for many features.
-
-    Parameters
-    ----------
-    records : sequence of ndarray
-        (n, f), the features of each record; NaN for rigs that show too few cycles in it, of which
-        the result is NaN.
-    truth : ndarray
-        (n, p), normal scores.
-    """
-    complete = have_cycles(np.hstack(records))
-    found = np.full_like(truth, np.nan)
-    if complete.sum() > 2:
-        alone = [learn(each[complete], truth[complete]).middle.library for each in records]
-        joint = alone[0]
-        if len(alone) > 1:
-            joint = learn(np.hstack(alone), truth[complete]).middle.library
-        found[complete] = truth[complete] - joint
-    return found
-
-
-def expectation(trial: Plan, test: str, truth: Floats, after: Floats, before: Floats) -> Expected:
-    """Return what a test leaves open, from leave-one-out errors (n, p) with and without it.
-
-    For a rig that shows too few cycles in a test, the present one is all that is known.
-    """
-    usable = have_cycles(after)
-    missed = np.where(usable[:, None], after, before)
-    squares, reference = missed**2, before**2
-    count = len(before)
-    drawn = np.random.default_rng(0).multinomial(count, np.full(count, 1.0 / count), RESAMPLED)
-    ratios = np.sqrt((drawn @ squares) / (drawn @ reference))
-    low, high = np.quantile(ratios, BOUNDS_95, axis=0)
-    width = np.sqrt(squares.mean(axis=0))
-    ratio = width / np.sqrt(reference.mean(axis=0))
-    errors = [
-        np.sqrt(np.mean((prior.quantile(ndtr(a - b)) - prior.quantile(ndtr(a))) ** 2))
-        for prior, a, b in zip(trial.priors.values(), truth.T, missed.T, strict=True)
-    ]
-    return Expected(test, width, np.array(errors), ratio, low, high, float(usable.mean()))
 
 
 @dataclass(frozen=True, repr=False)
@@ -121,6 +38,8 @@ class Advice:
         What neither the description nor the user said, as sentences.
     simulations : int
         Number of simulated rigs with cycles in the present test.
+    rare : tuple of str
+        Tests in which hardly any of these rigs has cycles.
     """
 
     plan: Plan
@@ -129,6 +48,7 @@ class Advice:
     skipped: tuple[str, ...]
     assumed: tuple[str, ...]
     simulations: int
+    rare: tuple[str, ...] = ()
 
     @property
     def index(self) -> int:
@@ -147,16 +67,23 @@ class Advice:
 
     @property
     def best(self) -> Expected | None:
-        """The test that tells most of those that clearly tell more than the present one."""
-        return next((test for test in self.ranked if test.high[self.index] < 1.0), None)
+        """The test to make, of those that clearly tell more than the present one.
+
+        It is the one that tells most, or a simpler one that may tell as much.
+        """
+        i = self.index
+        clear = [test for test in self.ranked if test.high[i] < 1.0]
+        if not clear:
+            return None
+        as_good = [test for test in clear if test.ratio[i] <= clear[0].high[i]]
+        return min(as_good, key=lambda test: (test.added, test.ratio[i]))
 
     @property
     def data(self) -> xr.Dataset:
         """Widths, errors and ratios as a dataset over ``test`` and ``parameter``."""
         dims = ("test", "parameter")
         columns: dict[str, Any] = {
-            name: (dims, np.array([getattr(test, name) for test in self.tests]))
-            for name in ("width", "error", "ratio", "low", "high")
+            name: (dims, np.array([getattr(test, name) for test in self.tests])) for name in NUMBERS
         }
         columns["usable"] = ("test", np.array([test.usable for test in self.tests]))
         names = {"test": [test.test for test in self.tests], "parameter": [*self.plan.priors]}
@@ -165,13 +92,13 @@ class Advice:
     def __repr__(self) -> str:
         """Return a one-line summary."""
         best = self.best or self.ranked[0]
-        return f"Advice: best for {self.of}: {best.test}, {best.ratio[self.index]:.2f} of the width"
+        return f"Advice: best for {self.of}: {best.test}, {best.ratio[self.index]:.2f} of the error"
 
     def tables(self) -> list[Section]:
         """Return what is found as sentences and tables."""
         its = "a fraction" if (unit := unit_of(self.plan, self.of)) == "" else unit
         rows = [row(test, self.index, its) for test in (self.present, *self.ranked)]
-        headings = ("test", f"error of {self.of}", "over present", "95 %", "usable")
+        headings = ("test", f"typical error of {self.of}", "over present", "95 %", "usable")
         found = [Section("What to measure next", self.sentences(), Table(headings, rows))]
         names = [*self.plan.priors]
         widths = [
@@ -198,14 +125,13 @@ class Advice:
             after = in_words(float(best.error[i]), unit, 2)
             found.append(
                 f"Most is learned of {self.of} from this: {best.test}. Its typical error falls "
-                f"from {before} to {after}; the posterior is {best.ratio[i]:.2f} times as wide as "
-                f"from the present test (95 %: {best.low[i]:.2f} to {best.high[i]:.2f})."
+                f"from {before} to {after}, to {best.ratio[i]:.2f} of that of the present test "
+                f"(95 %: {best.low[i]:.2f} to {best.high[i]:.2f})."
             )
             if best is not first:
                 found.append(
-                    f"Perhaps more from this, but that is not sure: {first.test}, "
-                    f"{first.ratio[i]:.2f} times as wide (95 %: {first.low[i]:.2f} to "
-                    f"{first.high[i]:.2f})."
+                    f"Perhaps more from this, but that is not sure: {first.test}, to "
+                    f"{first.ratio[i]:.2f} of it (95 %: {first.low[i]:.2f} to {first.high[i]:.2f})."
                 )
         else:
             found.append(
@@ -223,6 +149,11 @@ class Advice:
             found.append(
                 "Left out, as the rig does not stick and slip there in the middle of its priors: "
                 f"{', '.join(self.skipped)}."
+            )
+        if self.rare:
+            found.append(
+                f"Left out, as fewer than {FEWEST_RIGS} of the rigs have cycles there: "
+                f"{', '.join(self.rare)}."
             )
         found.append(
             "A hold tells nothing: this law has no memory of how long the contact was at rest."

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +12,16 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.inference.columns import features_from
 from stiction.inference.fit import check, plan_for
-from stiction.inference.next_test.advice import Advice, Expected, expectation, left_out_errors
+from stiction.inference.next_test.advice import Advice
+from stiction.inference.next_test.expected import (
+    FEWEST_RIGS,
+    Expected,
+    estimates,
+    expectation,
+    left_out_errors,
+    read,
+    write,
+)
 from stiction.inference.next_test.further import (
     AGAIN,
     ANGLES,
@@ -31,12 +41,10 @@ from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated.library import have_cycles, refuse_too_few, simulate_all
 from stiction.inference.simulated.plan import Plan
 from stiction.system.slider import Slider
-from stiction.text.paths import canonical
+from stiction.text.paths import canonical, last_part
 from stiction.text.quantity_text import percent
 from stiction.text.units import Quantity, in_words
 from stiction.text.validation import read_arguments
-
-FEWEST_RIGS = 100  # rigs with cycles in the present test, below which nothing is learned
 
 
 def design(
@@ -106,7 +114,10 @@ def design(
     known = rig_of(rig)
     check(known)
     slider = known.slider
-    name, wanted = read(
+    if record is not None and several(channels) != ("force",):
+        message = "are those of the record; leave them out, or the record"
+        raise DescriptionError.of("channels", message)
+    name, wanted = check_arguments(
         known, of, channels=several(channels), angles=several(angles),
         velocities=None if velocities is None else several(velocities),
         loads=None if loads is None else several(loads),
@@ -123,17 +134,25 @@ def design(
         present = must_slip(with_cycle(present, slider))
     tests, skipped = split(further_tests(present, measured, wanted), slider)
     records = [test.record for test in tests if test.record is not None]
-    trial = plan_for(known, [present, *records], "force_across" in measured)
+    signed = "force_across" in measured or present.yaw != 0.0
+    trial = plan_for(known, [present, *records], signed)
     folder = None if library is None else Path(library) / f"{trial.key}-{seed}"
     whole = progress or silent
-    simulating, learning = part(whole, 0, 10, of=7), part(whole, 7, 10, of=3)
+    simulating, learning = part(whole, 0, 10, of=6), part(whole, 6, 10, of=4)
     scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=simulating)
-    usual = Further("the present test", measured)
-    found = tuple(expectations(trial, usual, tests, scores, features, learning))
+    path = None if folder is None else folder / f"expected-{simulations}-{'-'.join(measured)}.npz"
+    every = [Further("the present test", measured), *tests]
+    found = read(path, [test.name for test in every])
+    if found is None:
+        found = [*expectations(trial, every, scores, features, learning)]
+        if path is not None:
+            write(path, found)
     assumed = assumptions(() if record is None else measured, present, wanted)
     columns = features.shape[1] // len(trial.conditions)
     usable = int(have_cycles(features[:, :columns]).sum())
-    return Advice(trial, name, found, (*skipped,), (*assumed,), usable)
+    rare = tuple(each.test for each in found if each.usable * usable < FEWEST_RIGS)
+    common = tuple(each for each in found if each.test not in rare)
+    return Advice(trial, name, common, (*skipped,), (*assumed,), usable, rare)
 
 
 def several(given: Any) -> tuple[Any, ...]:
@@ -145,17 +164,21 @@ def several(given: Any) -> tuple[Any, ...]:
     return tuple(given) if is_list(given) else (given,)
 
 
-def read(rig: Rig, of: str, **given: Any) -> tuple[str, Wanted]:
+def check_arguments(rig: Rig, of: str, **given: Any) -> tuple[str, Wanted]:
     """Return the path of the parameter of interest and the other arguments, or every fault."""
-    name, faults = canonical(of), []
-    name = name if name in rig.priors else name.removeprefix("slider.")
+    name, faults = canonical(of).removeprefix("slider."), []
+    name = next((path for path in rig.priors if name in (path, last_part(path))), name)
     if name not in rig.priors:
-        message = f"is not uncertain in this description; its priors are of {', '.join(rig.priors)}"
-        faults.append(Fault(of, message))
+        known = ", ".join(rig.priors)
+        faults.append(Fault(of, f"is not uncertain in this description; name one of {known}"))
     try:
         wanted = read_arguments(Wanted, **given)
     except DescriptionError as error:
         raise DescriptionError([*faults, *error.faults]) from None
+    for angle in wanted.angles:
+        if abs(rig.slider.phi + angle) >= 0.5 * pi:
+            message = f"{in_words(angle, 'rad')} turns the rig to 90 deg or more"
+            faults.append(Fault("angles", f"{message}; write a smaller one"))
     if faults:
         raise DescriptionError(faults)
     return name, wanted
@@ -186,13 +209,12 @@ def split(tests: Iterator[Further], slider: Slider) -> tuple[list[Further], list
 
 def expectations(
     trial: Plan,
-    present: Further,
     tests: Sequence[Further],
     scores: Floats,
     features: Floats,
     progress: Progress = silent,
 ) -> Iterator[Expected]:
-    """Yield what the present test leaves open, and each further one.
+    """Yield what each test leaves open, the present one first.
 
     Raises
     ------
@@ -205,18 +227,24 @@ def expectations(
         columns = features_from(channels, first, trial.slider)
         return features[:, number * width : (number + 1) * width][:, columns]
 
-    complete = have_cycles(seen(0, present.channels))
+    present = tests[0].channels
+    complete = have_cycles(seen(0, present))
     refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST_RIGS)
     truth = scores[complete]
-    before = left_out_errors([seen(0, present.channels)[complete]], truth)
-    yield expectation(trial, present.name, truth, before, before)
+    known: dict[tuple[str, ...], Floats] = {}  # what the first record says, by its channels
     further = iter(range(1, 1 + len(others)))
-    for done, test in enumerate(tests, 1):
-        progress(done / (1 + len(tests)))
-        records = [seen(0, test.channels)[complete]]
+    for done, test in enumerate(tests):
+        progress(done / len(tests))
+        if test.channels not in known:
+            known[test.channels] = estimates(seen(0, test.channels)[complete], truth)
+        records = [known[test.channels]]
         if test.record is not None:
-            records.append(seen(next(further), test.channels)[complete])
-        yield expectation(trial, test.name, truth, left_out_errors(records, truth), before)
+            records.append(estimates(seen(next(further), test.channels)[complete], truth))
+        less = [its for its in known if {*present} < {*its} < {*test.channels}]
+        parts = [truth - known[each] for each in (present, *less)]
+        added = len(test.channels) - len(present) + len(records) - 1
+        errors = [*parts, left_out_errors(records, truth)]
+        yield expectation(trial, test.name, truth, errors, added=added)
 
 
 def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) -> list[str]:
@@ -230,6 +258,9 @@ def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) ->
         found.append(
             f"Assumed: a noise of {level} in each force, {percent(NOISE)} of that of friction."
         )
+    if wanted.noise is None and recorded and "force_across" not in recorded:
+        level = in_words(noise["force_across"].error, "N", 2)
+        found.append(f"Assumed: a noise of {level} in the force across, as in the other.")
     if wanted.position_noise is None and "position" not in recorded:
         level = in_words(noise["position"].error, "m", 2)
         found.append(f"Assumed: a noise of {level} in the displacement.")

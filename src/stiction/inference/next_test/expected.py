@@ -1,0 +1,159 @@
+"""What a further test leaves open: how far off estimates are of rigs that were not learned from.
+
+Simulated rigs are measured in each test. A regression over all others says where the parameters of
+a left-out one lie. The error below which 68 % of the rigs stay is a standard deviation of the
+posterior, if errors are normal. The root mean square is not typical: few rigs whose misalignment is
+nearly zero make most of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import ceil
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import ndtr
+
+from stiction.analysis.signals.correlated_noise import BOUNDS_95
+from stiction.arrays import Floats, Indices
+from stiction.inference.learning.summary import learn
+from stiction.inference.simulated.library import have_cycles
+from stiction.inference.simulated.plan import Plan
+from stiction.storage.arrays import read_arrays, write_arrays
+
+FEWEST_RIGS = 100  # rigs with cycles in a test, below which nothing is learned
+WITHIN = 0.6827  # share of the rigs whose error is at most the typical one
+RESAMPLED = 1000  # times, for the interval of a ratio
+NUMBERS = ("width", "error", "ratio", "low", "high")
+
+
+class Expected(NamedTuple):
+    """What a test leaves open of each parameter, (p,) each.
+
+    Parameters
+    ----------
+    test : str
+        Its name.
+    width : ndarray
+        Typical error as normal scores of the prior: 1 if nothing is learned.
+    error : ndarray
+        Typical error, in SI: that of 68 % of the rigs is at most so large.
+    ratio, low, high : ndarray
+        The typical error over that of the present test, with its 95 % interval.
+    usable : float
+        Share of the simulated rigs that show enough cycles in it.
+    added : int
+        How many channels and records it adds to the present test.
+    """
+
+    test: str
+    width: Floats
+    error: Floats
+    ratio: Floats
+    low: Floats
+    high: Floats
+    usable: float
+    added: int = 0
+
+
+def estimates(features: Floats, truth: Floats) -> Floats:
+    """Return estimates of parameters (n, p), each from all other rigs, as normal scores.
+
+    NaN for rigs without features (n, f), and for all where too few have some.
+    """
+    complete = have_cycles(features)
+    found = np.full_like(truth, np.nan)
+    if complete.sum() >= FEWEST_RIGS:
+        found[complete] = learn(features[complete], truth[complete]).middle.library
+    return found
+
+
+def left_out_errors(records: Sequence[Floats], truth: Floats) -> Floats:
+    """Return the errors (n, p) of what the estimates (n, p) from one or several records say.
+
+    A regression joins those of several. So few simulations do for many features.
+    """
+    joint = records[0] if len(records) == 1 else estimates(np.hstack(records), truth)
+    return truth - joint
+
+
+def expectation(
+    trial: Plan, test: str, truth: Floats, errors: Sequence[Floats], *, added: int = 0
+) -> Expected:
+    """Return what a test leaves open.
+
+    Parameters
+    ----------
+    trial : Plan
+        With the priors of the parameters.
+    test : str
+        Its name.
+    truth : ndarray
+        (n, p), normal scores of the parameters.
+    errors : sequence of ndarray
+        (n, p), left-out errors of the present test, of tests of which this one is more, and of
+        itself. A rig that shows too few cycles in it is known by the present one alone; and where a
+        regression learns less from more features, by what a part of the test tells.
+    added : int, optional
+        How many channels and records the test adds.
+    """
+    before, own = errors[0], errors[-1]
+    usable = have_cycles(own)
+    each = np.stack([*errors[:-1], np.where(usable[:, None], own, before)])
+    sizes = np.stack([np.abs(in_si(trial, truth, its)) for its in each])
+    best = np.argmin(typical(sizes, axis=1)[::-1], axis=0)  # of equal ones the test itself
+    chosen, columns = len(each) - 1 - best, np.arange(truth.shape[1])
+    size, reference = sizes[chosen, :, columns].T, sizes[0]
+    drawn = np.random.default_rng(0).integers(len(truth), size=(RESAMPLED, len(truth)))
+    ratios = resample(size, drawn) / resample(reference, drawn)
+    low, high = np.quantile(ratios, BOUNDS_95, axis=0)
+    error = typical(size)
+    return Expected(
+        test, typical(np.abs(each[chosen, :, columns].T)), error, error / typical(reference),
+        low, high, float(usable.mean()), added,
+    )  # fmt: skip
+
+
+def in_si(trial: Plan, truth: Floats, errors: Floats) -> Floats:
+    """Return errors (n, p) in SI, given those in normal scores."""
+    priors = trial.priors.values()
+    columns = [
+        prior.quantile(ndtr(a - b)) - prior.quantile(ndtr(a))
+        for prior, a, b in zip(priors, truth.T, errors.T, strict=True)
+    ]
+    return np.stack(columns, axis=1)
+
+
+def typical(sizes: Floats, axis: int = 0) -> Floats:
+    """Return the size that 68 % of some are at most."""
+    return np.asarray(np.quantile(sizes, WITHIN, axis=axis, method="inverted_cdf"))
+
+
+def resample(sizes: Floats, drawn: Indices) -> Floats:
+    """Return the typical sizes (m, p) of those of drawn rigs (m, n), of sizes (n, p).
+
+    >>> sizes = np.array([[1.0], [2.0], [3.0], [9.0]])
+    >>> resample(sizes, np.array([[0, 1, 2, 3], [3, 3, 3, 3]]))[:, 0], typical(sizes)
+    (array([3., 9.]), array([3.]))
+    """
+    last = ceil(WITHIN * drawn.shape[1]) - 1
+    columns = [np.partition(each[drawn], last, axis=1)[:, last] for each in sizes.T]
+    return np.stack(columns, axis=1)
+
+
+def write(path: Path, found: Sequence[Expected]) -> None:
+    """Write what tests leave open."""
+    columns = {name: np.array([getattr(each, name) for each in found]) for name in Expected._fields}
+    write_arrays(path, **columns)
+
+
+def read(path: Path | None, names: Sequence[str]) -> list[Expected] | None:
+    """Return what tests of these names leave open; None where that is not stored."""
+    arrays = read_arrays(path) or {}
+    if not arrays.keys() >= {*Expected._fields} or arrays["test"].tolist() != [*names]:
+        return None
+    columns = [[*arrays[name]] for name in NUMBERS]
+    usable, added = arrays["usable"].tolist(), arrays["added"].tolist()
+    return [*map(Expected, names, *columns, usable, added)]
