@@ -32,7 +32,8 @@ MOST_STEPS = 400_000  # of each test
 SCAN = 14  # misalignments at which the error is looked at, in a geometric series
 FINE = 24  # misalignments, evenly in the logarithm, about the first of these that is too large
 FARTHEST = 30.0  # degrees up to which the error is looked at; farther, the soft spring is another
-NEAREST = 0.02  # degrees: the first of the scan
+NEAREST = 0.02  # degrees: the first of the scan, unless the error is too large there
+NEARER = np.geomspace(0.002, NEAREST, 8, endpoint=False)  # degrees that are then looked at
 TITLE = "How well to align"
 ROWS = (  # label and unit of each reading
     ("apparent static friction, largest force", ""),
@@ -189,6 +190,9 @@ def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
     last = min(max(farthest, radians(0.5 * FARTHEST)), radians(FARTHEST))
     scan = np.geomspace(radians(NEAREST), last, SCAN)
     found = errors(scan)
+    if found[0] > ALLOWED:
+        nearer = np.radians(NEARER)
+        scan, found = np.append(nearer, scan), np.append(errors(nearer), found)
     known = int(np.argmax(np.append(np.isnan(found), True)))  # up to what cannot be simulated
     scan, found, least = scan[:known], found[:known], float(found[0])
     over = np.flatnonzero(found > ALLOWED)

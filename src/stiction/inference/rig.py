@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from functools import partial
+from math import radians
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,6 +20,9 @@ from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slide
 from stiction.text.paths import canonical
 from stiction.text.toml import folder_of, gather, read_toml
 from stiction.text.units import Kind, split_uncertain
+
+LARGEST_ANGLE = radians(89.9)  # at 90 deg the drive pulls across
+FAR = 7.5  # standard deviations from the mean, which are never drawn (`priors.EDGE`)
 
 
 class Rig(NamedTuple):
@@ -168,6 +172,8 @@ def within_range(slider: Slider, path: str, prior: Prior) -> Prior:
             change_parameter(slider, path, quantity(slider, path, end))
         return prior
     change_parameter(slider, path, quantity(slider, path, prior.mean))
+    if path == "phi" and abs(prior.mean) + FAR * prior.deviation > LARGEST_ANGLE:
+        return Normal(prior.mean, prior.deviation, -LARGEST_ANGLE, LARGEST_ANGLE)
     try:
         change_parameter(slider, path, quantity(slider, path, -max(abs(prior.mean), 1e-30)))
     except DescriptionError:

@@ -31,6 +31,12 @@ def test_a_share_is_relative_to_the_value_and_ends_at_zero():
     )
 
 
+def test_a_misalignment_that_is_hardly_known_stays_below_90_deg():
+    """An audit drew 101 deg of 60 +- 40 deg, and refused it as if the user had written it."""
+    values = rig(phi='"60 +- 40 deg"').priors["phi"].quantile(np.array([0.0, 0.5, 1.0]))
+    assert np.degrees(values) == pytest.approx([-89.9, 49.0, 89.9], abs=1.0)
+
+
 def test_a_uniform_prior_may_be_of_the_logarithm():
     found = rig(mu_0='{low = 0.16, high = 0.25, scale = "log"}')
     assert found.priors["friction.mu_0"] == Uniform(0.16, 0.25, "log")

@@ -64,7 +64,14 @@ def draw_limit(ax: Axes, budget: Budget) -> None:
     """Draw the allowed error of the static coefficient, and where it is reached."""
     static, limit = budget.aligned.static, budget.alignment
     band = static * (1.0 - limit.allowed), static * (1.0 + limit.allowed)
-    ax.axhspan(*band, color=PALE, zorder=0, label=f"within {percent(limit.allowed)}")
+    ax.axhspan(
+        *band,
+        facecolor=PALE,
+        edgecolor=GREY,
+        linewidth=0.5,
+        zorder=0,
+        label=f"within {percent(limit.allowed)}",
+    )
     reached = np.degrees(limit.angle)
     if np.isfinite(reached):
         side = np.sign(np.median(budget.angles)) or 1.0
@@ -72,4 +79,4 @@ def draw_limit(ax: Axes, budget: Budget) -> None:
             side * reached, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)),
             label=f"error of {percent(limit.allowed)} at {reached:.3g}°",
         )  # fmt: skip
-    ax.legend(loc="best")
+    ax.legend(loc="best", frameon=True, framealpha=1.0, edgecolor="none")
