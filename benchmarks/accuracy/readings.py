@@ -71,14 +71,18 @@ def main() -> None:
     rig, usual = rig_of(options.rig)
     friction = rig.slider.F_0
     digit, noise = options.digit * friction, options.noise * (options.digit or 0.01) * friction
-    fine = usual._replace(noise={"force": Noise(noise)}, step=usual.step / options.block)
+    filters = usual.noise["force"].filters
+    its = {"force": Noise(noise, filters=filters)}
+    fine = usual._replace(noise=its, step=usual.step / options.block)
     of = plan(rig.slider, rig.priors, [fine])
     work = partial(read, of, digit, options.seed)
     made = [each for each in Cores().results(work, range(options.records)) if each is not None]
     first = made[0][1]
     time = fine.step * np.arange(len(first))
     velocity = abs(rig.slider.motion.rate(0.0)[0])
-    record = st.Record(time=time, force=first, drive_velocity=velocity)
+    filtered = {"filter": filters[0].cut, "filter_order": filters[0].order} if filters else {}
+    cell = {"force": st.Sensor(**filtered)}
+    record = st.Record(time=time, force=first, drive_velocity=velocity, sensors=cell)
     seen = observe(record, rig.slider).conditions
     conditions = usual._replace(noise=seen.noise, block=min(options.block, MOST_READINGS))
     print(f"{options.rig}: {seen.noise}")
