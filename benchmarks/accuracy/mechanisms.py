@@ -27,7 +27,7 @@ from stiction.inference.features import USED
 from stiction.inference.mechanism import likeness
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.likeness import Reference
-from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE
+from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE, surely
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
@@ -135,7 +135,7 @@ def call(classifier: Classifier, references: Sequence[Reference], records: Part)
         references[label].likeness(*each)
         for label, each in zip(likeliest, zip(scores, records.bends, strict=True), strict=True)
     ]
-    sure = probabilities.max(axis=1) >= CLAIM
+    sure = surely(probabilities, classifier.probabilities_by_halves(records.features))
     usual = [its.farther >= UNLIKE and its.larger >= BENT for its in found]
     return Called(likeliest, sure, sure & np.array(usual))
 
@@ -147,7 +147,7 @@ def found_when_known(known: Part, other: Part) -> float:
     """
     labels = np.repeat([0, 1], [len(known.labels), len(other.labels)])
     both = np.concatenate([known.features, other.features])
-    share = learn_or_read(Simulations(("library", "other"), both, labels)).left_out[:, 1]
+    share = learn_or_read(Simulations(("library", "other"), both, labels)).whole.left_out[:, 1]
     return float((share[labels == 1] > np.quantile(share[labels == 0], 1.0 - RARE)).mean())
 
 
@@ -165,7 +165,7 @@ def report(
     """Print what becomes of records that no part has seen, with some channels."""
     start = perf_counter()
     classifier = learn_or_read(known.simulations)
-    references = likeness.learn_or_read(known.simulations, classifier.scores, known.bends)
+    references = likeness.learn_or_read(known.simulations, classifier.whole.scores, known.bends)
     took = perf_counter() - start
     its, labels = call(classifier, references, unseen), unseen.labels
     right = its.likeliest == labels

@@ -31,6 +31,7 @@ from stiction.inference.mechanism.classifier import (
     learn_or_read,
     simulate,
 )
+from stiction.inference.mechanism.comparison import confusion
 from stiction.inference.mechanism.likeness import CURVES, Likeness
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
@@ -255,8 +256,8 @@ def test_probabilities_are_those_of_even_odds_before(learned):
 
 
 def test_left_out_probabilities_are_calibrated(learned, clouds):
-    sure = learned.left_out.max(axis=1)
-    right = learned.left_out.argmax(axis=1) == clouds.labels
+    sure = learned.whole.left_out.max(axis=1)
+    right = learned.whole.left_out.argmax(axis=1) == clouds.labels
     weights = 1.0 / np.bincount(clouds.labels)[clouds.labels]
     for low, high in ((0.5, 0.7), (0.7, 0.9), (0.9, 1.0)):
         some = (sure >= low) & (sure < high)
@@ -264,9 +265,29 @@ def test_left_out_probabilities_are_calibrated(learned, clouds):
         assert share == pytest.approx(said, abs=3.0 * (0.25 / some.sum()) ** 0.5)
 
 
+def test_each_half_of_the_simulations_learns_by_itself(learned, clouds):
+    """Of the other half it has seen nothing; of its own records each is left out."""
+    even = Simulations(clouds.names, clouds.features[::2], clouds.labels[::2])
+    alone = learn_or_read(even)
+    new = np.random.default_rng(1).standard_normal((5, 3))
+    first, second = learned.probabilities_by_halves(new)
+    # standardised by other middles and spreads
+    assert first == pytest.approx(alone.probabilities(new), abs=0.05)
+    assert np.abs(first - second).max() > 1e-3
+    by_halves = learned.left_out_by_halves
+    assert by_halves.shape == (2, 800, 2)
+    assert np.array_equal(by_halves[1, 1::2], learned.halves[1].left_out)
+    seen = learned.probabilities_by_halves(clouds.features)
+    assert by_halves[0, 1::2] == pytest.approx(seen[0, 1::2], rel=1e-9)
+    assert np.abs(by_halves[0, ::2] - seen[0, ::2]).max() > 1e-3
+    called = confusion(learned.whole.left_out, by_halves, clouds.labels)
+    alone = confusion(learned.whole.left_out, learned.whole.left_out[None], clouds.labels)
+    assert (called[:, -1] >= alone[:, -1]).all()
+
+
 def test_a_metric_of_its_own_ignores_what_says_nothing(learned):
     """The first feature tells the mechanisms apart, the other two are noise."""
-    metric = np.abs(learned.membership.metric[0])
+    metric = np.abs(learned.whole.membership.metric[0])
     assert np.diag(metric)[1:].max() < 0.3 * metric[0, 0]
 
 
@@ -278,8 +299,10 @@ def test_what_was_learned_is_stored_and_found_again(clouds, tmp_path, monkeypatc
         patch.setattr(classifier, "logistic", None)
         second = learn_or_read(clouds, path)  # read
     assert (first.probabilities(new) == second.probabilities(new)).all()
+    halves = (each.probabilities_by_halves(new) for each in (first, second))
+    assert np.array_equal(*halves)
     fewer = clouds._replace(features=clouds.features[1:], labels=clouds.labels[1:])
-    assert len(learn_or_read(fewer, path).left_out) == 799  # not those of other simulations
+    assert len(learn_or_read(fewer, path).whole.left_out) == 799  # not those of other simulations
     path.write_bytes(b"damaged")
     assert (learn_or_read(clouds, path).probabilities(new) == first.probabilities(new)).all()
 
@@ -428,7 +451,8 @@ def odds_with(**changes):
     """Odds that allow a claim, with changes."""
     sure = Odds(
         names=(ROTATION, STATIC, RATE_AND_STATE), probabilities=np.array([0.95, 0.03, 0.02]),
-        confusion=np.eye(3, 4), likeness=(USUAL, USUAL, USUAL), bend=np.zeros(len(EDGES) - 1),
+        by_halves=np.array([[0.9, 0.05, 0.05], [0.7, 0.2, 0.1]]), confusion=np.eye(3, 4),
+        likeness=(USUAL, USUAL, USUAL), bend=np.zeros(len(EDGES) - 1),
         steady=0.5, counts=(100, 100, 100), absent=(), channels=("force",),
     )  # fmt: skip
     return replace(sure, **changes)
@@ -439,6 +463,7 @@ def test_a_claim_needs_every_part_to_agree():
     far, bent = USUAL._replace(farther=0.01), USUAL._replace(larger=0.005)
     for change, reason in (
         ({"probabilities": np.array([0.85, 0.1, 0.05])}, "0.85; a claim needs 0.9"),
+        ({"by_halves": np.array([[0.999, 1e-3, 0.0], [0.3, 0.6, 0.1]])}, "of > 0.99 and 0.30"),
         ({"likeness": (far, USUAL, USUAL)}, "are less like the others"),
         ({"likeness": (bent, USUAL, USUAL)}, "loading curve is not like"),
         ({"steady": 1e-3}, "Friction drifts"),
@@ -487,7 +512,8 @@ def test_an_ellipse_is_said_to_look_like_misalignment_without_the_force_across()
 
 
 def test_a_claim_of_contacts_with_memory_names_the_law_that_may_pass_for_it():
-    aged = odds_with(probabilities=np.array([0.02, 0.03, 0.95]))
+    sure = np.array([0.02, 0.03, 0.95])
+    aged = odds_with(probabilities=sure, by_halves=np.array([sure, sure]))
     assert f"may pass for {RATE_AND_STATE}" in " ".join(aged.sentences())
     assert "may pass" not in " ".join(odds_with().sentences())
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +24,7 @@ from stiction.inference.learning.summary import (
     Standard,
     as_arrays,
     estimate,
+    from_arrays,
     read_regressions,
     single_threaded_algebra,
 )
@@ -34,6 +35,7 @@ from stiction.inference.simulated.plan import Plan
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out
+PARTS = "whole", "even", "odd"  # of the simulations, as they are stored
 WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are distinguished for sure
 
 
@@ -113,13 +115,11 @@ def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:
     return united[:, np.ptp(united, axis=0) > 0.0]
 
 
-class Classifier(NamedTuple):
-    """What tells mechanisms apart.
+class Discriminant(NamedTuple):
+    """What tells mechanisms apart, as learned from some simulations.
 
     Parameters
     ----------
-    standard : Standard
-        How features are made comparable.
     scores : ndarray
         (n, f), standardised features of the simulations.
     membership : Regression
@@ -128,15 +128,20 @@ class Classifier(NamedTuple):
         (k + 1, k), from its predictions to log odds, the constant last.
     """
 
-    standard: Standard
     scores: Floats
     membership: Regression
     slopes: Floats
 
-    def probabilities(self, features: Floats) -> Floats:
-        """Return the probability of each mechanism (m, k) for records with features (m, f)."""
-        new = self.standard.scores(np.atleast_2d(features))
-        return self._calibrate(self.membership.predict(new, self.scores))
+    @classmethod
+    def of(cls, scores: Floats, labels: NDArray[np.int64], progress: Progress = silent) -> Self:
+        """Learn from simulations with these scores (n, f) and places of their mechanism (n,)."""
+        membership = estimate(scores, np.eye(labels.max() + 1)[labels], progress)
+        with single_threaded_algebra():
+            return cls(scores, membership, logistic(membership.library, labels))
+
+    def probabilities(self, scores: Floats) -> Floats:
+        """Return the probability of each mechanism (m, k) for records with scores (m, f)."""
+        return self._calibrate(self.membership.predict(scores, self.scores))
 
     @property
     def left_out(self) -> Floats:
@@ -146,6 +151,47 @@ class Classifier(NamedTuple):
     def _calibrate(self, predicted: Floats) -> Floats:
         found: Floats = softmax(with_constant(predicted) @ self.slopes, axis=1)
         return found
+
+
+class Classifier(NamedTuple):
+    """What tells mechanisms apart, and how far that depends on the simulations drawn.
+
+    Parameters
+    ----------
+    standard : Standard
+        How features are made comparable.
+    whole : Discriminant
+        Learned from all simulations.
+    halves : tuple of Discriminant
+        Learned from every second one, and from the others.
+    """
+
+    standard: Standard
+    whole: Discriminant
+    halves: tuple[Discriminant, ...]
+
+    def probabilities(self, features: Floats) -> Floats:
+        """Return the probability of each mechanism (m, k) for records with features (m, f)."""
+        return self.whole.probabilities(self.standard.scores(np.atleast_2d(features)))
+
+    def probabilities_by_halves(self, features: Floats) -> Floats:
+        """Return the same by each half of the simulations, (2, m, k)."""
+        scores = self.standard.scores(np.atleast_2d(features))
+        return np.stack([half.probabilities(scores) for half in self.halves])
+
+    @property
+    def left_out_by_halves(self) -> Floats:
+        """Probabilities (2, n, k) for each simulation by each half, from all others."""
+        own, scores = halve(len(self.whole.scores)), self.whole.scores
+        found = np.stack([half.probabilities(scores) for half in self.halves])
+        for its, half, rows in zip(found, self.halves, own, strict=True):
+            its[rows] = half.left_out
+        return found
+
+
+def halve(count: int) -> tuple[slice, slice]:
+    """Return which of some simulations belong to each half."""
+    return slice(0, count, 2), slice(1, count, 2)
 
 
 def learn_or_read(
@@ -158,22 +204,41 @@ def learn_or_read(
         return stored
     standard = Standard.of(features)
     scores = standard.scores(features)
-    membership = estimate(scores, np.eye(labels.max() + 1)[labels], progress)
-    with single_threaded_algebra():
-        slopes = logistic(membership.library, labels)
-    found = Classifier(standard, scores, membership, slopes)
+    whole = Discriminant.of(scores, labels, part(progress, 0, 10, of=8))
+    reports = part(progress, 8, 10), part(progress, 9, 10)
+    halves = tuple(
+        Discriminant.of(scores[rows], labels[rows], report)
+        for rows, report in zip(halve(len(scores)), reports, strict=True)
+    )
+    found = Classifier(standard, whole, halves)
     if path is not None:
-        learned = as_arrays(standard=standard, membership=membership)
-        write_arrays(path, slopes=found.slopes, **learned)
+        write(path, found)
     return found
+
+
+def write(path: Path, found: Classifier) -> None:
+    """Write what was learned."""
+    arrays = as_arrays(standard=found.standard)
+    for name, each in zip(PARTS, (found.whole, *found.halves), strict=True):
+        arrays |= as_arrays(**{name: each.membership}) | {f"{name}_slopes": each.slopes}
+    write_arrays(path, **arrays)
 
 
 def read(path: Path | None, features: Floats) -> Classifier | None:
     """Return a stored classifier of simulations with these features (n, f); None without one."""
     arrays = read_arrays(path) or {}
     try:
-        standard, (membership,) = read_regressions(arrays, features, "membership")
-        return Classifier(standard, standard.scores(features), membership, arrays["slopes"])
+        standard, _ = read_regressions(arrays, features, PARTS[0])
+        scores = standard.scores(features)
+        rows = (slice(None), *halve(len(scores)))
+        whole, *halves = (
+            Discriminant(
+                scores[some], Regression(*from_arrays(name, Regression._fields, arrays)),
+                arrays[f"{name}_slopes"],
+            )
+            for name, some in zip(PARTS, rows, strict=True)
+        )  # fmt: skip
+        return Classifier(standard, whole, (*halves,))
     except KeyError:
         return None
 

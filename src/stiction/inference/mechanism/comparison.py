@@ -15,7 +15,7 @@ from stiction.inference.columns import bend_features
 from stiction.inference.fit import check
 from stiction.inference.mechanism import classifier, likeness
 from stiction.inference.mechanism.classifier import Simulations, simulate
-from stiction.inference.mechanism.odds import CLAIM, Odds
+from stiction.inference.mechanism.odds import Odds, surely
 from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
 from stiction.inference.progress import Progress, part, silent
@@ -114,13 +114,18 @@ def compare(
     learned = classifier.learn_or_read(simulated, beside(path, "classifier"), to_tell)
     record = learned.standard.scores(observed)
     references = likeness.learn_or_read(
-        simulated, learned.scores, simulated.features[:, bend], beside(path, "likeness"), to_compare
+        simulated,
+        learned.whole.scores,
+        simulated.features[:, bend],
+        beside(path, "likeness"),
+        to_compare,
     )
     labels = simulated.labels
     return Odds(
         names=simulated.names,
         probabilities=learned.probabilities(observed)[0],
-        confusion=confusion(learned.left_out, labels),
+        by_halves=learned.probabilities_by_halves(observed)[:, 0],
+        confusion=confusion(learned.whole.left_out, learned.left_out_by_halves, labels),
         likeness=tuple(each.likeness(record, observed[bend]) for each in references),
         bend=observed[bend],
         steady=steadiness(p for each in seen for p in each.trend),
@@ -135,15 +140,16 @@ def beside(path: Path | None, name: str) -> Path | None:
     return None if path is None else path.with_name(f"{path.name}-{name}.npz")
 
 
-def confusion(probabilities: Floats, labels: NDArray[np.int64]) -> Floats:
+def confusion(probabilities: Floats, by_halves: Floats, labels: NDArray[np.int64]) -> Floats:
     """Return how often records of each label (rows) are called each, last: none of them.
 
-    >>> confusion(np.array([[0.95, 0.05], [0.6, 0.4], [0.02, 0.98]]), np.array([0, 0, 1]))
+    >>> whole = np.array([[0.95, 0.05], [0.6, 0.4], [0.02, 0.98]])
+    >>> confusion(whole, whole[None], np.array([0, 0, 1]))
     array([[0.5, 0. , 0.5],
            [0. , 1. , 0. ]])
     """
     count = probabilities.shape[1]
-    claimed = probabilities.max(axis=1) >= CLAIM
+    claimed = surely(probabilities, by_halves)
     called = np.where(claimed, probabilities.argmax(axis=1), count)
     found = np.zeros((count, count + 1))
     np.add.at(found, (labels, called), 1.0)

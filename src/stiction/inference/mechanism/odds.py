@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.arrays import Floats, xr
 from stiction.inference.features import MIDDLES
@@ -19,6 +20,7 @@ from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
+HALF = 0.6  # that each half of the simulations must give it: a claim is not a matter of their draw
 # shares below which a record is unlike simulations by its features, and by its loading's bend, of
 # which the features tell too: a mechanism's own records are refused by both together in 5 % of
 # cases at most (O. J. Dunn, J. Am. Stat. Assoc. 56, 52 (1961))
@@ -43,6 +45,8 @@ class Odds:
         Of the k mechanisms.
     probabilities : ndarray
         (k,), given the records, all equally probable before.
+    by_halves : ndarray
+        (2, k), the same as learned from each half of the simulations.
     confusion : ndarray
         (k, k + 1), how often simulated records of each mechanism (rows) are called each, and, in
         the last column, undecided.
@@ -63,6 +67,7 @@ class Odds:
 
     names: tuple[str, ...]
     probabilities: Floats
+    by_halves: Floats = field(compare=False)
     confusion: Floats = field(compare=False)
     likeness: tuple[Likeness, ...] = field(compare=False)
     bend: Floats = field(compare=False)
@@ -108,6 +113,12 @@ class Odds:
                 f"The most probable one, {name}, has a probability of {probability:.2f}; a claim "
                 f"needs {CLAIM}."
             )
+        elif self.by_halves[:, self.likeliest].min() < HALF:
+            halves = " and ".join(map(near_one, self.by_halves[:, self.likeliest]))
+            found.append(
+                f"By each half of the simulations, {name} has a probability of {halves}; a claim "
+                f"needs {HALF} by both: simulate more."
+            )
         if its.farther < UNLIKE:
             found.append(
                 f"The record is not like those of {name}: {percent(its.farther)} of the simulated "
@@ -146,8 +157,9 @@ class Odds:
             Section(
                 "How often simulated records are called so",
                 [
-                    f"Called 1, 2, ... with a probability of {CLAIM} and above, otherwise "
-                    "undecided. Each record was left out of what calls it."
+                    f"Called 1, 2, ... with a probability of {CLAIM} and above, and {HALF} by each "
+                    "half of the simulations, otherwise undecided. Each record was left out of "
+                    "what calls it."
                 ],
                 Table(columns, shares),
             ),
@@ -211,6 +223,20 @@ class Odds:
     def plot(self, axes: Any = None) -> Any:
         """Draw odds, confusion and loading; see `stiction.plotting.plot_mechanism`."""
         return draw("plot_mechanism", self, axes)
+
+
+def surely(probabilities: Floats, by_halves: Floats) -> NDArray[np.bool_]:
+    """Return of which records (n,) the most probable mechanism is probable enough for a claim.
+
+    Given probabilities (n, k), and those by halves of the simulations (2, n, k).
+
+    >>> surely(np.array([[0.95, 0.05]] * 2), np.array([[[0.9, 0.1], [0.9, 0.1]],
+    ...                                                [[0.7, 0.3], [0.4, 0.6]]]))
+    array([ True, False])
+    """
+    best = probabilities.argmax(axis=1)[None, :, None]
+    least = np.take_along_axis(by_halves, best, axis=2).min(axis=(0, 2))
+    return np.asarray((probabilities.max(axis=1) >= CLAIM) & (least >= HALF))
 
 
 def near_one(probability: float) -> str:
