@@ -65,35 +65,12 @@ def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Float
     elongation : ndarray
         (n,), elongation of the spring along X, u_x cos(phi) + u_y sin(phi), m.
     drive : ndarray
-        (n,), velocity of the drive along X, m/s.
+        (n,), velocity of the drive along X, m/s; (1,) if it is constant.
     """
-    fastest = np.abs(drive).max()
-    least = fastest * _least_gain(slider)
-    way, holds = _way(drive[1:]), drive[1:] == 0.0
-    loaded = way * np.diff(elongation)
-    behind = _sum(loaded + np.where(holds, fastest * np.diff(time), 0.0))
-    gained = np.flatnonzero(np.maximum.accumulate(behind) - behind > least)
-    if len(gained):
-        slip = int(np.argmax(behind[: gained[0]]))
-        return FirstLoading(slip, slip)
-    lag = _sum(np.where(holds, 0.0, loaded))
-    return FirstLoading(-1, int(np.argmax(lag >= lag.max() - least)))
+    from stiction.analysis.creep.loading import find_slip
 
-
-def _sum(steps: Floats) -> Floats:
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
-def _way(drive: Floats) -> Floats:
-    """Return the sign of a drive's velocity; while it holds, that of its last motion before.
-
-    Before its first motion, that of this one.
-    """
-    moves = np.flatnonzero(drive)
-    if not len(moves):
-        return np.zeros(len(drive))
-    last = np.searchsorted(moves, np.arange(len(drive)), side="right") - 1
-    return np.asarray(np.sign(drive[moves[np.maximum(last, 0)]]))
+    least = float(np.abs(drive).max()) * _least_gain(slider)
+    return FirstLoading(*find_slip(time, elongation, drive, least))
 
 
 def slips_at_once(slider: Slider) -> bool:

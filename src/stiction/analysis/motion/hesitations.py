@@ -236,9 +236,9 @@ def typical(size: Floats) -> Floats:
 def _weighted_median(rows: Floats) -> Floats:
     """Return the median of each row, each value weighted by itself."""
     ordered = np.sort(rows, axis=1)
-    passed = np.cumsum(ordered, axis=1)
-    middle = np.argmax(passed >= 0.5 * passed[:, -1:], axis=1)
-    return np.asarray(np.take_along_axis(ordered, middle[:, None], axis=1)[:, 0])
+    passed = ordered.cumsum(axis=1)
+    middle = (passed >= 0.5 * passed[:, -1:]).argmax(axis=1)
+    return np.asarray(ordered[np.arange(len(rows)), middle])
 
 
 def _whole(values: Floats, points: Indices, share: float, most: float = np.inf) -> Indices:
@@ -246,9 +246,10 @@ def _whole(values: Floats, points: Indices, share: float, most: float = np.inf) 
     inner = points[1:-1]
     for _ in range(2):
         legs = np.abs(np.diff(values[np.concatenate([points[:1], inner, points[-1:]])]))
-        legs, limit = legs[1:-1], share * swing(legs, most)[1:-1]
-        largest = np.maximum.accumulate(legs)
-        jump = (largest[:-1] < limit[:-1]) & (largest[:-1] < LEAST * legs[1:])
+        largest = np.maximum.accumulate(legs[1:-2])
+        jump = largest < LEAST * legs[2:-1]
+        if jump.any():
+            jump &= largest < share * swing(legs, most)[1:-2]
         inner = inner[np.flatnonzero(jump)[-1] + 1 if jump.any() else 0 :]
         inner, points = inner[::-1], points[::-1]
     return inner

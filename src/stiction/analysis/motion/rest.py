@@ -68,11 +68,15 @@ def still_shares(
     ends = np.flatnonzero(np.diff(still.astype(np.int8)))
     first, last = ends[::2], ends[1::2] - 1
     begin, end = (_crossing(time, speed, *each) for each in ((first, first - 1), (last, last + 1)))
-    longest = np.zeros(len(start))
-    for k, (low, high) in enumerate(zip(start, peak_time, strict=True)):
-        those = slice(int(np.searchsorted(end, low)), int(np.searchsorted(begin, high)))
-        lasts = np.minimum(end[those], high) - np.maximum(begin[those], low)
-        longest[k] = lasts.max(initial=0.0)
+    longest, piece = np.zeros(len(start)), np.searchsorted(end, start)
+    beyond = np.searchsorted(begin, peak_time)
+    cycle = np.flatnonzero(piece < beyond)
+    while len(cycle):  # the next piece in each cycle that has another
+        k = piece[cycle]
+        lasts = np.minimum(end[k], peak_time[cycle]) - np.maximum(begin[k], start[cycle])
+        longest[cycle] = np.maximum(longest[cycle], lasts)
+        piece[cycle] += 1
+        cycle = cycle[piece[cycle] < beyond[cycle]]
     return longest / period
 
 

@@ -79,17 +79,13 @@ class ObservedRun:
         """(n,), s, evenly spaced."""
         return self._thin_out(self.solution.times)
 
-    def column(self, i: int) -> Floats:
-        """Return a column of the samples at `time`, as in `stiction.solver.exact.sampling`."""
-        column: Floats = self._columns[i]
-        return column
-
     @cached_property
-    def _columns(self) -> Floats:
-        return np.ascontiguousarray(self._thin_out(self.solution.samples).T)
+    def motion(self) -> Floats:
+        """(4, n), elongation (x, y; m) and slip (x, y; m/s) at `time`."""
+        return self._thin_out(self.solution.samples[:, :4].T)
 
     def _thin_out(self, values: Floats) -> Floats:
-        return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
+        return np.concatenate([values[..., : self.fine], values[..., self.fine :: self.parts]], -1)
 
     @cached_property
     def nominal(self) -> float:
@@ -105,7 +101,7 @@ class ObservedRun:
     @cached_property
     def force(self) -> Floats:
         """Spring force k_x u_x, positive along the drive (N)."""
-        return self.way * self.description.slider.k_x * self.column(0)
+        return np.asarray(self.way * self.description.slider.k_x * self.motion[0])
 
     @cached_property
     def drive(self) -> Floats:
@@ -118,33 +114,38 @@ class ObservedRun:
     def rate(self) -> Floats:
         """Rate of the spring force (N/s)."""
         slider = self.description.slider
-        return self.way * slider.k_x * (slider.direction[0] * self.drive - self.column(2))
+        return np.asarray(
+            self.way * slider.k_x * (slider.direction[0] * self.drive - self.motion[2])
+        )
 
     @cached_property
     def velocity(self) -> Floats:
         """Velocity X' of the mass, positive in the direction of the drive (m/s)."""
-        along = self.description.slider.along_drive(self.column(2), self.column(3))
+        along = self.description.slider.along_drive(*self.motion[2:])
         return np.asarray(self.way * along)
 
     @cached_property
     def slip_speed(self) -> Floats:
         """Slip speed, m/s."""
-        return np.asarray(np.hypot(self.column(2), self.column(3)))
+        return np.asarray(np.sqrt(self.motion[2] ** 2 + self.motion[3] ** 2))
 
     @property
     def positions(self) -> Floats:
         """Position X of the mass along the drive (m): Eq. (6) of Nakano & Popov."""
-        slider = self.description.slider
-        c, s = slider.direction
-        travel = slider.motion.travel(0.0, self.time)[0]
-        return np.asarray(self.way * (travel - c * self.column(0) - s * self.column(1)))
+        travel = self.description.slider.motion.travel(0.0, self.time)[0]
+        return np.asarray(self.way * (travel - self.elongation))
+
+    @cached_property
+    def elongation(self) -> Floats:
+        """Elongation of the spring along the drive direction X, m."""
+        return np.asarray(self.description.slider.along_drive(*self.motion[:2]))
 
     @cached_property
     def features(self) -> Features:
         """Features of the evenly spaced samples."""
-        least = self.description.run.rtol
-        moves = np.flatnonzero(np.broadcast_to(self.drive, self.time.shape))
-        driven = int(moves[-1]) + 1 if len(moves) else len(self.time)
+        least, driven = self.description.run.rtol, len(self.time)
+        if len(self.drive) > 1 and self.drive.any():
+            driven = int(np.flatnonzero(self.drive)[-1]) + 1
         found: Features = features(
             self.time, self.force, self.rate, self.velocity, REVERSAL, least, driven
         )
@@ -154,9 +155,7 @@ class ObservedRun:
     def first_slip(self) -> tuple[float, float]:
         """Start of the first slip (s), and the distance of the mass until then (m)."""
         slider = self.description.slider
-        drive = np.broadcast_to(self.drive, self.time.shape)
-        elongation = slider.along_drive(self.column(0), self.column(1))
-        at = first_loading(slider, self.time, elongation, drive).slip
+        at = first_loading(slider, self.time, self.elongation, self.drive).slip
         if at < 0:
             return nan, nan
         positions = self.positions
