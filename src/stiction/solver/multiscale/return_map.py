@@ -31,7 +31,7 @@ FAR = 2.0  # a cycle so many times longer than those before is beyond an edge
 PHASES = 8  # Chebyshev points of a piece of a slip
 PIECES = 16  # of a slip at most
 ROOMS = 256  # for pieces of all patches
-COLUMNS = 8  # of a sample, filled up to a power of two
+COLUMNS = 6  # of a sample in slip: all but whether it sticks
 STEPS = 4096  # kept of one cycle, and of all that are remembered
 # places in the arrays of `Returns` and `Inside`
 PATCHES_MADE, EDGES_MET, CYCLES_PAST, NODES_VAIN, CYCLES_SOLVED = range(5)  # sizes
@@ -67,7 +67,7 @@ class Inside(NamedTuple):
     of each, the place of that edge and its side, at first the times held at both ends; kept : steps
     of the cycles of `past`; spans : first and number of the steps of each, and behind all the next
     free row, and the next free piece; finer : how many times as many pieces as a swing needs;
-    points, bound, basis, block, row, missed : room for the work.
+    points, bound, basis, block, missed : room for the work.
     """
 
     values: np.ndarray
@@ -80,7 +80,6 @@ class Inside(NamedTuple):
     bound: np.ndarray
     basis: np.ndarray
     block: np.ndarray
-    row: np.ndarray
     missed: np.ndarray
 
 
@@ -143,11 +142,10 @@ def empty_map(rtol: float, steps: Any, samples: bool = False) -> Returns:
             np.empty((kept, WIDTH)),
             np.zeros((PAST + 1, 2), dtype=np.int64),
             np.ones(1, dtype=np.int64),
-            np.empty((PIECES * PHASES + PIECES + 1, COLUMNS)),
+            np.empty((PIECES * PHASES + PIECES + 1, COLUMNS + 1)),
             np.empty(COLUMNS),
             np.empty(NODES),
             np.empty(PHASES * COLUMNS),
-            np.empty(COLUMNS),
             np.empty(1),
         ),
         steps,
