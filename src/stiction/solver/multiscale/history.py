@@ -74,11 +74,13 @@ def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
 
     Slightly later is allowed too, if the stick before it would be shorter than the tolerance of
     landing times: its length grows with the square root of the distance to the edge, and was
-    `last.held` one cycle ago.
+    `last.held` one cycle ago. So it is by as much as the angles may differ at which such cycles
+    end, and what follows from these.
     """
-    behind = float(theta - known.past[row, 0]) / last.turn
-    shortest = NEAR * known.closing * last.time / last.held
-    return -min(shortest * shortest, 1.0) <= behind <= FAR
+    off, bound = float(theta - known.past[row, 0]), NEAR * known.closing
+    shortest = bound * last.time / last.held
+    earlier = -min(shortest * shortest, 1.0)
+    return abs(off) <= bound * abs(known.past[row, 1]) or earlier <= off / last.turn <= FAR
 
 
 @inlined
@@ -108,7 +110,7 @@ def recall(known: Returns, theta: float, last: Cycle) -> tuple[int, Cycle]:
 
     It comes with the row of the nearest, below zero if it cannot be predicted. A long cycle follows
     from their common end. Any other lies on a line through both, and is accepted if it hardly
-    differs from the nearest.
+    differs from the nearest, or ends where it does: in a limit cycle all are long.
     """
     row, cycle = same_end(known, theta, last)
     if row >= 0:
@@ -116,10 +118,11 @@ def recall(known: Returns, theta: float, last: Cycle) -> tuple[int, Cycle]:
     i, j = nearest(known, theta, False, FAR * last.time)
     if j < 0:
         return -1, last
-    a = known.past[i]
-    by, bound = change(known, i, j, theta - a[0]), NEAR * known.closing
+    a, off = known.past[i], theta - known.past[i, 0]
+    by, bound = change(known, i, j, off), NEAR * known.closing
+    apart = known.past[j, 0] - a[0]
     close = (
-        abs(by.turn) <= bound * abs(a[1])
+        (abs(by.turn) <= bound * abs(a[1]) or abs(by.turn + off) <= bound * abs(apart))
         and abs(by.time) <= bound * a[2]
         and abs(by.held) <= bound * a[2]
     )

@@ -71,6 +71,9 @@ def test_a_cycle_is_under_way_from_where_it_began(way):
     shorter = last._replace(held=0.1 * BOUND * LAST.time)  # but no more than a turn
     for turns, wanted in ((-0.99, True), (-1.01, False)):
         assert under(known, 0, 0.5 + turns * last.turn, shorter) == wanted
+    known = knowing((0.5, -0.3, 1.0, 0.0))  # or by what the angles of ends may differ
+    for share, wanted in ((-0.99, True), (-1.01, False)):
+        assert under(known, 0, 0.5 + way * share * BOUND * 0.3, last) == wanted
 
 
 def long_cycle(theta, off_turn=0.0, off_time=0.0):
@@ -116,3 +119,16 @@ def test_a_short_cycle_on_a_line_that_hardly_matters(column):
             assert found == (0 if wanted else -1)
             assert cycle == pytest.approx(tuple(a[1:] - (b - a)[1:]), rel=1e-12)
     assert plain(history.recall)(knowing(a), 0.5, LAST) == (-1, LAST)
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_cycle_of_a_limit_cycle_ends_where_others_did(way):
+    """It comes back to its angle wherever it began, and none is longer than those before it."""
+    there = 0.5, 1e-9, 0.9, 0.2
+    for share, wanted in ((0.99, 0), (1.01, -1)):  # of how far the two starts are apart
+        other = (0.6, -0.1 + 1e-9 + way * share * BOUND * 0.1 / 0.499, 0.9, 0.2)
+        found, cycle = plain(history.recall)(knowing(there, other), 0.5499, Cycle(*there[1:]))
+        assert found == wanted
+        if wanted == 0:
+            assert 0.5499 + cycle.turn == pytest.approx(0.5, abs=BOUND * 0.1 + 1e-9)
+            assert cycle[1:] == there[2:]
