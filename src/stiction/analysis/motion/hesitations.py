@@ -102,8 +102,8 @@ def take_out(values: Floats) -> Hesitations:
     found = _below(values, HALF, most)
     change = np.diff(values[found.kept])
     fall = -change[change < 0.0]
-    if _alike(np.minimum(fall, most)):
-        return found
+    if len(found.kept) == len(values) - 2 or _alike(np.minimum(fall, most)):
+        return found  # of what has no reversal below half the swing none is below less
     shallow = _below(values, LEAST, most)
     deep = (len(shallow.kept) - len(found.kept)) // 2
     return found if deep >= OFTEN * len(fall) > 0 or _is_divided(values, most) else shallow

@@ -250,4 +250,4 @@ def coupled_frequency(slider: Slider) -> float:
 
 def seconds_of(description: Description) -> float:
     """Estimate the computing time of a run (s) from that of the paper's per fast period."""
-    return 1e-4 + 1.6e-6 * description.slider.natural_frequencies[1] * description.run.duration
+    return 1e-4 + 0.5e-6 * description.slider.natural_frequencies[1] * description.run.duration
