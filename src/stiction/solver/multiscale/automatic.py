@@ -21,11 +21,12 @@ from stiction.solver.problem import Problem, varies
 from stiction.solver.state import RUNNING, Output, State
 from stiction.system.slider import Slider
 
-LOOK = 512  # turns of the first leg, (M58a); each next one is twice as long
+LOOK = 256  # turns of the first leg, (M58a); each next one is twice as long
 CYCLES = 8  # sticks in a leg that make cycles, (M58a)
 WORTH = 5_000.0  # steps to be expected still, (M58a): a patch costs some hundred
-LOSS = 0.03  # of all expected steps, which maps that do not pay may cost, (M58a)
-STAKE = 0.5  # of the steps of the leg before, which one trial may cost, (M58a)
+# Of all expected steps, which maps that do not pay may cost; one trial costs no more than the leg
+# before it, (M58a)
+LOSS = 0.03
 
 
 class Leg(NamedTuple):
@@ -109,7 +110,7 @@ def trial(leg: Leg, now: State, end: float, lost: int) -> MapTrial | None:
     if cycles < CYCLES:
         return None
     expected = leg.turns * (end - now.motion.t) / lasted
-    stake = round(min(LOSS * expected - lost, STAKE * leg.turns))
+    stake = round(min(LOSS * expected - lost, leg.turns))
     if expected < WORTH or stake <= 0:
         return None
     return MapTrial(stake, round(leg.turns / cycles), leg.turns)
