@@ -24,7 +24,7 @@ from stiction.drive.program import nominal_velocity
 from stiction.simulation import sample_times, solve_coarsely
 from stiction.solver.integrate import Solution
 from stiction.study.variables.fast_regime import SwingShapes, cycles_among, kind_of, swings
-from stiction.study.variables.features import Features, features
+from stiction.study.variables.features import Features, even_columns, features
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.system.tensors import mass_tensor, stiffness_tensor
@@ -79,13 +79,18 @@ class ObservedRun:
         """(n,), s, evenly spaced."""
         return self._thin_out(self.solution.times)
 
-    @cached_property
-    def motion(self) -> Floats:
-        """(4, n), elongation (x, y; m) and slip (x, y; m/s) at `time`."""
-        return self._thin_out(self.solution.samples[:, :4].T)
-
     def _thin_out(self, values: Floats) -> Floats:
-        return np.concatenate([values[..., : self.fine], values[..., self.fine :: self.parts]], -1)
+        return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
+
+    @cached_property
+    def _columns(self) -> Floats:
+        """(5, n), force and its rate, velocity, slip speed and elongation at `time`."""
+        slider = self.description.slider
+        found: Floats = even_columns(
+            self.solution.samples, self.fine, self.parts, self.drive, self.way, slider.k_x,
+            *slider.direction,
+        )  # fmt: skip
+        return found
 
     @cached_property
     def nominal(self) -> float:
@@ -101,7 +106,7 @@ class ObservedRun:
     @cached_property
     def force(self) -> Floats:
         """Spring force k_x u_x, positive along the drive (N)."""
-        return np.asarray(self.way * self.description.slider.k_x * self.motion[0])
+        return np.asarray(self._columns[0])
 
     @cached_property
     def drive(self) -> Floats:
@@ -113,21 +118,17 @@ class ObservedRun:
     @cached_property
     def rate(self) -> Floats:
         """Rate of the spring force (N/s)."""
-        slider = self.description.slider
-        return np.asarray(
-            self.way * slider.k_x * (slider.direction[0] * self.drive - self.motion[2])
-        )
+        return np.asarray(self._columns[1])
 
     @cached_property
     def velocity(self) -> Floats:
         """Velocity X' of the mass, positive in the direction of the drive (m/s)."""
-        along = self.description.slider.along_drive(*self.motion[2:])
-        return np.asarray(self.way * along)
+        return np.asarray(self._columns[2])
 
     @cached_property
     def slip_speed(self) -> Floats:
         """Slip speed, m/s."""
-        return np.asarray(np.sqrt(self.motion[2] ** 2 + self.motion[3] ** 2))
+        return np.asarray(self._columns[3])
 
     @property
     def positions(self) -> Floats:
@@ -138,7 +139,7 @@ class ObservedRun:
     @cached_property
     def elongation(self) -> Floats:
         """Elongation of the spring along the drive direction X, m."""
-        return np.asarray(self.description.slider.along_drive(*self.motion[:2]))
+        return np.asarray(self._columns[4])
 
     @cached_property
     def features(self) -> Features:
