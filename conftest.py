@@ -1,5 +1,6 @@
 """Examples in docstrings draw without a screen, and what they write goes to a folder of its own."""
 
+import gc
 import os
 import sys
 from pathlib import Path
@@ -18,6 +19,17 @@ if sys.dont_write_bytecode:
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     sys.pycache_prefix = str(Path(__file__).parent / ".pytest_cache" / "bytecode")
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
+
+
+def pytest_collection() -> None:
+    """Search for no garbage while tests are collected: they and their modules stay to the end."""
+    gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    """Search for garbage from here on, in what the tests make and not in what was collected."""
+    gc.freeze()
+    gc.enable()
 
 
 @pytest.fixture(autouse=True)
