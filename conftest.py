@@ -27,8 +27,12 @@ def pytest_collection() -> None:
 
 
 def pytest_collection_finish() -> None:
-    """Search for garbage from here on, in what the tests make and not in what was collected."""
+    """Search for garbage from here on, in what the tests make and not in what was collected.
+
+    A search begins after more than a figure makes: few of its parts are garbage yet.
+    """
     gc.freeze()
+    gc.set_threshold(20_000)
     gc.enable()
 
 

@@ -4,6 +4,7 @@ import os
 import shutil
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,17 @@ import stiction as st
 from stiction.solver.compilation import machine_code
 
 os.environ["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "30m"  # not 30 s: the machine may be busy
+
+
+def pytest_collection_finish() -> None:
+    """Let all figures share the formulas that matplotlib has parsed: each would parse its own."""
+    if mathtext := sys.modules.get("matplotlib.mathtext"):
+        from matplotlib import textpath
+        from matplotlib.backends import backend_agg
+
+        parser = mathtext.MathTextParser
+        parser._parse_cached = cache(parser._parse_cached.__wrapped__)
+        textpath.MathTextParser = backend_agg.MathTextParser = cache(parser)
 
 
 @pytest.fixture(autouse=True)
