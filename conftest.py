@@ -37,7 +37,8 @@ def pytest_collection_finish() -> None:
 
 
 @pytest.fixture(autouse=True)
-def _alone(request, monkeypatch, tmp_path_factory):
+def _alone(request):
     if isinstance(request.node, DoctestItem):
+        monkeypatch = request.getfixturevalue("monkeypatch")
         monkeypatch.setenv("MPLBACKEND", "Agg")
-        monkeypatch.chdir(tmp_path_factory.mktemp("example"))
+        monkeypatch.chdir(request.getfixturevalue("tmp_path_factory").mktemp("example"))

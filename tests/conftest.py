@@ -3,7 +3,6 @@
 import os
 import shutil
 import sys
-from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
@@ -30,10 +29,8 @@ def pytest_collection_finish() -> None:
         textpath.MathTextParser = backend_agg.MathTextParser = cache(parser)
 
 
-@pytest.fixture(autouse=True)
-def close_figures() -> Iterator[None]:
+def pytest_runtest_teardown() -> None:
     """Close what a test has drawn: matplotlib warns of the 21st open figure, whoever made it."""
-    yield
     if pyplot := sys.modules.get("matplotlib.pyplot"):
         pyplot.close("all")
 
