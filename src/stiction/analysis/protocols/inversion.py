@@ -107,18 +107,19 @@ class Inversion(NamedTuple):
 
 
 class _Problem(NamedTuple):
-    """Averages over bins, and the weights of these: the first is that before the step."""
+    """Averages over bins, and the weights of these: the first is that before the step.
+
+    `shortest` is the slip from one sample to the next, m: what evolves within it is not seen.
+    `found` are the deviations at all parameters for which they were computed.
+    """
 
     data: StepData
     law: Law
     slip: Floats
     mu: Floats
     weight: Floats
-
-    @property
-    def shortest(self) -> float:
-        """Slip from one sample to the next, m: what evolves within it is not seen."""
-        return float(np.median(np.diff(self.data.slip)))
+    shortest: float
+    found: dict[bytes, Floats]
 
     @property
     def longest(self) -> float:
@@ -143,9 +144,16 @@ class _Problem(NamedTuple):
         return np.asarray(self.data.trend_error * np.sqrt(self.weight) * travel)
 
     def residuals(self, at: Floats) -> Floats:
-        """Return the weighted deviations of a curve with these parameters."""
-        model = np.concatenate([at[:1], self.curve(at, self.slip)])
-        return np.asarray(np.sqrt(self.weight) * (model - self.mu))
+        """Return the weighted deviations of a curve with these parameters.
+
+        A step of the fit, its derivatives and its verdict all ask for those at the same place, of
+        which each is a solution of a differential equation.
+        """
+        place = at.tobytes()
+        if place not in self.found:
+            model = np.concatenate([at[:1], self.curve(at, self.slip)])
+            self.found[place] = np.asarray(np.sqrt(self.weight) * (model - self.mu))
+        return self.found[place].copy()
 
     def largest(self, off: Floats) -> float:
         """Return the largest of weighted deviations, as a share of all change of friction."""
@@ -199,7 +207,8 @@ def _problem_of(data: StepData, law: Law) -> _Problem:
     count = np.diff(firsts, append=len(slip))
     means = [np.add.reduceat(each, firsts) / count for each in (slip, data.mu)]
     weight = np.concatenate([[float(len(data.before))], count])
-    return _Problem(data, law, means[0], np.concatenate([[data.level], means[1]]), weight)
+    mu, shortest = np.concatenate([[data.level], means[1]]), float(np.median(np.diff(data.slip)))
+    return _Problem(data, law, means[0], mu, weight, shortest, {})
 
 
 def _starts(problem: _Problem) -> list[Floats]:

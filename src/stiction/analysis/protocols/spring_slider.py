@@ -86,16 +86,17 @@ def _course(
     """Return y and psi, (n, 2), at times from 0 on; None where the slip runs away."""
     from scipy.integrate import ODEintWarning, odeint
 
-    evolution, left = EVOLUTIONS[law].evolution, MOST
+    evolution, damping, left = EVOLUTIONS[law].evolution, rig.damping, MOST
 
     def rate(state: Floats, _: float) -> tuple[float, float]:
         nonlocal left
-        y, psi, left = float(state[0]), max(float(state[1]), YOUNGEST), left - 1
+        y, psi = state.tolist()
+        left -= 1
         if y > FASTEST or left < 0:
             raise ArithmeticError
         v = exp(y)
-        change = evolution(AT_V, psi, v, 1.0)
-        return (kappa * (1.0 - v) - b * change) / (a + rig.damping * v), change
+        change = evolution(AT_V, max(psi, YOUNGEST), v, 1.0)
+        return (kappa * (1.0 - v) - b * change) / (a + damping * v), change
 
     start = _first(rig, a), log(rig.ratio)
     solve: Any = odeint
