@@ -21,19 +21,19 @@ if sys.dont_write_bytecode:
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
 
 
-def pytest_collection() -> None:
-    """Search for no garbage while tests are collected: they and their modules stay to the end."""
-    gc.disable()
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Search for no garbage while tests are collected, nor in what was collected: it all stays.
 
-
-def pytest_collection_finish() -> None:
-    """Search for garbage from here on, in what the tests make and not in what was collected.
-
-    A search begins after more than a figure makes: few of its parts are garbage yet.
+    Then a search begins after more than a figure makes: few of its parts are garbage yet.
     """
-    gc.freeze()
-    gc.set_threshold(20_000)
-    gc.enable()
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.set_threshold(20_000)
+        gc.enable()
 
 
 @pytest.fixture(autouse=True)
