@@ -115,7 +115,7 @@ class RecordOptions:
         "3 mN".
     turned
         Angle by which the rig was turned on purpose for this record; a fit adds it to the
-        misalignment of the rig's description. Example: --turned "2 deg".
+        misalignment of the rig's description. Example: --turned "2 deg". Of one record alone.
     interval
         Time between two samples, for a file without a column of times. Example: --interval "1 ms".
     times

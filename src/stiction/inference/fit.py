@@ -30,6 +30,7 @@ from stiction.inference.simulated.library import SIMULATIONS, Library, build, re
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 
+SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
 
@@ -89,7 +90,9 @@ def fit(
     folder = None if library is None else Path(library) / f"{plan_of.key}-{seed}"
     whole = progress or silent
     simulated = build(plan_of, simulations, folder, seed=seed, progress=part(whole, 0, 10, of=7))
-    return compare(simulated, seen, folder, part(whole, 7, 10, of=3))
+    found = compare(simulated, seen, folder, part(whole, 7, 10, of=3))
+    whole(1.0)
+    return found
 
 
 def check(rig: Rig) -> None:
@@ -131,7 +134,7 @@ def plan_for(rig: Rig, conditions: Sequence[Conditions], signed: bool | None = N
 
 def one_sided(prior: Prior) -> Prior:
     """Return the prior of an angle whose sign is not seen, on the side of its middle."""
-    if middle(prior) < 0.0:
+    if middle(prior) < -SMALLEST_ANGLE:
         return replace(prior, high=min(prior.high, 0.0))
     return replace(prior, low=max(prior.low, 0.0))
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from math import floor, hypot, log10
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from math import floor, hypot, log10, pi
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -24,13 +24,15 @@ from stiction.recording.noise import ROUNDING_SPREAD, lattice, resolved_noise
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
+from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 Source = Record | Trajectory | str | Path  # of a record: a run is taken as if measured
 
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 PER_CYCLE = 200  # samples: more are averaged
-MOST_READINGS = 8  # of which a simulated sample is the mean: more are as good as so many
+MOST_PLACES = 8  # at which a motion is simulated between two samples: more change no mean
+MOST_READINGS = 256  # of which a simulated sample is the mean, where each of them is rounded
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
@@ -90,7 +92,7 @@ class Conditions(NamedTuple):
     lead : float
         Time from the start of the record to its first whole cycle, s, where a zero drifts.
     block : int
-        Readings of which a simulated sample is the mean.
+        Readings of which a simulated sample is the mean, each of them rounded.
     """
 
     velocity: float
@@ -187,6 +189,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         If it has too few cycles, or its samples leave too large gaps.
     """
     step, channels = even_channels(record, name)
+    refuse_far(record, slider, name)
     seen = swings(record)
     if (kind := regime_of(record, seen).kind) in NO_CYCLES:
         raise ResultError(
@@ -210,7 +213,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         drive_velocity(record, slider), float(record.normal_load or slider.normal_load),
         float(record.turned or 0.0), step * block, number, cycle, thin_noise,
         lead=near(step * block * int(found.before[0])) if drifts else 0.0,
-        block=min(block, MOST_READINGS),
+        block=min(block, MOST_READINGS if is_rounded(thin_noise) else MOST_PLACES),
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, its, thin["force"], found)
@@ -241,6 +244,16 @@ def drive_velocity(record: Record, slider: Slider) -> float:
     if stated is None or abs(stated / abs(velocity) - 1.0) <= SAME:
         return velocity
     return float(np.copysign(stated, velocity))
+
+
+def refuse_far(record: Record, slider: Slider, name: str) -> None:
+    """Refuse a record of a rig that was turned to 90 deg or more."""
+    angle = slider.phi + (record.turned or 0.0)
+    if abs(angle) >= 0.5 * pi:
+        raise ResultError(
+            f"{name} was turned by {in_words(record.turned or 0.0, 'rad')}, to a misalignment of "
+            f"{in_words(angle, 'rad')}; it must lie between -90 and 90 deg"
+        )
 
 
 def refuse_few(name: str, count: int) -> None:
@@ -293,6 +306,11 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
         return Noise(level, quantisation=step)
     errors = sensor.gain_uncertainty, sensor.zero_uncertainty
     return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty, step)
+
+
+def is_rounded(noise: Mapping[str, Noise]) -> bool:
+    """Return whether readings of a channel are rounded, and noise does not hide it."""
+    return any(each.quantisation for each in noise.values())
 
 
 def noise_of_means(noise: Noise, block: int) -> Noise:

@@ -22,7 +22,7 @@ from stiction.text.toml import folder_of, gather, read_toml
 from stiction.text.units import Kind, split_uncertain
 
 LARGEST_ANGLE = radians(89.9)  # at 90 deg the drive pulls across
-FAR = 7.5  # standard deviations from the mean, which are never drawn (`priors.EDGE`)
+UNDRAWN = 7.1  # standard deviations from the mean: beyond, nothing is drawn (`priors.EDGE`)
 
 
 class Rig(NamedTuple):
@@ -172,7 +172,7 @@ def within_range(slider: Slider, path: str, prior: Prior) -> Prior:
             change_parameter(slider, path, quantity(slider, path, end))
         return prior
     change_parameter(slider, path, quantity(slider, path, prior.mean))
-    if path == "phi" and abs(prior.mean) + FAR * prior.deviation > LARGEST_ANGLE:
+    if path == "phi" and abs(prior.mean) + UNDRAWN * prior.deviation > LARGEST_ANGLE:
         return Normal(prior.mean, prior.deviation, -LARGEST_ANGLE, LARGEST_ANGLE)
     try:
         change_parameter(slider, path, quantity(slider, path, -max(abs(prior.mean), 1e-30)))

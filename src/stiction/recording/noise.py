@@ -20,7 +20,9 @@ ON_LATTICE = 0.99  # of the values
 ROUNDING_SPREAD = 12.0**-0.5  # of a step: standard deviation of the rounding to it
 TWO_CODES = 1.5  # steps: values within it are of two codes at most
 HIDDEN = 0.05  # of a step of rounding: less noise than that cannot be told from it
-WITHIN = 2.0  # steps: noise by which the rounding of a ramp is white, and more
+FEW_STEPS = 2.0  # of noise, by which the rounding of a ramp is white, and more
+ENOUGH = 100_000  # samples, which tell the noise to half a percent
+SLIPPING = 1.5  # times the noise that differences of fourth order show: slips are not noise
 WINDOW = 16  # differences, in which a force rises steadily
 SLIPS = 3.0  # times the usual span of these differences: a slip is among them
 HARMONICS = 6  # of a rounded ramp: the next adds less than 0.01 of a step to its noise
@@ -62,9 +64,12 @@ def resolved_noise(values: Floats, step: float) -> float:
     Cambridge 2008, chapter 4), if the noise is larger. Noise below a twentieth of a step is hidden.
     """
     found = white_noise(values, step)
-    if found >= WITHIN * step:  # or nothing is rounded
-        return sqrt(found**2 - (ROUNDING_SPREAD * step) ** 2)
-    within = min(step * noise_within_steps(values / step), found)
+    large = sqrt(max(found**2 - (ROUNDING_SPREAD * step) ** 2, 0.0))
+    if found >= FEW_STEPS * step or len(values) <= WINDOW:  # or nothing is rounded
+        return large
+    within = step * noise_within_steps(values[:ENOUGH] / step)
+    if within > SLIPPING * max(found, 0.5 * step):
+        return large  # slips are in every window
     return within if within > HIDDEN * step else 0.0
 
 
@@ -88,7 +93,7 @@ def noise_within_steps(values: Floats) -> float:
     quiet = spans <= SLIPS * max(float(np.median(spans)), 1.0)
     harmonics = np.arange(1, HARMONICS + 1)
     waves = np.cos(2.0 * pi * harmonics * slopes[quiet][..., None]).mean(axis=(0, 1))
-    levels = np.linspace(0.0, 2.0 * WITHIN, 401)
+    levels = np.linspace(0.0, 2.0 * FEW_STEPS, 401)
     fading = np.exp(-4.0 * pi**2 * np.outer(levels**2, harmonics**2)) / (pi * harmonics) ** 2
     variances = 2.0 * levels**2 + 1.0 / 6.0 - fading @ waves
     return float(np.interp(np.mean(left[quiet] ** 2), variances, levels))
@@ -117,9 +122,9 @@ def dither_remainder(values: Floats, step: float) -> float:
     Widrow & I. Kollar, Quantization Noise, Cambridge 2008).
     Between two codes nothing tells the noise: it seems to be half a step.
     """
-    if float(np.ptp(values)) < TWO_CODES * step or len(values) <= WINDOW:
+    if float(np.ptp(values)) < TWO_CODES * step:
         return 1.0
-    return exp(-2.0 * pi**2 * noise_within_steps(values / step) ** 2)
+    return exp(-2.0 * pi**2 * (resolved_noise(values, step) / step) ** 2)
 
 
 def _median(values: Floats, step: float) -> float:

@@ -8,7 +8,7 @@ import stiction as st
 from stiction.errors import ResultError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.observation import observe
-from stiction.inference.simulated.jitter import Jitter, first_loading, move
+from stiction.inference.simulated.jitter import SPARE, Jitter, first_loading, move
 from stiction.recording.noise import white_noise
 
 
@@ -65,7 +65,7 @@ def test_simulations_go_on_until_they_have_the_cycles_that_are_wanted(seed):
     times = cycle / 100.0 * np.arange(10000.0)
     motion = move(slider, times, Jitter(0.04, 0.5), random, cycle=cycle, cycles=20)
     assert motion.time[-1] < times[-1]
-    assert len(slip_cycles(slider.k_x * motion.rows[:, 0]).peak) == 20
+    assert 20 <= len(slip_cycles(slider.k_x * motion.rows[:, 0]).peak) <= 20 + SPARE
 
 
 @pytest.mark.parametrize("per_cycle", [4.3, 5.7, 9.1])

@@ -103,6 +103,15 @@ def test_the_simulations_of_rotation_are_those_of_a_fit(rig, rotating):
     assert [plan.key for plan in rotation] == [plan_for(rig, conditions).key]
 
 
+def test_a_mechanism_in_one_dimension_stays_so_however_the_rig_was_turned(rig, rotating):
+    seen = observe(rotating.model_copy(update={"turned": 0.1}), rig.slider).conditions
+    for rival in mechanisms(rig, [seen]):
+        for plan in rival.plans:
+            turns = "phi" in plan.priors
+            assert plan.conditions[0].yaw == (0.1 if turns else 0.0)
+            assert plan.conditions[0].slider_of(plan.slider).phi == (plan.slider.phi + 0.1) * turns
+
+
 def test_an_aligned_rig_is_refused_because_nothing_rotates(rig, rotating):
     aligned = rig._replace(
         slider=rig.slider.replace(phi="0 deg"),

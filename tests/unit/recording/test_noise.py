@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from stiction.recording.noise import lattice, noise_level, resolved_noise, white_noise
+from stiction.recording.noise import (
+    dither_remainder,
+    lattice,
+    noise_level,
+    resolved_noise,
+    white_noise,
+)
 
 
 def sawtooth(count=20000, drop=0.05, every=997):
@@ -57,6 +63,34 @@ def test_the_rounding_of_a_ramp_is_not_noise(noise):
     assert np.median(found) == pytest.approx(noise, abs=0.02)
     # half a step a sample, where differences tell least: 2 v + 2 exp(-4 pi^2 v)/pi^2 is flat
     assert found == pytest.approx(np.full(40, noise), abs=0.15)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.1, 0.15, 0.2, 0.3, 0.6])
+def test_noise_is_found_on_a_ramp_through_one_code_in_many_samples(noise):
+    """More than half of the fourth differences are zero there, and so was their median."""
+    random = np.random.default_rng(7)
+    for rise in np.geomspace(0.001, 0.05, 6):
+        force = rise * np.arange(20_000) % 37.3 + noise * random.standard_normal(20_000)
+        # the flips at the edges of codes tell it: some 20 000 rise noise of them, 4 standard errors
+        error = 0.02 + 4.0 * noise / (20_000 * rise * max(noise, 0.1)) ** 0.5
+        assert resolved_noise(np.rint(force), 1.0) == pytest.approx(noise, abs=min(error, 0.1))
+
+
+@pytest.mark.parametrize("per_cycle", [12, 16, 20])
+def test_slips_in_every_window_are_not_noise(per_cycle):
+    random = np.random.default_rng(8)
+    saw = 40.0 / per_cycle * (np.arange(4000) % per_cycle)
+    for noise in (0.5, 1.0):
+        found = resolved_noise(np.rint(saw + noise * random.standard_normal(4000)), 1.0)
+        assert found < 3.0 * noise  # a slip of 40 codes is 20 in the differences
+        assert dither_remainder(np.rint(saw + noise * random.standard_normal(4000)), 1.0) < 0.01
+
+
+def test_few_samples_tell_their_noise_without_a_window():
+    random = np.random.default_rng(9)
+    values = np.rint(3.0 * random.standard_normal(14))
+    assert 0.0 <= resolved_noise(values, 1.0) < 20.0
+    assert 0.0 <= dither_remainder(values, 1.0) <= 1.0
 
 
 def test_a_swing_is_no_noise():

@@ -67,7 +67,8 @@ def read_record(
         The column of a channel by name or number, its unit, or both: ``"Fx"``, 3, ``"mN"``,
         ``"Fx=mN"``, ``"3=mN"``. A number multiplies the unit: ``"-1 N"`` turns the sign,
         ``"CH1=2.5 N/V"`` scales volts.
-    normal_load, stiffness, stiffness_across, drive_velocity, mass, zero, turned : optional
+    normal_load, stiffness, stiffness_across, drive_velocity, mass, zero : float or str, optional
+    turned : float or str, optional
         Of the apparatus; see `stiction.Record`.
     interval : float or str, optional
         Between two samples, for a file without times.

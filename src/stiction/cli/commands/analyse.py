@@ -94,6 +94,7 @@ def import_(
         force = "CH1=2.5 N/V"       # column, unit, or both
         [record]
         normal_load = "10 N"
+        turned = "2 deg"            # on purpose, which a fit adds to the misalignment
         [sensors.force]
         noise = "2 mN"
         zero = "3 +- 1 mN"          # at the first sample

@@ -91,7 +91,9 @@ def mechanism(
             "speaks for it"
         )
     kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}"
-    return compare(simulated, known, seen, kept, part(whole, 8, 10, of=2))
+    found = compare(simulated, known, seen, kept, part(whole, 8, 10, of=2))
+    whole(1.0)
+    return found
 
 
 def key(rivals: Sequence[Mechanism]) -> str:

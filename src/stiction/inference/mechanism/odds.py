@@ -20,7 +20,7 @@ from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
-HALF = 0.6  # that each half of the simulations must give it: a claim is not a matter of their draw
+BY_HALF = 0.6  # by each half of the simulations: a claim is not a matter of their draw
 # shares below which a record is unlike simulations by its features, and by its loading's bend, of
 # which the features tell too: a mechanism's own records are refused by both together in 5 % of
 # cases at most (O. J. Dunn, J. Am. Stat. Assoc. 56, 52 (1961))
@@ -113,11 +113,11 @@ class Odds:
                 f"The most probable one, {name}, has a probability of {probability:.2f}; a claim "
                 f"needs {CLAIM}."
             )
-        elif self.by_halves[:, self.likeliest].min() < HALF:
+        elif self.by_halves[:, self.likeliest].min() < BY_HALF:
             halves = " and ".join(map(near_one, self.by_halves[:, self.likeliest]))
             found.append(
                 f"By each half of the simulations, {name} has a probability of {halves}; a claim "
-                f"needs {HALF} by both: simulate more."
+                f"needs {BY_HALF} by both: simulate more."
             )
         if its.farther < UNLIKE:
             found.append(
@@ -157,9 +157,9 @@ class Odds:
             Section(
                 "How often simulated records are called so",
                 [
-                    f"Called 1, 2, ... with a probability of {CLAIM} and above, and {HALF} by each "
-                    "half of the simulations, otherwise undecided. Each record was left out of "
-                    "what calls it."
+                    f"Called 1, 2, ... with a probability of {CLAIM} and above, and {BY_HALF} by "
+                    "each half of the simulations, otherwise undecided. Each record was left out "
+                    "of what calls it."
                 ],
                 Table(columns, shares),
             ),
@@ -236,7 +236,7 @@ def surely(probabilities: Floats, by_halves: Floats) -> NDArray[np.bool_]:
     """
     best = probabilities.argmax(axis=1)[None, :, None]
     least = np.take_along_axis(by_halves, best, axis=2).min(axis=(0, 2))
-    return np.asarray((probabilities.max(axis=1) >= CLAIM) & (least >= HALF))
+    return np.asarray((probabilities.max(axis=1) >= CLAIM) & (least >= BY_HALF))
 
 
 def near_one(probability: float) -> str:

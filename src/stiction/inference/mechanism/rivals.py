@@ -72,18 +72,20 @@ def mechanisms(rig: Rig, conditions: Sequence[Conditions]) -> tuple[Mechanism, .
     own, turned = split(rotation.priors)
     aligned = {path: prior for path, prior in turned.items() if path != "phi"}
     straight = change_unchecked(slider, "phi", 0.0)
+    unturned = [each._replace(yaw=0.0) for each in conditions]
 
     def with_law(base: Slider, law: Any, priors: dict[str, Prior]) -> Plan:
         friction = dict(priors_of(law, slider, level))
         rival = base.model_copy(update={"friction": middle_of(law, slider, friction)})
-        return plan(rival, {**priors, **friction}, conditions)._replace(basis=slider)
+        places = unturned if base is straight else conditions
+        return plan(rival, {**priors, **friction}, places)._replace(basis=slider)
 
     return (
         Mechanism(ROTATION, (rotation,)),
         Mechanism(
             STATIC,
             (
-                plan(straight, {**aligned, **own}, conditions)._replace(basis=slider),
+                plan(straight, {**aligned, **own}, unturned)._replace(basis=slider),
                 with_law(straight, Coulomb, aligned),
             ),
         ),

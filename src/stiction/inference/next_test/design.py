@@ -147,10 +147,11 @@ def design(
         found = [*expectations(trial, every, scores, features, learning)]
         if path is not None:
             write(path, found)
+    whole(1.0)
     assumed = assumptions(() if record is None else measured, present, wanted)
     columns = features.shape[1] // len(trial.conditions)
     usable = int(have_cycles(features[:, :columns]).sum())
-    rare = tuple(each.test for each in found if each.usable * usable < FEWEST_RIGS)
+    rare = tuple(each.test for each in found if round(each.usable * usable) < FEWEST_RIGS)
     common = tuple(each for each in found if each.test not in rare)
     return Advice(trial, name, common, (*skipped,), (*assumed,), usable, rare)
 

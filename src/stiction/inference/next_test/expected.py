@@ -24,7 +24,7 @@ from stiction.inference.simulated.plan import Plan
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_RIGS = 100  # rigs with cycles in a test, below which nothing is learned
-WITHIN = 0.6827  # share of the rigs whose error is at most the typical one
+TYPICAL = 0.6827  # share of the rigs whose error is at most the typical one
 RESAMPLED = 1000  # times, for the interval of a ratio
 NUMBERS = ("width", "error", "ratio", "low", "high")
 
@@ -70,12 +70,12 @@ def estimates(features: Floats, truth: Floats) -> Floats:
     return found
 
 
-def left_out_errors(records: Sequence[Floats], truth: Floats) -> Floats:
+def left_out_errors(alone: Sequence[Floats], truth: Floats) -> Floats:
     """Return the errors (n, p) of what the estimates (n, p) from one or several records say.
 
     A regression joins those of several. So few simulations do for many features.
     """
-    joint = records[0] if len(records) == 1 else estimates(np.hstack(records), truth)
+    joint = alone[0] if len(alone) == 1 else estimates(np.hstack(alone), truth)
     return truth - joint
 
 
@@ -128,7 +128,7 @@ def in_si(trial: Plan, truth: Floats, errors: Floats) -> Floats:
 
 def typical(sizes: Floats, axis: int = 0) -> Floats:
     """Return the size that 68 % of some are at most."""
-    return np.asarray(np.quantile(sizes, WITHIN, axis=axis, method="inverted_cdf"))
+    return np.asarray(np.quantile(sizes, TYPICAL, axis=axis, method="inverted_cdf"))
 
 
 def resample(sizes: Floats, drawn: Indices) -> Floats:
@@ -138,7 +138,7 @@ def resample(sizes: Floats, drawn: Indices) -> Floats:
     >>> resample(sizes, np.array([[0, 1, 2, 3], [3, 3, 3, 3]]))[:, 0], typical(sizes)
     (array([3., 9.]), array([3.]))
     """
-    last = ceil(WITHIN * drawn.shape[1]) - 1
+    last = ceil(TYPICAL * drawn.shape[1]) - 1
     columns = [np.partition(each[drawn], last, axis=1)[:, last] for each in sizes.T]
     return np.stack(columns, axis=1)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.inference.cycles import Cycles, slip_cycles
-from stiction.inference.observation import Conditions, block_means
+from stiction.inference.observation import MOST_PLACES, Conditions, block_means
 from stiction.inference.simulated.jitter import SPARE, Jitter, SampledMotion, first_loading, move
 from stiction.inference.simulated.plan import Plan
 from stiction.recording.sensor import FASTEST, digitise, low_pass
@@ -50,7 +51,7 @@ def synthesise(
         rig = conditions.slider_of(slider)
         wanted, noise = conditions.cycles, conditions.noise["force"].error
         most = LONGEST_CYCLE * (wanted + SPARE) * conditions.cycle + first_loading(rig)
-        step = conditions.step / conditions.block
+        step = conditions.step / min(conditions.block, MOST_PLACES)
         times: Floats = step * np.arange(int(most / step) + 1.0)
         motion = move(
             rig, times, jitter, random, cycle=conditions.cycle, cycles=wanted, noise=noise
@@ -78,7 +79,8 @@ def measure(
         "force_across": way * (x * across - y * along),
         "position": way * (conditions.velocity * motion.time - c * u_x - s * u_y),
     }
-    found, block, step = {}, conditions.block, conditions.step / conditions.block
+    places = min(conditions.block, MOST_PLACES)  # between two samples
+    found, step = {}, conditions.step / places
     for name, noise in conditions.noise.items():
         gain, zero = random.standard_normal(2) * (noise.gain, noise.zero) + (1.0, 0.0)
         if name == "force":
@@ -89,10 +91,23 @@ def measure(
             zero = zero + drift * (motion.time - start_time(motion, exact["force"], conditions))
         shown = [each for each in noise.filters if each.cut * step <= FASTEST]
         values_of = gain * low_pass(exact[name], shown, 1.0 / step) + zero
-        noisy = values_of + noise.level * block**0.5 * random.standard_normal(len(values_of))
-        rounded = digitise(noisy, noise.quantisation)
-        found[name] = block_means(rounded, block)
+        more = ceil(conditions.block / places) if noise.quantisation else 1
+        readings, block = refine(values_of, more), places * more
+        readings = readings + noise.level * block**0.5 * random.standard_normal(len(readings))
+        found[name] = block_means(digitise(readings, noise.quantisation), block)
     return found
+
+
+def refine(values: Floats, times: int) -> Floats:
+    """Return so many times as many values, on the lines between them.
+
+    >>> refine(np.array([0.0, 2.0, 4.0]), 2)
+    array([0., 1., 2., 3., 4., 4.])
+    """
+    if times == 1:
+        return values
+    rises = np.append(np.diff(values), 0.0)
+    return np.asarray((values[:, None] + rises[:, None] * (np.arange(times) / times)).ravel())
 
 
 def start_time(motion: SampledMotion, force: Floats, conditions: Conditions) -> float:

@@ -20,6 +20,7 @@ from stiction.cli.options import (
     record_in,
 )
 from stiction.cli.terminal import say
+from stiction.errors import DescriptionError
 from stiction.text.sections import Section
 
 if TYPE_CHECKING:
@@ -98,6 +99,9 @@ def fit(
     placeable(output, NETCDF)
     if figures is not None:
         usable_folder(figures)
+    if len(records) > 1 and measured is not None and measured.turned is not None:
+        message = "would hold for each of these records; import the one that was turned with it"
+        raise DescriptionError.of("--turned", f"{message}, or state it in a file beside that one")
     known = Rig.from_toml(rig, changes(set), trust=trust)
     given = [record_in(path, measured, trust) for path in records]
     kept = cache_folder() if library is None else library
