@@ -22,11 +22,11 @@ from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.features import features
 from stiction.inference.learning.calibration import learn_or_read
 from stiction.inference.observation import (
-    MOST_READINGS,
     Conditions,
     Noise,
     block_means,
     observe,
+    readings_to_simulate,
 )
 from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import Library, build
@@ -84,7 +84,8 @@ def main() -> None:
     cell = {"force": st.Sensor(**filtered)}
     record = st.Record(time=time, force=first, drive_velocity=velocity, sensors=cell)
     seen = observe(record, rig.slider).conditions
-    conditions = usual._replace(noise=seen.noise, block=min(options.block, MOST_READINGS))
+    block = readings_to_simulate(options.block, seen.noise)
+    conditions = usual._replace(noise=seen.noise, block=block)
     print(f"{options.rig}: {seen.noise}")
     known = build(plan(rig.slider, rig.priors, [conditions]), options.simulations, None)
     rows = [

@@ -213,7 +213,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         drive_velocity(record, slider), float(record.normal_load or slider.normal_load),
         float(record.turned or 0.0), step * block, number, cycle, thin_noise,
         lead=near(step * block * int(found.before[0])) if drifts else 0.0,
-        block=min(block, MOST_READINGS if is_rounded(thin_noise) else MOST_PLACES),
+        block=readings_to_simulate(block, thin_noise),
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
     return Observation(conditions, its, thin["force"], found)
@@ -308,9 +308,10 @@ def noise_of(record: Record, channel: str, values: Floats) -> Noise:
     return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty, step)
 
 
-def is_rounded(noise: Mapping[str, Noise]) -> bool:
-    """Return whether readings of a channel are rounded, and noise does not hide it."""
-    return any(each.quantisation for each in noise.values())
+def readings_to_simulate(block: int, noise: Mapping[str, Noise]) -> int:
+    """Return of how many readings a simulated sample is the mean, one of a record of `block`."""
+    rounded = any(each.quantisation for each in noise.values())
+    return min(block, MOST_READINGS if rounded else MOST_PLACES)
 
 
 def noise_of_means(noise: Noise, block: int) -> Noise:
