@@ -24,5 +24,5 @@ v_f = "10 mm/s"
 velocity = "0.5 mm/s"
 """
 rig = st.Rig.from_toml(TEXT)
-advice = st.design(rig, of="phi", angles=(), velocities=(), loads=["2 N"], simulations=128)
+advice = st.design(rig, of="phi", angles=(), velocities=(), loads=["2 N"], simulations=256)
 st.plotting.plot_design(advice)
