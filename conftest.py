@@ -1,6 +1,5 @@
 """Examples in docstrings draw without a screen, and what they write goes to a folder of its own."""
 
-import gc
 import os
 import sys
 from pathlib import Path
@@ -19,21 +18,6 @@ if sys.dont_write_bytecode:
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     sys.pycache_prefix = str(Path(__file__).parent / ".pytest_cache" / "bytecode")
     os.environ["PYTHONPYCACHEPREFIX"] = sys.pycache_prefix
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_collection():
-    """Search for no garbage while tests are collected, nor in what was collected: it all stays.
-
-    Then a search begins after more than a figure makes: few of its parts are garbage yet.
-    """
-    gc.disable()
-    try:
-        return (yield)
-    finally:
-        gc.freeze()
-        gc.set_threshold(20_000)
-        gc.enable()
 
 
 @pytest.fixture(autouse=True)

@@ -7,14 +7,6 @@ import pytest
 from stiction.solver.compilation.interrupt import MANY, compiling
 
 
-@pytest.fixture(autouse=True)
-def nothing_is_frozen():
-    """As in a process that runs no tests, whose modules `conftest.py` freezes."""
-    gc.unfreeze()
-    yield
-    gc.freeze()
-
-
 def is_old(thing):
     """Return whether only a full search for garbage looks at it."""
     return any(each is thing for each in gc.get_objects(generation=2))
