@@ -14,6 +14,8 @@ from typing import Any
 
 from stiction.solver.compilation.turn import end_turns
 
+_counting = threading.Lock()
+_paused: list[bool] = []  # whether garbage was sought before, then one for each that compiles
 MANY = 50_000  # objects: compiling makes 100 000 and more, loading machine code some 20 000
 
 
@@ -50,15 +52,34 @@ def compiling() -> Iterator[None]:
     Half of what numba allocates lives until the end; to look through it again and again would take
     a tenth of the time.
     """
-    searched = gc.isenabled()
-    gc.disable()
-    try:
-        with delay_interrupt():
+    with delay_interrupt():
+        pause_search()
+        try:
             yield
-    finally:
-        end_turns()
-        if searched:
-            if gc.get_count()[0] > MANY and not gc.get_freeze_count():
-                gc.freeze()  # all is old now: else all would be looked through at once
-                gc.unfreeze()
-            gc.enable()
+        finally:
+            end_turns()
+            resume_search()
+
+
+def pause_search() -> None:
+    """Search for no garbage until all threads that compile have ended.
+
+    Each by itself would find the search paused by another, and leave it so for good.
+    """
+    with _counting:
+        if not _paused:
+            _paused.append(gc.isenabled())
+        _paused.append(True)
+        gc.disable()
+
+
+def resume_search() -> None:
+    """Search for garbage again, if nothing else compiles and it was sought before."""
+    with _counting:
+        _paused.pop()
+        if len(_paused) > 1 or not _paused.pop():
+            return
+        if gc.get_count()[0] > MANY and not gc.get_freeze_count():
+            gc.freeze()  # all is old now: else all would be looked through at once
+            gc.unfreeze()
+        gc.enable()

@@ -1,6 +1,7 @@
 """What the search for garbage looks through after compiling."""
 
 import gc
+import threading
 
 import pytest
 
@@ -36,3 +37,44 @@ def test_what_somebody_froze_stays_frozen():
         assert len(kept) == 2 * MANY
     finally:
         gc.unfreeze()
+
+
+def test_the_search_is_on_again_after_threads_that_compiled_side_by_side(monkeypatch):
+    """The second one finds it off, and turns it off once the first has turned it on again."""
+    first_ended, second_asks = threading.Event(), threading.Event()
+    is_enabled = gc.isenabled
+
+    def ask_and_wait():
+        found = is_enabled()
+        if threading.current_thread() is not threading.main_thread():
+            second_asks.set()
+            first_ended.wait(10.0)
+        return found
+
+    def second():
+        with compiling():
+            second_asks.set()  # where it need not ask
+
+    thread = threading.Thread(target=second)
+    monkeypatch.setattr(gc, "isenabled", ask_and_wait)
+    with compiling():
+        thread.start()
+        assert second_asks.wait(10.0)
+    first_ended.set()
+    thread.join()
+    assert is_enabled()
+
+
+def test_a_search_that_was_off_stays_off():
+    gc.disable()
+    try:
+        with compiling(), compiling():
+            pass
+        assert not gc.isenabled()
+    finally:
+        gc.enable()
+    with compiling():
+        with compiling():
+            pass
+        assert not gc.isenabled()
+    assert gc.isenabled()
