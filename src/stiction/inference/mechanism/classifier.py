@@ -228,17 +228,14 @@ def read(path: Path | None, features: Floats) -> Classifier | None:
     """Return a stored classifier of simulations with these features (n, f); None without one."""
     arrays = read_arrays(path) or {}
     try:
-        standard, _ = read_regressions(arrays, features, PARTS[0])
-        scores = standard.scores(features)
-        rows = (slice(None), *halve(len(scores)))
-        whole, *halves = (
-            Discriminant(
-                scores[some], Regression(*from_arrays(name, Regression._fields, arrays)),
-                arrays[f"{name}_slopes"],
-            )
-            for name, some in zip(PARTS, rows, strict=True)
-        )  # fmt: skip
-        return Classifier(standard, whole, (*halves,))
+        standard, (membership,) = read_regressions(arrays, features, PARTS[0])
+        scores, (name, *halves) = standard.scores(features), PARTS
+        whole = Discriminant(scores, membership, arrays[f"{name}_slopes"])
+        found = []
+        for name, rows in zip(halves, halve(len(scores)), strict=True):
+            own = Regression(*from_arrays(name, Regression._fields, arrays))
+            found.append(Discriminant(scores[rows], own, arrays[f"{name}_slopes"]))
+        return Classifier(standard, whole, (*found,))
     except KeyError:
         return None
 

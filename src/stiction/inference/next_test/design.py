@@ -142,11 +142,7 @@ def design(
     scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=simulating)
     path = None if folder is None else folder / f"expected-{simulations}-{'-'.join(measured)}.npz"
     every = [Further("the present test", measured), *tests]
-    found = read(path, [test.name for test in every])
-    if found is None:
-        found = [*expectations(trial, every, scores, features, learning)]
-        if path is not None:
-            write(path, found)
+    found = learn_or_read(trial, every, scores, features, path, learning)
     whole(1.0)
     assumed = assumptions(() if record is None else measured, present, wanted)
     columns = features.shape[1] // len(trial.conditions)
@@ -206,6 +202,19 @@ def split(tests: Iterator[Further], slider: Slider) -> tuple[list[Further], list
         else:
             possible.append(test._replace(record=its))
     return possible, skipped
+
+
+def learn_or_read(
+    trial: Plan, tests: Sequence[Further], scores: Floats, features: Floats, path: Path | None,
+    progress: Progress,
+) -> list[Expected]:  # fmt: skip
+    """Learn what each test leaves open, or read it from a file."""
+    found = read(path, [test.name for test in tests])
+    if found is None:
+        found = [*expectations(trial, tests, scores, features, progress)]
+        if path is not None:
+            write(path, found)
+    return found
 
 
 def expectations(
