@@ -29,6 +29,9 @@ from stiction.trajectory import Trajectory
 
 ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
 BESIDE = 1e-3  # of the mean interval between samples: one so near to an end is at the end
+# By which the times of a program may be off in a record, as a share of a stretch: a stage starts
+# late, and its clock is not that of the record
+OFF_BY = 0.05
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 
@@ -84,7 +87,8 @@ class FrictionTest(NamedTuple):
     off : float
         Force by which all samples may be off together, N: rounding, or the tolerance of a run.
     law : object or None
-        Friction law of a run; None if unknown.
+        Friction law of a run; None if unknown: of a record, whose stiffness is as one states it and
+        whose clock is not that of the drive.
     drive : ConstantVelocity or DriveProgram
         Motion of the drive.
     stretches : list of ConstantStretch
@@ -113,9 +117,33 @@ class FrictionTest(NamedTuple):
         first, after = np.searchsorted(self.time, [start - rounding, end + rounding])
         return np.arange(first, after)
 
+    def clock(self, stretch: ConstantStretch) -> float:
+        """Return by how much the ends of a stretch may be off, s."""
+        return OFF_BY * (stretch.end - stretch.start) if self.law is None else 0.0
+
+    def clock_at_jump(self, one: ConstantStretch, two: ConstantStretch) -> float:
+        """Return by how much the jump from one stretch to the next may be off, s: a sample or more.
+
+        0 for a run.
+        """
+        interval = float(np.median(np.diff(self.time[self.within(*two[:2])])))
+        off = max(min(self.clock(one), self.clock(two)), interval)
+        return off if self.law is None else 0.0
+
+    def until_end(self, stretch: ConstantStretch, early: float = 0.0) -> Indices:
+        """Return the indices of the samples of a stretch without those that may be of the next.
+
+        From some time `early` (s) before it begins.
+        """
+        return self.within(stretch.start - early, stretch.end - self.clock(stretch))
+
     def late(self, stretch: ConstantStretch) -> Indices:
         """Return the indices of the samples in the end of a stretch."""
         return self.within(stretch.end - SETTLED * (stretch.end - stretch.start), stretch.end)
+
+    def surely_late(self, stretch: ConstantStretch) -> Indices:
+        """Return the indices of the samples in the end of a stretch, surely within it."""
+        return np.intersect1d(self.late(stretch), self.until_end(stretch))
 
     def steady(self, stretch: ConstantStretch) -> float:
         """Return the mean friction in the end of a stretch, NaN without samples."""

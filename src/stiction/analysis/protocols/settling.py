@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import exp, sqrt
+from math import exp, expm1, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -97,12 +97,16 @@ def settled_part(
         first = (first + latest + 1) // 2
     tail = 0.0
     if gone:
-        tail = EVOLVED * float(off.max()) * exp(min(-TAIL * (first / count / gone - 1.0), 0.0))
+        left = exp(min(-TAIL * (first / count / gone - 1.0), 0.0))
+        # it was seen above what is left in the end, which is part of it
+        tail = (
+            EVOLVED * float(off.max()) * left / -expm1(-TAIL * max(1.0 / gone - 1.0, 1.0 / PARTS))
+        )
     x, y = travel[first:], mu[first:]
     found = line(x, y).slope
-    left = y - y.mean() - found * (x - x.mean())
+    off = y - y.mean() - found * (x - x.mean())
     return SettledPart(
-        float(x.mean()), float(x[-1] - x[0]), float(y.mean()), float(found), left, tail
+        float(x.mean()), float(x[-1] - x[0]), float(y.mean()), float(found), off, tail
     )
 
 

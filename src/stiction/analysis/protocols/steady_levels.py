@@ -96,12 +96,12 @@ def steady_levels(test: FrictionTest) -> SteadyLevels:
     A run has no trend, and its levels are those of the ends of stretches.
     """
     sliding = [each for each in test.stretches if test.is_sampled(each) and test.slides(each)]
-    ends = [_part(test, each, test.late(each)) for each in sliding]
+    ends = [_part(test, each, test.surely_late(each)) for each in sliding]
     if test.law is not None:
         return _levels(test, sliding, ends, NO_TREND)
     noise = noise_about([each.left for each in ends])
     rough = _trend(test, sliding, ends).slope
-    parts = [_part(test, each, test.within(*each[:2]), rough, noise) for each in sliding]
+    parts = [_part(test, each, test.until_end(each), rough, noise) for each in sliding]
     return _levels(test, sliding, parts, _trend(test, sliding, parts))
 
 
@@ -114,7 +114,7 @@ def _part(
 ) -> SettledPart:
     """Return the settled part of some samples of a stretch, to its end."""
     travel = abs(stretch.velocity) * (test.time[at] - stretch.start)
-    late = len(test.late(stretch))
+    late = len(test.surely_late(stretch))
     return settled_part(travel, stretch.way * test.mu[at], late, slope, noise)
 
 

@@ -174,7 +174,7 @@ def test_only_jumps_between_constant_speeds_are_steps():
         program, jumps = drive_of_steps(Draw(SEED, number))
         end = p.end(program)
         fastest = max(float(program.rate(t)[0]) for t in np.linspace(0.0, end, 999))
-        time = np.arange(0.0, end, max(0.01 * D / fastest, end / 4e3))
+        time = np.arange(0.0, end, max(0.01 * D / fastest, end / 4e4))
         record = st.Record(
             time=time, force=friction_of(program, time), normal_load=1.0, stiffness=1e9
         )

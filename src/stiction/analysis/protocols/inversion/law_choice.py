@@ -7,8 +7,9 @@ from math import isnan
 from typing import NamedTuple
 
 from stiction.analysis.protocols.friction_test import FrictionTest
-from stiction.analysis.protocols.inversion import Inversion, StepData, invert, unknown
-from stiction.analysis.protocols.spring_slider import Law
+from stiction.analysis.protocols.inversion.fit import Inversion, invert, unknown
+from stiction.analysis.protocols.inversion.spring_slider import Law
+from stiction.analysis.protocols.inversion.step import StepData
 from stiction.friction.laws import RateStateAgeing2, RateStateSlip2
 from stiction.text.lists import in_list
 from stiction.text.units import in_words

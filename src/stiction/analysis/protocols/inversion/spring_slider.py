@@ -26,6 +26,7 @@ from stiction.friction.laws.rate_and_state.common import Ageing, Slipping, Squar
 Law = Literal["slip", "ageing", "perrin"]
 
 TOLERANCE = 1e-7  # of y and psi
+APART = 1e-3  # of D_c, between two places of which the difference is the slope
 MOST = 3000  # rates: more take a slip that runs away, and an oscillation that is hardly damped
 FASTEST = 30.0  # logarithm of the slip speed over V at which a slip has run away
 YOUNGEST = -100.0  # logarithm of the state, in a trial step of one: none is so young
@@ -51,10 +52,25 @@ class SpringSlider(NamedTuple):
     damping: float
 
 
-def friction_after_a_step(
+class FrictionCourse(NamedTuple):
+    """Spring force over load after a step, less that of steady sliding afterwards.
+
+    Attributes
+    ----------
+    friction : ndarray
+        (n,), 1.
+    slope : ndarray
+        (n,), its change with the travel of the drive, 1/m.
+    """
+
+    friction: Floats
+    slope: Floats
+
+
+def course_after_a_step(
     rig: SpringSlider, law: Law, a: float, b: float, D_c: float, slip: Floats
-) -> Floats | None:
-    """Return spring force over load, less that of steady sliding afterwards; None if it slips away.
+) -> FrictionCourse | None:
+    """Return the course of friction after a step; None if it slips away.
 
     Parameters
     ----------
@@ -62,11 +78,17 @@ def friction_after_a_step(
         (n,), ascending travel of the drive since the step, m.
     """
     kappa = rig.stiffness * D_c
-    found = _course(rig, law, a, b, kappa, slip / D_c)
+    # k (1 - v) would be the slope as well, but on a stiff rig it is that of rounded v
+    times = np.concatenate([slip / D_c, slip / D_c + APART])
+    order = np.argsort(times)
+    found = _course(rig, law, a, b, kappa, times[order])
     if found is None:
         return None
     y, psi = found.T
-    return np.asarray(a * y + b * psi + rig.damping * np.expm1(y))
+    friction = np.empty(len(times))
+    friction[order] = a * y + b * psi + rig.damping * np.expm1(y)
+    now, later = np.split(friction, 2)
+    return FrictionCourse(now, (later - now) / (APART * D_c))
 
 
 def _first(rig: SpringSlider, a: float) -> float:
