@@ -6,13 +6,13 @@ from math import pi, sin
 import numpy as np
 import pytest
 import xarray as xr
-from scipy.signal import ShortTimeFFT
+from scipy.signal import ShortTimeFFT, lfilter
 from scipy.signal.windows import hamming
 from tests.measured import read_measured
 
 import stiction as st
 from stiction.analysis.measured_line import strongest_line
-from stiction.analysis.oscillation import apart
+from stiction.analysis.oscillation import apart, stands_out
 from stiction.analysis.signals.ridge import best_path
 from stiction.plotting.analysis.oscillation import plot_oscillation
 from stiction.plotting.page.canvas import figure_of
@@ -270,6 +270,34 @@ def test_noise_of_any_color_has_no_line(color: int) -> None:
             force = np.cumsum(force)
         found = strongest_line(st.Record(time=time, force=force), 5.0)
         assert np.isfinite(found["frequency"]).mean() < 0.05
+
+
+@pytest.mark.parametrize("count", [300, 400, 650, 1000])
+@pytest.mark.parametrize("like_the_one_before", [0.0, 0.5, 0.9])
+def test_short_noise_has_no_line(count: int, like_the_one_before: float) -> None:
+    """Of 400 samples in 85 of 100: a narrow band was compared with its last line, many times."""
+    time, seen = np.arange(count) * 1e-3, 0
+    for seed in range(100):
+        white = np.random.default_rng((seed, count)).normal(size=count + 100)
+        noise = lfilter([1.0], [1.0, -like_the_one_before], white)[100:]
+        record = st.Record(time=time, force=1.0 + 0.01 * noise)
+        seen += stands_out(strongest_line(record, 100.0 / record.duration))
+    assert not seen  # at most 1 in 1000
+
+
+@pytest.mark.parametrize(("count", "height"), [(400, 20.0), (650, 3.0), (1000, 2.0)])
+def test_a_sine_in_short_noise_is_a_line(count: int, height: float) -> None:
+    """Heights in standard deviations: the fewer lines there are, the less certain is the floor."""
+    time = np.arange(count) * 1e-3
+    for seed in range(50):
+        random = np.random.default_rng((seed, count, 1))
+        low = 100.0 / time[-1]
+        frequency = random.uniform(1.05 * low, 480.0)
+        force = random.normal(size=count) + height * np.sin(2.0 * pi * frequency * time)
+        found = strongest_line(st.Record(time=time, force=force), low)
+        assert stands_out(found)
+        width = 1e4 / count  # of a line
+        assert float(found["frequency"].median()) == pytest.approx(frequency, abs=width)
 
 
 @pytest.mark.parametrize("step", [0.05, 0.1, 0.2])

@@ -2,15 +2,21 @@
 
 from __future__ import annotations
 
+from math import exp, lgamma
+
 import numpy as np
 
 from stiction.arrays import TINY, Floats, Indices, xr
 from stiction.errors import ResultError
 
 # Amplitudes of noise are Rayleigh-distributed: 1 in 500 windows of 1000 lines has one that is
-# five times their median, exp(-25 ln 2) for each.
+# five times their median; see `chance_of_noise`.
 STANDS_OUT = 5.0
 BESIDE = 25  # lines to each side that a line is compared with
+LOBE = 5  # of them: a sine takes so many through a Hamming window
+FEWEST = 3  # lines that a band needs, and others that a line is compared with
+CHANCE = 3e-4  # of noise in a window, where few lines make their median uncertain
+ALIKE = 0.55  # independent lines for each line of a Hamming window: powers of neighbours correlate
 
 
 def follow_ridge(
@@ -40,8 +46,9 @@ def follow_ridge(
     Dataset
         Over ``time``: ``frequency`` (Hz), NaN where nothing stands out; ``amplitude`` (unit of
         the spectrogram); ``prominence``, its ratio to the median of the 51 lines around it at
-        that time, inclined as they are. A line stands out from 5 on, which noise alone reaches in
-        one of some 10 000 windows.
+        that time, inclined as they are; in a band of up to 25 lines, less the five of a sine. A
+        line stands out from 5 on; in a band of fewer than 51 lines, whose median is less certain,
+        from more: 5.8 for 30 lines, 19 for 11.
 
     Examples
     --------
@@ -53,10 +60,10 @@ def follow_ridge(
     100
     """
     band = amplitude.sel(frequency=slice(low, high))
-    if band.sizes["frequency"] < 3:
+    if band.sizes["frequency"] < FEWEST:
         raise ResultError(
             f"{band.sizes['frequency']} lines lie between {low:g} Hz and {high:g} Hz and at "
-            "least 3 are needed; widen the windows of the spectrogram"
+            f"least {FEWEST} are needed; widen the windows of the spectrogram"
         )
     level = np.log(np.maximum(band.values, _rounding(band.values)))
     path = best_path(level, jump, stiffness)
@@ -65,7 +72,7 @@ def follow_ridge(
     frequency = lines[path] + offset * (lines[1] - lines[0])
     height = np.exp(peak)
     prominence = np.exp(peak - _surroundings(level, lines, path))
-    frequency[prominence < STANDS_OUT] = np.nan
+    frequency[prominence < least_prominence(len(level))] = np.nan
     unit = amplitude.attrs.get("units", "")
     return xr.Dataset(
         {
@@ -86,21 +93,65 @@ def _rounding(amplitudes: Floats) -> float:
     return float(max(known.eps * amplitudes.max(), known.tiny))
 
 
+def least_prominence(lines: int) -> float:
+    """Return the ratio to the median from which a line of a band of so many lines stands out.
+
+    Examples
+    --------
+    >>> [round(least_prominence(lines), 1) for lines in (11, 30, 51, 1000)]
+    [18.8, 5.8, 5.0, 5.0]
+    """
+    others, power = ALIKE * _own_and_others(lines)[1], STANDS_OUT**2
+    while lines <= 2 * BESIDE and lines * chance_of_noise(power, others) > CHANCE:
+        power += 1.0
+    return float(power**0.5)
+
+
+def _own_and_others(lines: int) -> tuple[int, int]:
+    """Return how many lines around a path are left out, and how many it is compared with.
+
+    A sine's own lines make up much of a narrow band; in a wider one they hardly change a median.
+    """
+    own = min(LOBE, lines - FEWEST) if lines <= BESIDE else 0
+    return own, min(2 * BESIDE + 1, lines) - own
+
+
+def chance_of_noise(ratio: float, lines: float) -> float:
+    """Return the probability that the power of noise in a line is `ratio` medians of other lines.
+
+    Powers of noise are exponentially distributed. Their median over n lines is the sum of E_j/j
+    for j from n/2 to n, with E_j exponential as well (A. Renyi, Acta Math. Acad. Sci. Hung. 4, 191
+    (1953)), so that the mean of exp(-ratio median) is the product of j/(j + ratio).
+
+    Examples
+    --------
+    >>> f"{chance_of_noise(25.0, 51):.1g}"  # 2^-25 is 3e-8: the median is uncertain
+    '2e-06'
+    """
+    above, below = lines + 1.0, 0.5 * (lines + 1.0)
+    return exp(lgamma(above) - lgamma(below) + lgamma(below + ratio) - lgamma(above + ratio))
+
+
 def _surroundings(level: Floats, lines: Floats, path: Indices) -> Floats:
     """Return the logarithm of the median of the lines around a path, at each time.
 
     Noise that falls off with frequency lifts the lines at the lower end of a band above the median
     of those around them, all of which are higher: a power of the frequency leads through the
-    medians of the lower and the upper half.
+    medians of the lower and the upper half. Beyond these it is twice as uncertain: there it may
+    lift the level, not lower it. Each line counts once, however few there are.
     """
-    near = np.clip(path - BESIDE, 0, max(0, len(level) - 2 * BESIDE - 1))
-    rows = np.minimum(near + np.arange(2 * BESIDE + 1)[:, None], len(level) - 1)
+    own, count = _own_and_others(len(level))
+    first = np.clip(path - BESIDE, 0, len(level) - own - count)
+    rows = first + np.arange(count)[:, None]
+    rows += own * (rows >= np.clip(path - own // 2, 0, len(level) - own))
     around, octave = level[rows, np.arange(len(path))], np.log(lines[rows])
-    halves = slice(BESIDE + 1), slice(BESIDE, None)
+    halves = slice((count + 1) // 2), slice(count // 2, None)
     low, high = (np.median(around[half], axis=0) for half in halves)
     left, right = (np.median(octave[half], axis=0) for half in halves)
     share = (np.log(lines[path]) - left) / np.maximum(right - left, TINY)
-    return np.asarray(low + np.where(right > left, share, 0.5) * (high - low))
+    share = np.where(right > left, share, 0.5)
+    nearer = np.where(share < 0.0, low, np.where(share > 1.0, high, -np.inf))
+    return np.asarray(np.maximum(low + share * (high - low), nearer))
 
 
 def best_path(level: Floats, jump: int, stiffness: float) -> Indices:
