@@ -49,6 +49,20 @@ def test_what_is_ambiguous_ends_with_status_2(data, capsys):
     assert sorted(data.parent.iterdir()) == [data]
 
 
+@pytest.mark.parametrize("value", ["-1kg", "-1 kg", "-.5 kg"])
+def test_a_quantity_below_zero_is_a_value_and_no_option(data, capsys, value):
+    """The library takes a word with a hyphen for an option: "--mass needs a value"."""
+    units = ("--time", "ms", "--force", "mN", "--zero", "-3 mN", "--begin", "-1s")
+    assert inside("import", data, *units) == 0
+    assert "zero" in capsys.readouterr().out
+    assert inside("import", data, *units, "--mass", value) == 2
+    assert f"mass: must be greater than 0, is '{value}'" in capsys.readouterr().err
+    assert inside("import", data, "--mass", "--zero", "3 mN") == 2
+    assert "--mass needs a value" in capsys.readouterr().err
+    assert inside("import", data, "--mass", "1 kg", value) == 2
+    assert "join a value below zero to its option: --zero=" in capsys.readouterr().err
+
+
 def test_where_nothing_can_be_written_nothing_is_read_or_written(data, capsys):
     units = ("--time", "ms", "--force", "mN")
     assert inside("import", data, *units, "-o", data.with_name("record.csv")) == 2

@@ -15,6 +15,7 @@ from rich.console import Console
 import stiction
 from stiction.cli.refusals import command_of, message_of, show_notices
 from stiction.cli.terminal import give_up, spell_out
+from stiction.cli.tokens import join_negative_values
 from stiction.errors import (
     LONGEST_MESSAGE,
     LONGEST_PATH,
@@ -98,8 +99,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     spell_out()
     show_notices()
     errors = Console(stderr=True, soft_wrap=True, emoji=False)
+    words = join_negative_values(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app(arguments, result_action="return_value", print_error=False, exit_on_error=False)
+        code = app(words, result_action="return_value", print_error=False, exit_on_error=False)
         if sys.stdout is not None:
             sys.stdout.flush()
     except cyclopts.CycloptsError as error:

@@ -6,10 +6,11 @@ import logging
 import re
 from inspect import getdoc
 
-from cyclopts import CycloptsError, MissingArgumentError
+from cyclopts import CycloptsError, MissingArgumentError, UnknownOptionError
 from cyclopts.exceptions import UnusedCliTokensError
 
 from stiction.cli.terminal import note
+from stiction.cli.tokens import is_negative
 from stiction.errors import echo
 
 EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help of an option
@@ -26,6 +27,11 @@ def message_of(error: CycloptsError) -> str:
                 f"{echo(first)} is one argument too many; put a value that holds blanks in "
                 "quotation "
                 'marks: --set "V = 2 mm/s"'
+            )
+        case UnknownOptionError(token=token) if is_negative(token.value or token.keyword or ""):
+            return (
+                f"{echo(token.value or token.keyword)} begins with a hyphen, as an option does; "
+                'join a value below zero to its option: --zero="-3 mN"'
             )
     return str(error)
 

@@ -1,4 +1,4 @@
-"""Parquet, with units in the columns' metadata or names."""
+"""Parquet, with units in the columns' metadata or names, and dates of any time zone."""
 
 from __future__ import annotations
 
@@ -24,9 +24,16 @@ def read(path: Path, layout: TextLayout) -> list[FileTable]:
         content = file.read()
     members = []
     for number, field in enumerate(content.schema):
-        if not (types.is_integer(field.type) or types.is_floating(field.type)):
-            continue
+        column = content.column(number)
         unit = (field.metadata or {}).get(b"units", b"").decode("utf-8", "replace")
-        column = content.column(number).cast("float64").to_numpy()
-        members.append(Member("", field.name, column, unit))
+        if types.is_timestamp(field.type) or types.is_duration(field.type):
+            values = column.to_numpy()  # in universal time
+        elif types.is_time(field.type):  # of day
+            whole = column.cast("int32" if types.is_time32(field.type) else "int64")
+            values, unit = whole.cast("float64").to_numpy(), str(field.type.unit)
+        elif types.is_integer(field.type) or types.is_floating(field.type):
+            values = column.cast("float64").to_numpy()
+        else:
+            continue
+        members.append(Member("", field.name, values, unit))
     return tables_of(members, "Parquet")

@@ -135,7 +135,58 @@ def test_netcdf_of_both_formats(tmp_path, engine):
     assert record.origin.format == "NetCDF"
 
 
+DATES = np.datetime64("2026-03-01T12:00:00", "ns") + np.arange(0, 50, 1) * np.timedelta64(1, "s")
+
+
+@pytest.mark.parametrize("unit", ["seconds", "milliseconds", "nanoseconds", "hours", "days"])
+@pytest.mark.parametrize("since", ["1970-01-01", "2026-03-01 11:59:00"])
+def test_netcdf_with_dates(tmp_path, unit, since):
+    path, kind = tmp_path / "a.nc", "float64" if unit in ("hours", "days") else "int64"
+    data = xr.Dataset({"force": ("time", np.arange(50.0), {"units": "N"})}, {"time": DATES})
+    encoding = {"time": {"units": f"{unit} since {since}", "dtype": kind}}
+    data.to_netcdf(path, engine="h5netcdf", encoding=encoding)
+    record = st.read_record(path)
+    assert record.time == pytest.approx(np.arange(50.0), abs=1e-5 if unit == "days" else 1e-6)
+    assert f"{unit} since {since[:10]}" in record.origin.start
+
+
+@pytest.mark.parametrize("resolution", ["s", "ms", "us", "ns"])
+def test_npz_with_dates(tmp_path, resolution):
+    dates = DATES.astype(f"M8[{resolution}]")
+    dates[7] = np.datetime64("NaT")
+    np.savez(tmp_path / "a.npz", date=dates, force_N=np.arange(50.0))
+    record = st.read_record(tmp_path / "a.npz", force="N")
+    assert record.time.tolist() == [float(x) for x in range(50) if x != 7]
+    assert record.origin.start.startswith("2026-03-01T12:00:00")
+
+
 # --- Parquet --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("resolution", ["s", "ms", "us", "ns"])
+@pytest.mark.parametrize("zone", [None, "UTC", "Europe/Berlin"])
+def test_parquet_with_dates(tmp_path, resolution, zone):
+    """They were left out without a word: "no column is the time"."""
+    pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    dates = pyarrow.array([*DATES, None], pyarrow.timestamp("ns"))
+    dates = dates.cast(pyarrow.timestamp(resolution, tz=zone))
+    table = pyarrow.table({"index": dates, "force [N]": np.arange(51.0)})
+    parquet.write_table(table, tmp_path / "a.parquet")
+    record = st.read_record(tmp_path / "a.parquet")
+    assert record.time.tolist() == np.arange(50.0).tolist()
+    assert record.origin.start.startswith("2026-03-01T12:00:00")
+
+
+def test_parquet_with_durations_and_times_of_day(tmp_path):
+    pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    for kind in (pyarrow.duration("ms"), pyarrow.time32("ms"), pyarrow.time64("us")):
+        size = 1000 if kind == pyarrow.time64("us") else 1
+        values = pyarrow.array(3000 * size * np.arange(9, dtype=np.int64))
+        values = values.cast("int32") if kind == pyarrow.time32("ms") else values
+        table = pyarrow.table({"time": values.cast(kind), "force [N]": np.arange(9.0)})
+        parquet.write_table(table, tmp_path / "a.parquet")
+        found = st.read_record(tmp_path / "a.parquet").time
+        assert found == pytest.approx(3.0 * np.arange(9.0), rel=1e-15)
 
 
 def test_parquet(tmp_path, slider):

@@ -847,3 +847,43 @@ def test_a_table_of_results_above_the_samples(write):
 def test_what_is_stated_of_the_apparatus_is_echoed(write):
     record = st.read_record(write(f"t [s],F [N]\n{lines()}"), mass="250 g", stiffness="1 N/mm")
     assert "stated: stiffness 1 kN/m, mass 250 g" in notes(record)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_units_may_stand_behind_each_number(write, seed):
+    random = np.random.default_rng(seed)
+    mark, sign = random.choice(["\t", ";", ",", "|"]), random.choice([".", ","])
+    sign = "." if mark == "," else sign
+    gap, quote = random.choice(["", " "]), random.choice(["", '"'])
+    [second, t], [newton, f] = (
+        {"s": ("s", 1.0), "ms": ("ms", 1e3)}[random.choice(["s", "ms"])],
+        {"N": ("N", 1.0), "mN": ("mN", 1e3), "kN": ("kN", 1e-3)}[random.choice(["N", "mN", "kN"])],
+    )
+    time, force = 0.01 * np.arange(60), 1.0 + 0.001 * random.integers(0, 999, 60)
+    rows = [
+        mark.join(
+            f"{quote}{value:.6g}{gap}{unit}{quote}".replace(".", sign)
+            for value, unit in ((x * t, second), (y * f, newton))
+        )
+        for x, y in zip(time, force, strict=True)
+    ]
+    head = [f"time{mark}force"] * random.integers(0, 2)
+    record = st.read_record(write("\n".join([*head, *rows])))
+    assert record.time == pytest.approx(time, abs=1e-12)
+    assert record.force == pytest.approx(force, rel=1e-5)
+
+
+def test_a_column_with_two_units_is_refused(write):
+    rows = "\n".join(f"{0.1 * x:.1f} s;{x} {'N' if x > 20 else 'mN'}" for x in range(40))
+    with pytest.raises(st.ResultError, match="column 2 is in mN and in N; write it in one unit"):
+        st.read_record(write(f"time;force\n{rows}"))
+
+
+def test_a_heading_has_its_unit_before_the_cells(write):
+    rows = "\n".join(f"{0.1 * x:.1f};{x} g" for x in range(40))
+    assert st.read_record(write(f"time [s];force [mN]\n{rows}")).force[3] == pytest.approx(3e-3)
+
+
+def test_half_days_are_no_units(write):
+    rows = "\n".join(f"12:{x:02d} PM;{x}.5" for x in range(40))
+    assert st.read_record(write(f"time;force [N]\n{rows}")).time[2] == 120.0

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from stiction.arrays import Floats, Indices
 from stiction.errors import Faults, ResultError, echo
 from stiction.formats import TextLayout
 from stiction.formats.table import FileColumn, FileTable, Remark, number_of
+from stiction.formats.text.cell_units import units_of, without_units
 from stiction.formats.text.dialect import (
     MISSING,
     Dialect,
@@ -32,9 +33,19 @@ NUMERIC = 0.5  # of a column's cells: with fewer numbers it is one of words
 
 def read(path: Path, layout: TextLayout) -> list[FileTable]:
     """Return the tables of a text file."""
-    lines = lines_of(path, layout.largest)
+    given = lines_of(path, layout.largest)
+    lines = without_units(given)
     dialect = find_dialect(path, lines, layout)
-    return read_lines(path, lines, dialect)
+    units = units_of(path, given, dialect) if lines is not given else {}
+    return [_with_units(table, units) for table in read_lines(path, lines, dialect)]
+
+
+def _with_units(table: FileTable, units: Mapping[int, str]) -> FileTable:
+    """Return a table with the units of its columns that their headings do not state."""
+    columns = tuple(
+        replace(each, unit=each.unit or units.get(each.number - 1, "")) for each in table.columns
+    )
+    return replace(table, columns=columns) if units else table
 
 
 @dataclass
