@@ -49,6 +49,16 @@ def test_what_is_ambiguous_ends_with_status_2(data, capsys):
     assert sorted(data.parent.iterdir()) == [data]
 
 
+def test_cycles_that_are_not_shown_are_counted(tmp_path, capsys):
+    time = np.arange(0.0, 24.0, 0.01)
+    record = st.Record(time=time, force=1.0 + 0.1 * (time % 2.0))
+    count = st.analyse(record).cycles.sizes["cycle"]
+    assert inside("analyse", record.save(tmp_path / "a.nc")) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert count > 8
+    assert f"These are the first 8 of {count} cycles; cycles.csv has all." in said
+
+
 @pytest.mark.parametrize("value", ["-1kg", "-1 kg", "-.5 kg"])
 def test_a_quantity_below_zero_is_a_value_and_no_option(data, capsys, value):
     """The library takes a word with a hyphen for an option: "--mass needs a value"."""

@@ -9,6 +9,7 @@ from stiction.formats.channels import CHANNELS, plain
 from stiction.text.unit_text import UnitError, factor
 
 GRAVITY = 9.80665  # m/s^2, the standard acceleration of gravity (CGPM 1901): gram-force
+MEGA, MEGANEWTONS = 1e6, "meganewtons, a million newtons each; millinewtons are mN"
 SPELLED = {
     "sec": "s", "secs": "s", "second": "s", "seconds": "s", "sek": "s", "sekunden": "s",
     "secondes": "s", "segundos": "s", "msec": "ms", "millisec": "ms", "milliseconds": "ms",
@@ -62,7 +63,8 @@ def size_of(text: str, unit: str, stated: str = "") -> Size | None:
             return Size(times * one.value * per, one.note)
     size = _factor(name, unit)
     if size is not None:
-        return Size(times * size)
+        mega = unit == "N" and name.startswith("M") and size >= MEGA
+        return Size(times * size, f"{name} is read as {MEGANEWTONS}" if mega else "")
     mass = _factor(name, "kg") if unit == "N" else None
     if mass is not None:
         gram = "gram-force" if name == "g" else f"the weight of a mass in {name}"

@@ -241,6 +241,22 @@ def test_grams_of_force(write, unit, size):
     assert ("read as gram-force" in notes(record)) == (unit == "g")
 
 
+@pytest.mark.parametrize("said", [{}, {"force": "MPa"}])
+def test_a_stress_is_a_force_by_the_area_it_acts_on(write, said):
+    path = write("time [s],shear stress [MPa]\n" + lines(columns=(TIME, FORCE[::-1])))
+    with pytest.raises(st.ResultError, match=r"--force '2=25 mm\^2\*MPa'; a stress times the area"):
+        st.read_record(path, **said)
+    record = st.read_record(path, force="2=25 mm^2*MPa")
+    assert record.force == pytest.approx(25.0 * FORCE[::-1])
+
+
+@pytest.mark.parametrize("said", [{}, {"force": "MN"}])
+def test_meganewtons_are_named_in_words(write, said):
+    record = st.read_record(write("time [s],force [MN]\n" + lines()), **said)
+    assert "MN is read as meganewtons, a million newtons each; millinewtons are mN" in notes(record)
+    assert "meganewtons" not in notes(st.read_record(write("time [s],force [mN]\n" + lines())))
+
+
 def test_a_unit_that_is_a_time_is_none_of_a_force(write):
     path = write(f"time [s],force [s]\n{lines()}")
     with pytest.raises(st.ResultError, match="no column is the force along the drive"):

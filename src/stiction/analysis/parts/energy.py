@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.analysis.parts.wording import SHOWN
+from stiction.analysis.parts.wording import SHOWN, rows_left_out
 from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.text.columns import Quantity, grid
@@ -72,7 +72,8 @@ def section(found: Analysis) -> Section:
         else ""
     )
     sentence = f"The work of the drive, and where it goes, cycle by cycle. {closes}{less}"
-    return Section("Energy", [sentence], grid(columns, SHOWN, alike="J"))
+    more = rows_left_out(len(budget["start"]), "rows", "energy.csv")
+    return Section("Energy", [sentence, *more], grid(columns, SHOWN, alike="J"))
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.oscillation import hides, stands_out
-from stiction.analysis.parts.wording import SHOWN
+from stiction.analysis.parts.wording import SHOWN, rows_left_out
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
 from stiction.text.columns import Quantity, grid
@@ -56,6 +56,7 @@ def section(found: Analysis) -> Section:
         if np.isfinite(np.asarray(each.values, dtype=np.float64)[:SHOWN]).any()
     }
     lines[0] += _note_hidden_cycles(found)
+    lines += rows_left_out(phases.sizes["phase"], "stick phases", "oscillation-phases.csv")
     return Section("Oscillation", lines, grid(known, SHOWN))
 
 

@@ -22,6 +22,19 @@ def with_spread(spread: float, mean: float, unit: str) -> str:
     return in_words(spread, unit, 2)
 
 
+def rows_left_out(count: int, things: str, file: str) -> list[str]:
+    """Return a sentence on the rows that a table lacks, if there are more than it shows.
+
+    Examples
+    --------
+    >>> rows_left_out(53, "cycles", "cycles.csv"), rows_left_out(8, "cycles", "cycles.csv")
+    (['These are the first 8 of 53 cycles; cycles.csv has all.'], [])
+    """
+    if count <= SHOWN:
+        return []
+    return [f"These are the first {SHOWN} of {count} {things}; {file} has all."]
+
+
 def number(value: Any) -> float | None:
     """Return a number for JSON, None for NaN and infinity."""
     return float(value) if isfinite(float(value)) else None

@@ -46,6 +46,7 @@ def analyse(
     from stiction.analysis.export import write as write_tables
     from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.parts.cycles import each_cycle
+    from stiction.analysis.parts.wording import rows_left_out
     from stiction.analysis.record import Record
     from stiction.analysis.report import analyse as understand
     from stiction.cli.progress import progress
@@ -65,9 +66,10 @@ def analyse(
         paths = write_tables(found, folder)
         for name, figure in figures(found).items():
             paths.append(write(figure, drawable(folder / f"{name}.png")))
-    if found.cycles.sizes["cycle"]:
+    if count := found.cycles.sizes["cycle"]:
         at = [part.title for part in parts].index("Cycles") + 1
-        parts.insert(at, Section("Cycle by cycle", [], each_cycle(found.cycles)))
+        more = rows_left_out(count, "cycles", "cycles.csv")
+        parts.insert(at, Section("Cycle by cycle", more, each_cycle(found.cycles)))
     if isinstance(source, Record) and source.origin is not None:
         parts = [*source.origin.tables(), *parts]
     print_sections(str(result), parts)

@@ -14,6 +14,7 @@ from stiction.formats.table import FileColumn, FileTable
 from stiction.formats.units import is_electric, is_ratio, size_of, split_unit
 
 DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
+AN_AREA = "25 mm^2"  # that turns a stress into a force, for example
 
 
 class UnclearColumns(ResultError):
@@ -353,9 +354,11 @@ def _refuse_lack(path: object, table: FileTable, name: str, remedy: str = "") ->
 def _with_columns(path: object, table: FileTable, name: str, why: str) -> str:
     """Return why a channel has no column, with the columns that there are."""
     columns = ", ".join(str(each) for each in table.columns) or "none"
+    example = _example(table, name)
+    stress = "; a stress times the area that it acts on is a force" if AN_AREA in example else ""
     return (
         f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; say for example "
-        f"{_flag(name)} '{_example(table, name)}'"
+        f"{_flag(name)} '{example}'{stress}"
     )
 
 
@@ -367,6 +370,8 @@ def _example(table: FileTable, name: str) -> str:
     number = column.number if column else 2
     if column and is_electric(column.unit):
         return f"{number}={_scale(channel.unit, column.unit)}"
+    if column and channel.unit == "N" and size_of(column.unit, "Pa") is not None:
+        return f"{number}={AN_AREA}*{column.unit}"
     if increasing and column and DAYS[0] < float(np.nanmean(column.values)) < DAYS[1]:
         return f"{number}=d"
     return f"{number}={channel.example}"
