@@ -12,8 +12,8 @@ from stiction.analysis.motion.doubts.warnings import (
     turns_round,
     warnings,
     warnings_of_run,
-    why_no_friction,
 )
+from stiction.analysis.motion.doubts.zero import why_no_friction
 from stiction.analysis.motion.drift import shown_drift
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import (

@@ -88,11 +88,32 @@ def test_a_drift_seen_in_the_second_half_is_taken_off_there_only() -> None:
 
 def test_a_zero_that_is_off_is_seen_and_taken_off(force) -> None:
     time, newtons = force
+    later = np.concatenate([time[:1000], time[999] + 5e-4 + time])
+    resting = np.concatenate([np.zeros(1000), newtons])  # the drive starts half a second later
     assert "at 300 mN: if the spring was unloaded, give zero='0.3 N'" in doubts_in_words(
-        time, newtons + 0.3
+        later, resting + 0.3
     )
-    assert doubts_in_words(time, newtons + 0.3, zero="0.3 N") == ""
+    assert doubts_in_words(later, resting + 0.3, zero="0.3 N") == ""
     assert "against the drive" in doubts_in_words(time, newtons - 2.5)
+
+
+@pytest.mark.parametrize("slides", [False, True])
+def test_a_zero_is_named_only_where_the_drive_is_seen_at_rest(slides: bool) -> None:
+    """A record that begins a moment later begins with a loaded spring: "give zero='0.1 N'"."""
+    for seed in range(60):
+        random = np.random.default_rng(seed)
+        rate, rests, noise = random.uniform(0.2, 2.0), seed % 3 == 0, 10 ** random.uniform(-5, -2)
+        time = np.arange(0.0, 14.0 / rate, random.choice([1e-3, 4e-3, 1e-2]))
+        from_rest = rate * (time - (0.6 / rate if rests else 0.0))
+        cycle = 0.6 + 0.4 * ((from_rest - 1.0) / 0.4 % 1.0)
+        force = np.where(from_rest < 1.0, np.maximum(from_rest, 0.0), 0.8 if slides else cycle)
+        force += 0.2 * rests + noise * random.standard_normal(len(time))
+        begins = 0.0 if rests else random.uniform(0.05, 0.25) / rate
+        part = time >= begins
+        record = st.Record(time=time[part], force=force[part], normal_load=5.0)
+        said = " ".join(assess(record).warnings)
+        assert ("was unloaded, give zero='0." in said) == rests
+        assert ("does not show the unloaded spring" in said) == (not rests)
 
 
 def test_coarse_sampling_is_named() -> None:

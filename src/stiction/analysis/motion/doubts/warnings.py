@@ -22,20 +22,18 @@ from stiction.analysis.motion.doubts.sampling import (
     doubt_slips_between_samples,
     doubt_times,
 )
+from stiction.analysis.motion.doubts.zero import doubt_zero, is_about_zero
 from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import (
-    AT_REST,
     LOADING_RATE,
     SWING,
     StatedQuantity,
-    first_reading,
 )
 from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.hum import Line, of_mains
-from stiction.analysis.signals.robust import largest_magnitude
 from stiction.arrays import xr
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -46,8 +44,6 @@ LEAST_MU = 0.01  # of dry friction: superlubricity aside
 UNITS = (("mN", "milli", 1e-3), ("uN", "micro", 1e-6), ("kN", "kilo", 1e3))  # size, N
 TINY_MU = 1e-3  # no friction is so small, but of a film of fluid
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
-ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
-BOTH_SIGNS = 0.3  # of the largest force: so far it goes the other way where a drive turns
 VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
 # By which power of 1000 the rate of a force is off in another unit: quantity, unit, remedy
@@ -62,8 +58,6 @@ CAUSES = {
 }
 STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
 QUICKER = 2.0  # times k/m: so quick a vibration may be that of both springs
-NOISE = 5.0  # standard deviations: noise alone is as far from zero once in a million readings
-SAME = 1e-9  # of the largest force: readings that differ by less are equal but for rounding
 
 
 def warnings(
@@ -94,7 +88,7 @@ def warnings(
         *doubt_filter(record, cycles),
         *doubt_drops_in_noise(record, kind, cycles),
         *_drift(record, drift),
-        *_zero(record, friction, cycles),
+        *doubt_zero(record, friction, cycles),
         *doubt_times(record),
         *doubt_repeats(record),
     ]
@@ -206,7 +200,7 @@ def _implausible_friction(record: Record, friction: Friction, cycles: xr.Dataset
     mu = max((abs(each.coefficient) for each in known), default=np.nan)
     if TINY_MU <= mu <= LARGEST_MU or not np.isfinite(mu):
         return
-    if mu < TINY_MU and _is_about_zero(friction, cycles):
+    if mu < TINY_MU and is_about_zero(friction, cycles):
         return
     load = in_words(record.normal_load or 0.0, "N")
     its = next(
@@ -293,61 +287,4 @@ def _drift(record: Record, drift: Drift | None) -> Iterator[str]:
             f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} "
             f"{where}, and friction coefficients with it. If it is the load cell, analyse "
             "st.analysis.detrend(record)."
-        )
-
-
-def _is_about_zero(friction: Friction, cycles: xr.Dataset) -> bool:
-    """Return whether the mean friction is nearly nothing beside the swings, or the scatter."""
-    mean = friction.kinetic
-    if mean is None:
-        return False
-    swing = 0.5 * float(cycles["drop"].median()) if cycles.sizes["cycle"] else mean.spread
-    return abs(mean.force) < ABOUT_ZERO * swing
-
-
-def why_no_friction(friction: Friction, cycles: xr.Dataset) -> str:
-    """Return why no force of a record is a friction, by its mean; empty if it may be one."""
-    if friction.kinetic is None:
-        return ""
-    if _is_about_zero(friction, cycles):
-        return "the mean force is about zero, as no friction is"
-    return "the mean force is against the drive" if friction.kinetic.force < 0.0 else ""
-
-
-def _zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
-    """Doubt the zero if a record begins unloaded, or reaches impossible values."""
-    largest = largest_magnitude(record.force)
-    if friction.kinetic is not None and _is_about_zero(friction, cycles):
-        yield (
-            f"The mean friction is about zero, {in_words(friction.kinetic.force, 'N')}: the zero "
-            "of the force is off, as behind an amplifier that lets no constant force through, or "
-            "the drive goes back and forth; give zero=, the reading without load."
-        )
-        return
-    if friction.kinetic is not None and friction.kinetic.force < 0.0:
-        low, high = float(record.force.min()), float(record.force.max())
-        if high > BOTH_SIGNS * largest:
-            yield (
-                f"The force lies between {in_words(low, 'N')} and {in_words(high, 'N')}: the drive "
-                "goes back and forth, and a mean is not friction; or the zero of the force is off."
-            )
-            return
-        yield (
-            f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
-            "zero of the force is off, or its sign; give zero=, the reading without load."
-        )
-        return
-    if friction.break_away is None or record.zero is not None:
-        return
-    some = first_reading(record)
-    noise = float(np.std(np.diff(some))) / 2.0**0.5
-    first = float(some[0])
-    within = max(NOISE * noise, SAME * largest)  # of the middle, to either side
-    plateau = float(np.ptp(some)) < 2.0 * within
-    read = float(np.median(some)) if plateau else first
-    if abs(read) > max(AT_REST * largest, NOISE * noise):
-        turned = "; just after a turn of the drive it is not" if read < 0.0 else ""
-        yield (
-            f"The record begins before the first loading, at {in_words(read, 'N')}: if the spring "
-            f"was unloaded, give zero='{read:.4g} N'{turned}."
         )

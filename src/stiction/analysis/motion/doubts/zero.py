@@ -1,0 +1,110 @@
+"""Doubts about the zero of a force: what a record shows of it, and what it does not."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from stiction.analysis.motion.friction import Friction
+from stiction.analysis.motion.metadata import AT_REST, first_reading
+from stiction.analysis.record import Record
+from stiction.analysis.signals.robust import largest_magnitude
+from stiction.arrays import xr
+from stiction.recording.noise import white_noise
+from stiction.text.units import in_words
+
+ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
+BOTH_SIGNS = 0.3  # of the largest force: so far it goes the other way where a drive turns
+NOISE = 5.0  # standard deviations: noise alone is as far from zero once in a million readings
+SAME = 1e-9  # of the largest force: readings that differ by less are equal but for rounding
+# Parts of the time up to half of the first loading, two of which are compared
+PARTS = (8, 16, 32, 64)
+FEWEST = 4  # samples in each of them
+CONSTANT = 0.5  # of the average rate of that loading: a spring that is loaded already has all of it
+SURE = 3.0  # standard errors of the difference of two parts
+
+
+def is_about_zero(friction: Friction, cycles: xr.Dataset) -> bool:
+    """Return whether the mean friction is nearly nothing beside the swings, or the scatter."""
+    mean = friction.kinetic
+    if mean is None:
+        return False
+    swing = 0.5 * float(cycles["drop"].median()) if cycles.sizes["cycle"] else mean.spread
+    return abs(mean.force) < ABOUT_ZERO * swing
+
+
+def why_no_friction(friction: Friction, cycles: xr.Dataset) -> str:
+    """Return why no force of a record is a friction, by its mean; empty if it may be one."""
+    if friction.kinetic is None:
+        return ""
+    if is_about_zero(friction, cycles):
+        return "the mean force is about zero, as no friction is"
+    return "the mean force is against the drive" if friction.kinetic.force < 0.0 else ""
+
+
+def doubt_zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
+    """Doubt the zero if a record begins unloaded, or reaches impossible values."""
+    largest = largest_magnitude(record.force)
+    if friction.kinetic is not None and is_about_zero(friction, cycles):
+        yield (
+            f"The mean friction is about zero, {in_words(friction.kinetic.force, 'N')}: the zero "
+            "of the force is off, as behind an amplifier that lets no constant force through, or "
+            "the drive goes back and forth; give zero=, the reading without load."
+        )
+        return
+    if friction.kinetic is not None and friction.kinetic.force < 0.0:
+        low, high = float(record.force.min()), float(record.force.max())
+        if high > BOTH_SIGNS * largest:
+            yield (
+                f"The force lies between {in_words(low, 'N')} and {in_words(high, 'N')}: the drive "
+                "goes back and forth, and a mean is not friction; or the zero of the force is off."
+            )
+            return
+        yield (
+            f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
+            "zero of the force is off, or its sign; give zero=, the reading without load."
+        )
+        return
+    if friction.break_away is None or record.zero is not None:
+        return
+    some = first_reading(record)
+    noise = float(np.std(np.diff(some))) / 2.0**0.5
+    within = max(NOISE * noise, SAME * largest)  # of the middle, to either side
+    level = float(np.ptp(some)) < 2.0 * within
+    read = float(np.median(some)) if level else float(some[0])
+    if abs(read) <= max(AT_REST * largest, NOISE * noise):
+        return
+    turned = "; just after a turn of the drive it is not" if read < 0.0 else ""
+    if _begins_at_rest(record, read, friction.break_away.force):
+        yield (
+            f"The record begins before the first loading, at {in_words(read, 'N')}: if the spring "
+            f"was unloaded, give zero='{read:.4g} N'{turned}."
+        )
+        return
+    after = ", as after a turn of the drive" if read < 0.0 else ""
+    yield (
+        f"The record does not show the unloaded spring: from its first reading on, "
+        f"{in_words(read, 'N')}, the force rises. The spring was loaded already{after}, or the "
+        "zero is off: give zero=, the reading without load."
+    )
+
+
+def _begins_at_rest(record: Record, read: float, peak: float) -> bool:
+    """Return whether the force is constant at first, and loaded only then up to a peak (N).
+
+    A drive that starts after the recording leaves the spring as it was. In a force that rises from
+    the first sample on, neighbouring parts differ by as much as half of its loading has it.
+    """
+    force, rise = record.force, peak - read
+    half = int(np.argmax(force >= read + 0.5 * rise))
+    noise = white_noise(force)
+    for parts in PARTS:
+        size = half // parts
+        if size < FEWEST:
+            break
+        before, after = float(force[:size].mean()), float(force[size : 2 * size].mean())
+        error = SURE * noise * (2.0 / size) ** 0.5
+        if abs(after - before) + error < CONSTANT * 0.5 * rise / parts:
+            return True
+    return False
