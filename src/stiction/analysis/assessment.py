@@ -9,12 +9,13 @@ from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.warnings import (
+    VARIES,
     turns_round,
     warnings,
     warnings_of_run,
 )
 from stiction.analysis.motion.doubts.zero import why_no_friction
-from stiction.analysis.motion.drift import shown_drift
+from stiction.analysis.motion.drift import error_of_zero, shown_drift
 from stiction.analysis.motion.friction import Friction, find_friction, without_loading
 from stiction.analysis.motion.metadata import (
     LOADING_RATE,
@@ -85,6 +86,9 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     stated = compare_metadata(record, regime.kind, cycles, drift)
     alike = none if turns else cycles  # those of two strokes are none
     doubts = warnings(record, regime.kind, alike, friction, stated, drift)
+    off = error_of_zero(record, cycles, drift)
+    if off and friction.kinetic is not None and record.load_variation() <= VARIES:
+        friction = friction._replace(kinetic=friction.kinetic.with_error(off))
     unreal = why_no_friction(friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)

@@ -25,6 +25,7 @@ class Drift(NamedTuple):
     """A steady change of the force (N/s), its standard error, and the total change (N).
 
     start : when it is seen to begin, s: a force without cycles loads before its second half.
+    sure : whether there is one; stands_out : whether it is so large that it is worth a sentence.
     """
 
     rate: float
@@ -32,6 +33,7 @@ class Drift(NamedTuple):
     change: float
     start: float
     stands_out: bool
+    sure: bool = False
 
 
 def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
@@ -53,7 +55,7 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
     change = rate * (float(record.time[-1]) - start)
     large = abs(change) > WORTH * abs(float(middle.mean()))
     sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
-    return Drift(rate, error, change, start, stands_out=bool(large and sure))
+    return Drift(rate, error, change, start, stands_out=bool(large and sure), sure=bool(sure))
 
 
 def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
@@ -74,6 +76,18 @@ def shown_drift(record: Record, kind: str, cycles: xr.Dataset) -> Drift | None:
     if not np.isfinite(drift.error) or (not cycles.sizes["cycle"] and levels(record)):
         return None
     return drift
+
+
+def error_of_zero(record: Record, cycles: xr.Dataset, drift: Drift | None) -> float:
+    """Return how far a mean force without cycles is off (N) if its drift is that of the zero.
+
+    The zero is right at the first sample, as `detrend` takes it; the mean is that of the second
+    half. A drift may be that of friction instead: then the mean is right, at that time.
+    """
+    if drift is None or not drift.sure or cycles.sizes["cycle"]:
+        return 0.0
+    first, last = float(record.time[0]), float(record.time[-1])
+    return abs(drift.rate) * (0.5 * (drift.start + last) - first)
 
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:

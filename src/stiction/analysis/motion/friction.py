@@ -58,6 +58,13 @@ class Measured(NamedTuple):
     coefficient_error: float = np.nan
     coefficient_spread: float = np.nan
 
+    def with_error(self, further: float) -> Measured:
+        """Return the same with a `further` error of the force, N."""
+        error = float(np.hypot(self.error, further))
+        of_coefficient = further * abs(self.coefficient / self.force) if self.force else np.nan
+        its = float(np.hypot(self.coefficient_error, of_coefficient))
+        return self._replace(error=error, coefficient_error=its)
+
 
 class Friction(NamedTuple):
     """The friction of a record; for each None, `missing` gives the reason.
