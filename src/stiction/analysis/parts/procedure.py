@@ -1,4 +1,4 @@
-"""What a run shows of the friction test that its drive or its load makes."""
+"""What a run, or a record, shows of the friction test that its drive or its load makes."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.doubts.warnings import variations
+from stiction.analysis.record import Record
 from stiction.errors import ResultError
 from stiction.text.sections import Section
 from stiction.trajectory import Trajectory
@@ -15,18 +16,31 @@ if TYPE_CHECKING:
 
 
 def find(found: Analysis) -> Any:
-    """Return the first analysis of a test that suits a run; None where nothing varies."""
-    run = found.source
-    if not isinstance(run, Trajectory) or not variations(run):
-        return None
-    from stiction.analysis.protocols.healing import healing
-    from stiction.analysis.protocols.hysteresis import hysteresis
-    from stiction.analysis.protocols.load_dependence import load_dependence
-    from stiction.analysis.protocols.velocity_steps import velocity_steps
+    """Return the first analysis of a test that suits a run, or a record of the drive as well.
 
-    for analysis in (velocity_steps, healing, hysteresis, load_dependence):
+    None where nothing varies. Loops of a measured drive are two strokes, for which there are words.
+    """
+    source = found.source
+    if isinstance(source, Trajectory):
+        its = ("velocity_steps", "healing", "hysteresis", "load_dependence")
+        return _first(source, its) if variations(source) else None
+    if source.drive_position is None or source.normal_load is None:
+        return None
+    from stiction.analysis.protocols.friction_test import friction_test
+
+    with suppress(ResultError):
+        if len(friction_test(source).stretches) > 1:
+            return _first(source, ("velocity_steps", "healing"))
+    return None
+
+
+def _first(source: Trajectory | Record, names: tuple[str, ...]) -> Any:
+    """Return the first of some analyses that finds its test; None if there is none of them."""
+    import stiction.analysis as of
+
+    for name in names:
         with suppress(ResultError):
-            return analysis(run)
+            return getattr(of, name)(source)
     return None
 
 

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.protocols.measured_drive import measured_stretches
 from stiction.analysis.protocols.settling import SETTLED, STILL_LOADED, has_settled
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.digitised import resolution
@@ -200,8 +201,8 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
     source : Trajectory or Record
         A record needs its normal load.
     program : DriveProgram, optional
-        The program by which a record was taken, with t = 0 as in its time; that of the run is
-        known.
+        The program by which a record was taken, with t = 0 as in its time; by default its measured
+        `drive_position` tells. That of the run is known.
 
     Raises
     ------
@@ -213,12 +214,16 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
     source = as_record(source)
     if source.normal_load is None:
         raise ResultError("friction needs the normal load; give the record its normal_load")
-    if program is None:
+    loads = load_stretches(source.normal_load, None)
+    if program is not None:
+        return of_record(source, program, loads)
+    if source.drive_position is None:
         raise ResultError(
             "the drive of a record is unknown; give its program, such as "
-            "st.protocols.velocity_steps(...)"
+            "st.protocols.velocity_steps(...), or its measured drive_position"
         )
-    return of_record(source, program, load_stretches(source.normal_load, None))
+    measured = measured_stretches(source.time, source.drive_position, source.force)
+    return of_record(source, DriveProgram(), loads, measured)
 
 
 def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionTest:
@@ -246,9 +251,16 @@ def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionT
 
 
 def of_record(
-    record: Record, drive: ConstantVelocity | DriveProgram, loads: Stretches
+    record: Record,
+    drive: ConstantVelocity | DriveProgram,
+    loads: Stretches,
+    measured: Stretches | None = None,
 ) -> FrictionTest:
-    """Return a record with a normal load as a friction test."""
+    """Return a record with a normal load as a friction test, by its program or as measured."""
+    if measured is None:
+        found = stretches(drive, loads, record.time)
+    else:
+        found = _stretches(measured, loads, record.time, -inf)
     load = (record.normal_load or nan) * record.relative_load()
     lag = record.force / record.stiffness if record.stiffness else np.zeros(len(record.time))
     return FrictionTest(
@@ -261,7 +273,7 @@ def of_record(
         rounding_error(record.force, resolution(record.force)),
         None,
         drive,
-        stretches(drive, loads, record.time),
+        found,
     )
 
 
@@ -273,10 +285,15 @@ def stretches(
     Ramps, harmonics and recorded pieces are left out, and so is all that a harmonic lies on. A
     border between equal pieces is none.
     """
+    return _stretches(drive_stretches(drive), loads, time, 0.0)
+
+
+def _stretches(
+    drives: Stretches, loads: Stretches, time: Floats, start: float
+) -> list[ConstantStretch]:
+    """Return the stretches while they are recorded, from a time `start` (s) on."""
     first, last = (float(time[0]), float(time[-1])) if len(time) else (inf, -inf)
-    drives = drive_stretches(drive)
     found: list[ConstantStretch] = []
-    start = 0.0
     for end in sorted({end for end, _ in (*drives, *loads)}):
         begin, until = max(start, first), min(end, last)
         course, load = ahead(drives, start)[1], ahead(loads, start)[1]

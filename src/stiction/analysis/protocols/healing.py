@@ -137,7 +137,8 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
     source : Trajectory or Record
         A run, or a record with its normal load.
     program : DriveProgram, optional
-        The program of a record, see `st.protocols.slide_hold_slide`; that of a run is known.
+        The program of a record, see `st.protocols.slide_hold_slide`; by default the holds are those
+        of its measured `drive_position`. That of a run is known.
 
     Raises
     ------

@@ -48,8 +48,9 @@ def common_trend(slopes: Floats, errors: Floats) -> TravelTrend:
     total, free = float(weights.sum()), len(slopes) - 1
     slope = float(weights @ slopes) / total
     square, varies = float(weights @ (slopes - slope) ** 2), 0.0
-    if square > SCATTERED * free:
-        varies = (square - free) / (total - float(weights @ weights) / total)
+    others = total - float(weights @ weights) / total  # nothing if one has all the weight
+    if square > SCATTERED * free and others > 0.0:
+        varies = (square - free) / others
     return TravelTrend(slope, sqrt(1.0 / total + varies))
 
 

@@ -232,7 +232,8 @@ def velocity_steps(
         A run, or a record with its normal load, and its stiffness, without which a - b alone is
         determined.
     program : DriveProgram, optional
-        The program of a record, see `st.protocols.velocity_steps`; that of a run is known.
+        The program of a record, see `st.protocols.velocity_steps`; by default the steps are those
+        of its measured `drive_position`. That of a run is known.
     law : {"ageing", "slip", "perrin"}, optional
         The law to be fitted; by default that of the run, or both of ageing and slip.
 

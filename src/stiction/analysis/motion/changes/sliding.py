@@ -66,6 +66,8 @@ def _moving(record: Record) -> tuple[int, int]:
         return 0, len(record)
     from_end = np.minimum(at - at.min(), at.max() - at)
     moves = np.flatnonzero(from_end > TURNS * np.ptp(at))
+    if not len(moves):  # all but a wild sample, or a few, are at one end
+        return 0, len(record)
     return int(moves[0]), int(moves[-1]) + 1
 
 

@@ -1,0 +1,169 @@
+"""Stretches of constant velocity of a drive whose displacement was measured.
+
+Where the displacement bends is sought from the whole to its parts: at the point that is farthest
+from the chord, as long as that is farther than noise (U. Ramer, Comput. Graph. Image Process. 1,
+244 (1972); D. H. Douglas & T. K. Peucker, Cartographica 10, 112 (1973)). Neighbouring lines through
+all samples cross where the velocity jumps, to a fraction of a sample.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from math import inf
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.analysis.signals.robust import part_means
+from stiction.analysis.signals.straight_line import StraightLine, line
+from stiction.arrays import Floats
+from stiction.drive import ConstantVelocity, Stretches
+from stiction.errors import ResultError
+from stiction.recording.noise import seeming_motion
+
+MEANS = 4000  # of the record, at most: noise is averaged out
+FEWEST_MEANS = 3.0  # over which a velocity lasts: a bend is not better placed
+# Of the whole way: a deviation from a chord that is less shows no bend, and a way that is less rest
+BENDS = 1e-3
+BRIEF = 0.1  # of a neighbour, in time and way: a drive takes less from one velocity to the next
+SAME = 0.01  # of a velocity: a program has the same twice
+BENT = 0.1  # of the deviation that makes a bend: a part that sags by more is not straight
+BENT_SHARE = 0.3  # of the record: where more is bent the drive swings, and keeps to no velocity
+SAGS = 8  # means of a part that show it
+
+
+class _Part(NamedTuple):
+    """A part of the record with its line: from one time to another, s; whether it is bent."""
+
+    start: float
+    end: float
+    line: StraightLine
+    bent: bool
+
+    @property
+    def duration(self) -> float:
+        return self.end - self.start
+
+    @property
+    def way(self) -> float:
+        return self.duration * abs(self.line.slope)
+
+
+def measured_stretches(time: Floats, position: Floats, force: Floats) -> Stretches:
+    """Return the stretches of constant velocity of a drive: the end of each (s), and its velocity.
+
+    A brief change from one velocity to the next counts as a jump. The velocity is that along the
+    force: positive where the drive loads the spring in the direction of a positive force.
+
+    Parameters
+    ----------
+    time, position, force : array
+        (n,), s, m, N.
+
+    Raises
+    ------
+    ResultError
+        If the drive does not keep to any velocity.
+    """
+    parts = _without_brief(_parts(time, position), (time[-1] - time[0]) / min(len(time), MEANS))
+    bent = sum(each.duration for each in parts if each.bent)
+    if bent > BENT_SHARE * (time[-1] - time[0]):
+        raise ResultError(
+            "the measured displacement of the drive has no stretches of constant velocity; give "
+            "the program of the test"
+        )
+    least = BENDS * float(np.ptp(position))
+    speeds = _alike(np.array([each.line.slope if each.way > least else 0.0 for each in parts]))
+    means = [force[slice(*np.searchsorted(time, each[:2]))].sum() for each in parts]
+    if float(np.dot(speeds, means)) < 0.0:  # friction takes power from the drive
+        speeds = -speeds
+    ends = [_crossing(one, two) for one, two in pairwise(parts)]
+    velocities = [ConstantVelocity._make((float(each),)) for each in speeds]
+    return tuple(zip([*ends, inf], velocities, strict=True))
+
+
+def _parts(time: Floats, position: Floats) -> list[_Part]:
+    """Return the parts of a record between bends of the displacement, each with its line."""
+    times, places = part_means(time, MEANS), part_means(position, MEANS)
+    far = max(seeming_motion(places), BENDS * float(np.ptp(places)))
+    bends = times[_bends(times, places, far)]
+    edges = [float(time[0]), *bends[1:-1].tolist(), float(time[-1])]
+    return [_part(time, position, *each, far) for each in pairwise(edges)]
+
+
+def _bends(times: Floats, places: Floats, far: float) -> list[int]:
+    """Return the ends, and the points between them at which a polygon is nowhere `far` off."""
+    found, todo = {0, len(times) - 1}, [(0, len(times) - 1)]
+    while todo:
+        first, last = todo.pop()
+        if last - first < 2:
+            continue
+        share = (times[first : last + 1] - times[first]) / (times[last] - times[first])
+        chord = places[first] + share * (places[last] - places[first])
+        off = np.abs(places[first : last + 1] - chord)
+        at = first + int(off.argmax())
+        if off[at - first] > far:
+            found.add(at)
+            todo += [(first, at), (at, last)]
+    return sorted(found)
+
+
+def _part(time: Floats, position: Floats, start: float, end: float, far: float) -> _Part:
+    """Return a part with the line through its samples, those at its ends left out."""
+    inside = slice(*np.searchsorted(time, [start, end]))
+    cut = (inside.stop - inside.start) // 10
+    inside = slice(inside.start + cut, max(inside.stop - cut, inside.start + 2))
+    since, place = time[inside] - start, position[inside]
+    found = line(since, place)
+    off = part_means(found.deviations(since, place), SAGS)
+    sag = float(off[[0, -1]].mean() - off[len(off) // 2 - 1 : len(off) // 2 + 1].mean())
+    return _Part(start, end, found, len(off) == SAGS and abs(sag) > BENT * far)
+
+
+def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
+    """Return parts without brief ones of a velocity between those beside them, the briefest first.
+
+    There the drive comes from one velocity to the next: it takes little time, and little way. A
+    part that is faster than both neighbours, or slower, is one of the test, if it lasts over some
+    means at an `interval` (s).
+    """
+    parts, least = list(parts), FEWEST_MEANS * interval
+    while True:
+        brief = [
+            (two.duration, at)
+            for at, (one, two, three) in enumerate(
+                zip(parts, parts[1:], parts[2:], strict=False), start=1
+            )
+            if two.duration < least
+            or (
+                two.duration < BRIEF * max(one.duration, three.duration)
+                and two.way < BRIEF * max(one.way, three.way)
+                and (two.line.slope - one.line.slope) * (three.line.slope - two.line.slope) > 0.0
+            )
+        ]
+        if not brief:
+            return parts
+        del parts[min(brief)[1]]
+
+
+def _alike(speeds: Floats) -> Floats:
+    """Return velocities of which those that differ by little are the same."""
+    found = speeds.copy()
+    order = np.argsort(np.abs(found))
+    sizes = np.abs(found)[order]
+    groups = np.cumsum(np.diff(sizes, prepend=sizes[0]) > SAME * sizes)
+    for group in np.unique(groups):
+        here = order[groups == group]
+        found[here] = np.sign(found[here]) * float(np.abs(found[here]).mean())
+    return found
+
+
+def _crossing(one: _Part, two: _Part) -> float:
+    """Return the time at which the lines of two parts cross, s: between their middles."""
+    by = one.line.slope - two.line.slope
+    if not by:
+        return 0.5 * (one.end + two.start)
+    shift = two.start - one.start
+    at = one.start + (two.line.offset - two.line.slope * shift - one.line.offset) / by
+    low, high = one.start + 0.5 * one.duration, two.start + 0.5 * two.duration
+    return min(max(float(at), low), high)
