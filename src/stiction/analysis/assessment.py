@@ -65,7 +65,7 @@ class Assessment(NamedTuple):
 
 def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a run, whose parameters are exact."""
-    cycles, turns = found.cycles, _turns_round(run, regime)
+    cycles, turns = found.cycles, imposed_reversal(run, regime)
     friction = _friction(record, found, cycles, regime, turns)
     missing = _meaningless(record, cycles, regime)
     if turns and cycles.sizes["cycle"]:
@@ -79,7 +79,7 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
 
 def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a record, whose stated parameters may contradict its force."""
-    cycles, turns = found.cycles, _turns_round(None, regime)
+    cycles, turns = found.cycles, imposed_reversal(None, regime)
     none, apart = cycles.isel(cycle=slice(0)), cycles_apart(cycles)
     friction = _friction(record, found, cycles.isel(cycle=~apart), regime, turns)
     drift = shown_drift(record, regime.kind, cycles)
@@ -130,8 +130,11 @@ def _friction(
     return friction.without_kinetic(turns) if turns else friction
 
 
-def _turns_round(run: Trajectory | None, regime: Regime) -> str:
-    """Return what goes back and forth, so that no mean is a kinetic friction; empty if nothing."""
+def imposed_reversal(run: Trajectory | None, regime: Regime) -> str:
+    """Return what goes back and forth, so that no mean is a kinetic friction; empty if nothing.
+
+    Of a run, or of a record with this kind of motion.
+    """
     if run is not None and turns_round(run):
         return "the drive goes back and forth"
     if "forth" in regime.evidence:

@@ -159,9 +159,11 @@ def verdict(found: RecordComparison) -> str:
             "that rotates; the fit below, which assumes that it rotates, means nothing."
         )
     if not found.like:
+        why = "" if found.fit is None else found.fit.explanation
         return (
             "No verdict: this record is not like those of the rig as described, whatever the "
-            "uncertain values are; the fitted values below mean nothing until that is explained."
+            "uncertain values are; the fitted values below mean nothing until that is explained. "
+            f"{why}".rstrip()
         )
     return f"{explanation(found)}; {alternatives(found.odds)}."
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from math import floor, hypot, log10, pi
+from math import floor, hypot, log10
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -12,24 +12,28 @@ import numpy as np
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.classify import regime_of
-from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import MOST_MISSING, even_grid
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
-from stiction.inference.cycles import LEAST_CYCLES, Cycles, slip_cycles
+from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.features import USED, FeatureScale, features
+from stiction.inference.suitability import (
+    changes_within,
+    refuse_far,
+    refuse_few,
+    refuse_other_motion,
+    refuse_other_sign,
+)
 from stiction.recording.noise import ROUNDING_SPREAD, lattice, resolved_noise
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 Source = Record | Trajectory | str | Path  # of a record: a run is taken as if measured
 
-NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 PER_CYCLE = 200  # samples: more are averaged
 MOST_PLACES = 8  # at which a motion is simulated between two samples: more change no mean
 MOST_READINGS = 256  # of which a simulated sample is the mean, where each of them is rounded
@@ -39,7 +43,6 @@ MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 DIGITS = 4  # of sampling interval and quantisation: those of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
-QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
 DITHER = 0.5  # of a step: noise that hides it, so that rounding is noise too
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 
@@ -131,12 +134,16 @@ class Trend(NamedTuple):
 
 
 class Observation(NamedTuple):
-    """A record's cycles as a fit uses them: conditions, features, thinned force and its cycles."""
+    """A record's cycles as a fit uses them: conditions, features, thinned force and its cycles.
+
+    `changes` are sentences on how cycles differ within the record, as an analysis finds it.
+    """
 
     conditions: Conditions
     features: Floats
     force: Floats
     cycles: Cycles
+    changes: tuple[str, ...] = ()
 
     @property
     def trend(self) -> Trend:
@@ -186,16 +193,14 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     Raises
     ------
     ResultError
-        If it has too few cycles, or its samples leave too large gaps.
+        If it has too few cycles, or its samples leave too large gaps; or where its force goes back
+        and forth.
     """
     step, channels = even_channels(record, name)
     refuse_far(record, slider, name)
     seen = swings(record)
-    if (kind := regime_of(record, seen).kind) in NO_CYCLES:
-        raise ResultError(
-            f"{name} shows no stick-slip, of which a fit needs {LEAST_CYCLES} cycles: it is "
-            f"{kind}; `stiction analyse` tells what that says of friction"
-        )
+    regime = regime_of(record, seen)
+    refuse_other_motion(record, regime, name)
     refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
     noise = {each: noise_of(record, each, values) for each, values in channels.items()}
     found = slip_cycles(channels["force"], noise["force"].error)
@@ -216,7 +221,9 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         block=readings_to_simulate(block, thin_noise),
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
-    return Observation(conditions, its, thin["force"], found)
+    until = float(record.time[0]) + step * block * float(found.after[-1] + 1)
+    changes = changes_within(seen.cycles, regime, until)
+    return Observation(conditions, its, thin["force"], found, changes)
 
 
 def even_channels(record: Record, name: str) -> tuple[float, dict[str, Floats]]:
@@ -244,35 +251,6 @@ def drive_velocity(record: Record, slider: Slider) -> float:
     if stated is None or abs(stated / abs(velocity) - 1.0) <= SAME:
         return velocity
     return float(np.copysign(stated, velocity))
-
-
-def refuse_far(record: Record, slider: Slider, name: str) -> None:
-    """Refuse a record of a rig that was turned to 90 deg or more."""
-    angle = slider.phi + (record.turned or 0.0)
-    if abs(angle) >= 0.5 * pi:
-        raise ResultError(
-            f"{name} was turned by {in_words(record.turned or 0.0, 'rad')}, to a misalignment of "
-            f"{in_words(angle, 'rad')}; it must lie between -90 and 90 deg"
-        )
-
-
-def refuse_few(name: str, count: int) -> None:
-    """Refuse a record with too few cycles."""
-    if count < LEAST_CYCLES:
-        raise ResultError(
-            f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
-            "record for longer, or slower"
-        )
-
-
-def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
-    """Refuse a force that is recorded with the other sign: most cycles rise within QUICKLY."""
-    shares = (cycles.peak - cycles.before) / (cycles.after - cycles.before)
-    if force.mean() <= 0.0 and np.median(shares) < QUICKLY:
-        raise ResultError(
-            f"the force of {name} falls slowly and rises fast: it is recorded with the other sign, "
-            'in all likelihood; fit it with force=-force, or its file with --force="-1 N"'
-        )
 
 
 def observe_all(records: Source | Sequence[Source], slider: Slider) -> list[Observation]:

@@ -19,6 +19,7 @@ from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import TREND, Observation, Trend, sign_seen, steadiness
 from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import Plan
+from stiction.inference.suitability import explain_unlike
 from stiction.names import draw
 from stiction.result.file import new_netcdf
 from stiction.storage.files import NETCDF, placeable, whole
@@ -106,6 +107,8 @@ class Fit:
         p-values of a trend of peaks and of drops from cycle to cycle, in all records together.
     disagreement : Disagreement or None
         The parameter of which several records say most clearly something else, if there are any.
+    explanation : str
+        What may explain that records are not like the simulated ones, as sentences; may be empty.
     """
 
     plan: Plan
@@ -118,6 +121,7 @@ class Fit:
     farther: float = field(compare=False)
     trend: Trend = field(compare=False)
     disagreement: Disagreement | None = field(compare=False)
+    explanation: str = field(default="", compare=False)
 
     @classmethod
     def of(
@@ -150,7 +154,8 @@ class Fit:
         count, ranks = len(library.scores), learned.ranks
         blocks = [each.features for each in seen]
         apart = disagreement([*plan.priors], library.scores, alone, blocks) if alone else None
-        return cls(plan, after, prior, estimates, count, ranks, scores, farther, trend, apart)
+        why = explain_unlike([each.changes for each in seen])
+        return cls(plan, after, prior, estimates, count, ranks, scores, farther, trend, apart, why)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -231,7 +236,7 @@ class Fit:
                 f"values are: {percent(self.farther)} of the simulated records are less like the "
                 f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
                 "explained: is it this rig's record, are drive and load as stated, does the load "
-                "cell lie along the axis that the rig states?"
+                f"cell lie along the axis that the rig states? {self.explanation}".rstrip()
             )
         if self.disagreement is not None and self.disagreement.p_value < CONTRADICTS:
             found.append(

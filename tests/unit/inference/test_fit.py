@@ -124,8 +124,9 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     assert "mu_0" not in repr(wrong)
     assert "in doubt" in repr(wrong)
     assert "in doubt" not in repr(found)
-    unlike = replace(found, farther=0.02).tables()[0].sentences
+    unlike = replace(found, farther=0.02, explanation="It paused.").tables()[0].sentences
     assert unlike[0].startswith("The records are not like those of the rig as described")
+    assert unlike[0].endswith("the axis that the rig states? It paused.")
 
 
 def test_a_force_of_the_other_sign_is_refused(rig, record, libraries):

@@ -21,6 +21,7 @@ from stiction.inference.observation import Observation, Source, observe_all, ste
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
+from stiction.inference.suitability import explain_unlike
 
 SIMULATIONS = 1000  # of each mechanism, by default
 SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
@@ -134,6 +135,7 @@ def compare(
         counts=tuple(np.bincount(labels).tolist()),
         absent=simulated.absent,
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),
+        explanation=explain_unlike([each.changes for each in seen]),
     )
 
 

@@ -63,6 +63,8 @@ class Odds:
         and slip, or none that are not far longer than the measured ones.
     channels : tuple of str
         What was measured.
+    explanation : str
+        What may explain that the records are unlike simulations, as sentences; may be empty.
     """
 
     names: tuple[str, ...]
@@ -75,6 +77,7 @@ class Odds:
     counts: tuple[int, ...]
     absent: tuple[str, ...]
     channels: tuple[str, ...]
+    explanation: str = field(default="", compare=False)
 
     @property
     def needed(self) -> float:
@@ -129,6 +132,8 @@ class Odds:
                 f"The loading curve is not like those of {name}: {percent(its.larger)} of the "
                 f"simulated ones depart as far from their mean, {percent(BENT)} are needed."
             )
+        if self.explanation and (its.farther < UNLIKE or its.larger < BENT):
+            found.append(self.explanation)
         if self.steady < TREND:
             found.append(
                 "Friction drifts: peaks or drops have a trend from cycle to cycle (p = "

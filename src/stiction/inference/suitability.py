@@ -1,0 +1,122 @@
+"""Whether a record suits a fit: what is refused, and what may explain that it is unlike others."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from math import pi
+
+import numpy as np
+
+from stiction.analysis.assessment import imposed_reversal
+from stiction.analysis.motion.changes.strokes import strokes
+from stiction.analysis.motion.doubts.cycles import (
+    doubt_cycles_apart,
+    doubt_loading,
+    doubt_mean_period,
+)
+from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
+from stiction.analysis.record import Record
+from stiction.arrays import Floats, xr
+from stiction.errors import ResultError
+from stiction.inference.cycles import LEAST_CYCLES, Cycles
+from stiction.system.slider import Slider
+from stiction.text.units import in_words
+
+NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
+QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
+BY_STROKES = (
+    "fit the strokes by themselves: where a file has the drive's displacement, --stroke 1 "
+    "(stroke=1 of st.read_record) reads the first"
+)
+
+
+def refuse_far(record: Record, slider: Slider, name: str) -> None:
+    """Refuse a record of a rig that was turned to 90 deg or more."""
+    angle = slider.phi + (record.turned or 0.0)
+    if abs(angle) >= 0.5 * pi:
+        raise ResultError(
+            f"{name} was turned by {in_words(record.turned or 0.0, 'rad')}, to a misalignment of "
+            f"{in_words(angle, 'rad')}; it must lie between -90 and 90 deg"
+        )
+
+
+def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
+    """Refuse a record without stick-slip, or whose drive or load goes back and forth.
+
+    That of a run too, whose slip speed alone decides its kind of motion.
+    """
+    turns = imposed_reversal(None, regime)
+    if not turns and strokes(record) is not None:
+        turns = "the force goes back and forth between both signs"
+    if turns:
+        raise ResultError(
+            f"in {name} {turns}, and a fit takes a steady drive and a constant load; {BY_STROKES}"
+        )
+    if regime.kind in NO_CYCLES:
+        raise ResultError(
+            f"{name} shows no stick-slip, of which a fit needs {LEAST_CYCLES} cycles: it is "
+            f"{regime.kind}; `stiction analyse` tells what that says of friction"
+        )
+
+
+def refuse_few(name: str, count: int) -> None:
+    """Refuse a record with too few cycles."""
+    if count < LEAST_CYCLES:
+        raise ResultError(
+            f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
+            "record for longer, or slower"
+        )
+
+
+def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
+    """Refuse a force that is recorded with the other sign: most cycles rise within QUICKLY."""
+    shares = (cycles.peak - cycles.before) / (cycles.after - cycles.before)
+    if force.mean() <= 0.0 and np.median(shares) < QUICKLY:
+        raise ResultError(
+            f"the force of {name} falls slowly and rises fast: it is recorded with the other sign, "
+            'in all likelihood; fit it with force=-force, or its file with --force="-1 N"'
+        )
+
+
+def changes_within(cycles: xr.Dataset, regime: Regime, until: float) -> tuple[str, ...]:
+    """Return what an analysis says of cycles that differ until a time, s, as sentences.
+
+    Simulated records have one velocity and one load, so that such a record is like none of them.
+    """
+    used = cycles.isel(cycle=cycles["trough_time"].values <= until)
+    return (
+        *_name_other_motion(regime, until),
+        *doubt_mean_period(used),
+        *doubt_loading(used),
+        *doubt_cycles_apart(used),
+    )
+
+
+def _name_other_motion(regime: Regime, until: float) -> Iterator[str]:
+    changed, other = regime.evidence.get("changed_at", until), regime.runner_up
+    if other and changed < until:
+        at = in_words(changed, "s")
+        yield f"The motion changes at {at}: one part is {regime.kind}, the other {other}."
+
+
+def explain_unlike(changes: Sequence[Sequence[str]]) -> str:
+    """Return what may explain that records are unlike simulated ones, and the remedy; or ''.
+
+    Of the changes within each record.
+
+    >>> explain_unlike([(), ("At 3 s the force falls by 2 N.",)])[:62]
+    'Cycles differ within the record, which may explain it. Record 2'
+    """
+    several = len(changes) > 1
+    said = [
+        f"{f'Record {number}: ' * several}{sentence}"
+        for number, its in enumerate(changes, 1)
+        for sentence in its
+    ]
+    if not said:
+        return ""
+    return (
+        f"Cycles differ within the record, which may explain it. {' '.join(said)} Fit a part "
+        "whose cycles are alike by itself (--begin, --end; begin= and end= of st.read_record)."
+    )

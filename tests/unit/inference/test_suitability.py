@@ -1,0 +1,111 @@
+"""Records that do not suit a fit are refused before anything is simulated; others are explained."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.errors import ResultError
+from stiction.inference import fit as fits
+from stiction.inference.mechanism import comparison
+from stiction.inference.mechanism.likeness import Likeness
+from stiction.inference.mechanism.odds import Odds
+from stiction.inference.observation import observe
+from stiction.inference.priors import Normal
+from stiction.inference.suitability import explain_unlike
+
+RIG = st.Rig.from_toml(
+    """
+[slider]
+mass = "80 g"
+k_x = "2.3 +- 0.1 kN/m"
+k_y = "0.9 MN/m"
+phi = "2 deg"
+normal_load = "4 N"
+
+[friction]
+law = "exponential-weakening"
+mu_0 = 0.6
+mu_inf = 0.35
+v_f = "10 mm/s"
+
+[drive]
+velocity = "0.5 mm/s"
+"""
+)
+STEP = 0.01
+CYCLE = np.r_[np.linspace(1.4, 2.4, 97), 2.1, 1.7, 1.5]  # N: a second of loading, and a slip
+
+
+def record(*forces):
+    force = np.concatenate(forces)
+    noise = 1e-3 * np.random.default_rng(1).standard_normal(len(force))
+    return st.Record(
+        time=STEP * np.arange(len(force)), force=force + noise, drive_velocity=0.5e-3,
+        normal_load=4.0,
+    )  # fmt: skip
+
+
+@pytest.fixture
+def no_simulation(monkeypatch):
+    def build(*_, **__):
+        raise AssertionError("something is simulated")
+
+    monkeypatch.setattr(fits, "build", build)
+    monkeypatch.setattr(comparison, "simulate", build)
+
+
+@pytest.mark.parametrize("name", ["fit", "mechanism"])
+def test_a_force_that_reverses_is_refused_before_simulating(no_simulation, name):
+    """It was "not like those of the rig", after a minute, and nobody said that it reverses."""
+    stroke = np.tile(CYCLE, 4)
+    loops = record(*(sign * stroke for sign in (1.0, -1.0, 1.0, -1.0, 1.0)))
+    with pytest.raises(ResultError) as error:
+        getattr(st, name)(loops, replace_phi(RIG))
+    assert "the force goes back and forth between both signs" in str(error.value)
+    assert "--stroke 1 (stroke=1 of st.read_record) reads the first" in str(error.value)
+
+
+def replace_phi(rig):
+    """A rig whose misalignment is uncertain, so that mechanisms can be compared."""
+    return st.Rig(rig.slider, rig.priors | {"phi": Normal(0.03, 0.01)})
+
+
+def test_a_run_of_a_drive_that_reverses_is_refused(no_simulation):
+    piece = st.protocols.Constant
+    program = [piece(speed, "1.6 s") for speed in ("5 mm/s", "-5 mm/s") * 3]
+    slider = RIG.slider.replace(drive=st.protocols.DriveProgram(program=program))
+    with pytest.raises(ResultError, match="goes back and forth between both signs"):
+        st.fit(st.simulate(slider, "9.6 s", sample_rate=200), RIG)
+
+
+def test_what_differs_within_a_record_explains_that_it_is_unlike():
+    pause = np.full(1000, 1.4)
+    assert observe(record(*[CYCLE] * 20), RIG.slider).changes == ()
+    (long,) = observe(record(*[CYCLE] * 10, pause, *[CYCLE] * 10), RIG.slider).changes
+    assert long.startswith("The cycle from ")
+    assert "if the drive paused" in long
+    (faster,) = observe(record(*[CYCLE] * 10, *[CYCLE[::2]] * 10), RIG.slider).changes
+    assert "the cycles take" in faster
+    said = explain_unlike([(), (long,)])
+    assert "Record 2: The cycle from" in said
+    assert "--begin, --end" in said
+
+
+def test_what_comes_after_the_cycles_that_are_used_explains_nothing():
+    late = record(*[CYCLE] * 45, np.full(1000, 1.4), *[CYCLE] * 5)
+    assert observe(late, RIG.slider).changes == ()
+
+
+def test_the_odds_say_why_a_record_is_unlike():
+    likeness = tuple(Likeness(0.01, np.zeros((2, 3)), 0.5) for _ in range(2))
+    odds = Odds(
+        names=("a", "b"), probabilities=np.array([0.95, 0.05]),
+        by_halves=np.array([[0.95, 0.05]] * 2), confusion=np.zeros((2, 3)), likeness=likeness,
+        bend=np.zeros(3), steady=0.5, counts=(9, 9), absent=(), channels=("force",),
+        explanation="A pause.",
+    )  # fmt: skip
+    assert odds.objections()[-1] == "A pause."
+    like = tuple(each._replace(farther=0.5) for each in likeness)
+    assert replace(odds, likeness=like).objections() == []
