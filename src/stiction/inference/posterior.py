@@ -24,7 +24,7 @@ from stiction.names import draw
 from stiction.result.file import new_netcdf
 from stiction.storage.files import NETCDF, placeable, whole
 from stiction.system.parameter import unit
-from stiction.text.paths import last_part
+from stiction.text.paths import last_part, short_names
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
@@ -147,8 +147,9 @@ class Fit:
             for i, name in enumerate(plan.priors)
         )
         after, prior = dataset(plan, scores), dataset(plan, before)
+        short = short_names(plan.priors)
         for its in estimates:
-            after[last_part(its.name)].attrs["coverage_of_95_percent_intervals"] = its.coverage
+            after[short[its.name]].attrs["coverage_of_95_percent_intervals"] = its.coverage
         record = learned.summary.standard.scores(observed[None])
         farther = float(learned.typicality.farther(record)[0])
         count, ranks = len(library.scores), learned.ranks
@@ -196,7 +197,8 @@ class Fit:
         )
         remarks = dict.fromkeys(self.unidentified, "not identifiable")
         remarks |= dict.fromkeys(self.beyond, "beyond its prior")
-        rows = [row(x, remarks.get(x.name, "")) for x in self.estimates]
+        short = short_names(x.name for x in self.estimates)  # the sentences have the whole name
+        rows = [row(x, short[x.name], remarks.get(x.name, "")) for x in self.estimates]
         headings = ("parameter", "posterior", "95 %", "prior", "95 %", "width", "coverage")
         return [Section("Fit", sentences, Table(headings, rows))]
 
@@ -322,12 +324,13 @@ def resample(sample: Sample) -> Floats:
 def dataset(plan: Plan, scores: Floats) -> xr.Dataset:
     """Return draws as a dataset: angles in degrees, as everywhere in data."""
     columns: dict[str, Any] = {}
+    short = short_names(plan.priors)
     for i, (name, prior) in enumerate(plan.priors.items()):
         values, its = prior.quantile(ndtr(scores[:, i])), unit_of(plan, name)
         if its == "rad":
             values, its = np.degrees(values), "deg"
         labels = {"units": its or "1", "long_name": MEANINGS.get(name, name)}
-        columns[last_part(name)] = ("draw", values, labels)
+        columns[short[name]] = ("draw", values, labels)
     return xr.Dataset(columns)
 
 
@@ -336,11 +339,10 @@ def words(x: Estimate) -> str:
     return f"{in_words(x.median, x.unit)} ({in_words(x.low, x.unit)} to {in_words(x.high, x.unit)})"
 
 
-def row(x: Estimate, remark: str) -> tuple[str, ...]:
+def row(x: Estimate, short: str, remark: str) -> tuple[str, ...]:
     """Return a row of the report; a remark stands in place of the value, if there is one."""
     after = remark or in_words(x.median, x.unit)
     between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
     before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
     shares = percent(x.narrower), percent(x.coverage)
-    short = last_part(x.name)  # the sentences have the whole name
     return (short, after, between, in_words(x.prior_median, x.unit), before, *shares)

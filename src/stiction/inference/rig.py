@@ -17,7 +17,7 @@ from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.inference.priors import NORMAL, UNIFORM, Normal, Prior, Uniform, middle, read_prior
 from stiction.system.parameter import change_parameter, change_parameters, quantity, unit
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
-from stiction.text.paths import canonical
+from stiction.text.paths import canonical, slug
 from stiction.text.toml import folder_of, gather, read_toml
 from stiction.text.units import Kind, split_uncertain
 
@@ -115,14 +115,34 @@ def without_spread(
 ) -> Iterator[tuple[str, Any]]:
     """Yield the items of a table, a plain value for each uncertain one; that is put in `stated`."""
     for key, value in table.items():
-        parsed = spread(value)
-        if parsed is not None:
-            stated[canonical(".".join([*keys, key]))] = parsed
-            yield key, parsed["value"] if "value" in parsed else parsed["low"]
-        elif isinstance(value, Mapping):
-            yield key, dict(without_spread(value, (*keys, key), stated))
-        else:
-            yield key, value
+        yield key, _certain(value, (*keys, key), stated)
+
+
+def _certain(value: Any, keys: tuple[str, ...], stated: dict[str, Any]) -> Any:
+    """Return a value without spread, that of tables and of lists of tables too."""
+    parsed = spread(value)
+    if parsed is not None:
+        stated[canonical(".".join(keys))] = parsed
+        return parsed["value"] if "value" in parsed else parsed["low"]
+    if isinstance(value, Mapping):
+        return dict(without_spread(value, keys, stated))
+    if isinstance(value, list):
+        return [
+            _certain(each, (*keys, element_key(each, number)), stated)
+            if isinstance(each, Mapping)
+            else each
+            for number, each in enumerate(value, 1)
+        ]
+    return value
+
+
+def element_key(element: Mapping[str, Any], number: int) -> str:
+    """Return by which key a table in a list is known: its name, or its number.
+
+    >>> element_key({"name": "Load cell"}, 1), element_key({}, 2)
+    ('load-cell', '2')
+    """
+    return slug(element["name"]) if "name" in element else str(number)
 
 
 def spread(value: Any) -> dict[str, Any] | None:

@@ -3,12 +3,14 @@
 ``phi`` and ``slider.phi`` are the same, so are ``V`` and ``drive.velocity``; ``mu_0`` is a number
 of the friction law, ``duration`` a setting of the run. Elements of a list count from 1, as in
 ``drive.program.2.duration``, or are known by their name, as in ``springs.load-cell.k_x``.
+``friction.ratio`` and ``friction.anisotropy.ratio`` are the same where friction is anisotropic.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 from copy import deepcopy
 from typing import Any
 
@@ -26,13 +28,20 @@ MECHANICAL = (
     *("phi", "normal_load", "driven", "cell_angle", "springs"),
 )
 SETTINGS = ("duration", "sample_rate", "rtol", "regularisation", "smoothing", "multiscale")
+SURFACE = "friction.anisotropy"  # table whose parameters a law has beside its own
+SURFACE_KEYS = ("ratio", "angle")
 TABLES = ("slider", "friction", "drive", "load", "initial", "run", "study", "axes")
 
 
 def canonical(name: str) -> str:
-    """Resolve a parameter's short name, and drop a leading ``slider.``."""
+    """Resolve a parameter's short name, and drop a leading ``slider.``.
+
+    >>> canonical("slider.phi"), canonical("V"), canonical("friction.anisotropy.ratio")
+    ('phi', 'drive.velocity', 'friction.ratio')
+    """
     bare = name.strip().removeprefix("slider.")
-    return ALIASES.get(bare, bare)
+    table, _, key = bare.rpartition(".")
+    return f"friction.{key}" if table == SURFACE else ALIASES.get(bare, bare)
 
 
 def canonical_path(path: str) -> str:
@@ -46,6 +55,17 @@ def canonical_path(path: str) -> str:
 def last_part(path: str) -> str:
     """Return the last part of a path: ``mu_0`` of ``friction.mu_0``."""
     return path.rpartition(".")[2]
+
+
+def short_names(paths: Iterable[str]) -> dict[str, str]:
+    """Return a short name of each path: its last part, or all of it where several share that.
+
+    >>> short_names(["friction.mu_0", "springs.arm.k_x", "springs.cell.k_x"]).values()
+    dict_values(['mu_0', 'springs.arm.k_x', 'springs.cell.k_x'])
+    """
+    lasts = {path: last_part(path) for path in paths}
+    often = Counter(lasts.values())
+    return {path: path if often[last] > 1 else last for path, last in lasts.items()}
 
 
 def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
@@ -72,7 +92,7 @@ def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:
     bare = name.strip()
     keys = ALIASES.get(bare, bare).split(".")
     if len(keys) > 1 and keys[0] in TABLES:
-        return keys
+        return of_surface(tables, keys)
     if keys[0] in MECHANICAL:
         return ["slider", *keys]
     if keys[0] in SETTINGS:
@@ -81,6 +101,19 @@ def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:
     if isinstance(law, Mapping) and keys[0] in law:
         return ["friction", *keys]
     raise KeyError(unknown_name("parameter", name, parameter_names(tables)))
+
+
+def of_surface(tables: Mapping[str, Any], keys: list[str]) -> list[str]:
+    """Return the keys through [friction.anisotropy], where a law's own table lacks the parameter.
+
+    >>> of_surface({"friction": {"law": "coulomb", "anisotropy": {}}}, ["friction", "ratio"])
+    ['friction', 'anisotropy', 'ratio']
+    """
+    title, key = keys[0], keys[1]
+    law = tables.get(title)
+    if title != "friction" or key not in SURFACE_KEYS or not isinstance(law, Mapping):
+        return keys
+    return ["friction", "anisotropy", *keys[1:]] if "anisotropy" in law and key not in law else keys
 
 
 def parameter_names(tables: Mapping[str, Any]) -> Iterator[str]:

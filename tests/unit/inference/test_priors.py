@@ -6,6 +6,7 @@ import pytest
 import stiction as st
 from stiction.errors import DescriptionError
 from stiction.inference.priors import Normal, Uniform
+from stiction.system.parameter import change_parameter
 
 PLAIN = st.presets.nakano_popov_2020().to_toml()
 
@@ -70,3 +71,47 @@ def test_a_fault_names_its_parameter(given, said):
     with pytest.raises(DescriptionError) as error:
         rig(**given)
     assert said in str(error.value)
+
+
+SURFACE = """
+[friction.anisotropy]
+ratio = {low = 0.6, high = 1.6}
+angle = "10 deg"
+"""
+SPRINGS = """
+[[slider.springs]]
+name = "Load cell"
+k_x = "3.0 +- 0.1 kN/m"
+k_y = "2 MN/m"
+
+[[slider.springs]]
+name = "arm"
+k_x = {low = "20 kN/m", high = "30 kN/m"}
+k_y = "2 MN/m"
+"""
+
+
+def test_an_uncertain_anisotropy_is_a_parameter_by_either_path():
+    """Its error advised 'friction.ratio', and --set of that one "unknown key 'ratio'"."""
+    text = PLAIN + SURFACE
+    assert st.Rig.from_toml(text).priors["friction.ratio"] == Uniform(0.6, 1.6)
+    for path in ("friction.ratio", "friction.anisotropy.ratio"):
+        found = st.Rig.from_toml(text, {path: 1.5})
+        assert (found.priors, found.slider.friction.ratio) == ({}, 1.5)
+        assert change_parameter(found.slider, path, 0.7).friction.ratio == 0.7
+
+
+def test_without_anisotropy_its_ratio_is_unknown():
+    with pytest.raises(DescriptionError, match="unknown key 'ratio'"):
+        st.Rig.from_toml(PLAIN, {"friction.ratio": 1.5})
+
+
+def test_springs_in_series_may_be_uncertain():
+    """In a fit they were "uncertain, which 'stiction fit', 'design' and 'audit' read"."""
+    text = PLAIN.replace('k_x = "1 kN/m"\n', "").replace('k_y = "10 MN/m"\n', "")
+    found = st.Rig.from_toml(text.replace("\n[friction]", f"{SPRINGS}\n[friction]"))
+    assert found.priors == {
+        "springs.load-cell.k_x": Normal(3000.0, 100.0, low=0.0),
+        "springs.arm.k_x": Uniform(2e4, 3e4),
+    }
+    assert found.slider.k_x == pytest.approx(1.0 / (1 / 3e3 + 1 / 25e3))

@@ -14,7 +14,7 @@ from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
 from stiction.inference.simulated.plan import Plan
 from stiction.names import draw
-from stiction.text.paths import last_part
+from stiction.text.paths import short_names
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import in_words
@@ -105,7 +105,7 @@ class Advice:
             (test.test, *(percent(each) for each in test.width))
             for test in (self.present, *self.ranked)
         ]
-        short = map(last_part, names)
+        short = short_names(names).values()
         return [
             *found,
             Section(

@@ -14,7 +14,7 @@ from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import xr
 from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
-from stiction.text.paths import last_part
+from stiction.text.paths import short_names
 from stiction.text.quantity_text import metric_prefix
 
 if TYPE_CHECKING:
@@ -120,7 +120,8 @@ def plot_corner(
     ndarray of Axes
         (n, n); those above the diagonal are empty.
     """
-    found = [last_part(x.name) for x in fit.estimates if x.identified]
+    short = short_names(x.name for x in fit.estimates)
+    found = [short[x.name] for x in fit.estimates if x.identified]
     chosen = [*names] if names is not None else found or [*fit.data.data_vars]
     count = len(chosen)
     with style():
