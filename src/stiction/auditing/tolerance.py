@@ -19,6 +19,7 @@ from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.progress import Progress, silent
 from stiction.inference.rig import Rig
+from stiction.inference.simulated.restriction import is_allowed
 from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider
@@ -28,6 +29,7 @@ from stiction.text.units import in_words
 
 ALLOWED = 0.02  # error of the static coefficient
 DRAWS = 64  # of the priors, a power of 2 for Sobol's sequence
+MOST_ROUNDS = 100  # of them, until so many are taken by the description
 MOST_STEPS = 400_000  # of each test
 SCAN = 14  # misalignments at which the error is looked at, in a geometric series
 FINE = 24  # misalignments, evenly in the logarithm, about the first of these that is too large
@@ -126,14 +128,11 @@ def read(slider: Slider) -> Reading:
 
 def budget(rig: Rig, progress: Progress) -> Budget:
     """Return the tolerance budget of a rig with an uncertain misalignment."""
-    from scipy.stats.qmc import Sobol
-
-    names = [*rig.priors]
-    shares = Sobol(len(names), seed=0).random(DRAWS)
-    values = {name: rig.priors[name].quantile(shares[:, i]) for i, name in enumerate(names)}
+    names, values = [*rig.priors], draw_values(rig)
+    count = len(values["phi"])
     ends = rig.priors["phi"].quantile(np.array([BOUNDS_95[0], 0.5, BOUNDS_95[1]]))
     rigs = [
-        *(change(rig.slider, {name: values[name][i] for name in names}) for i in range(DRAWS)),
+        *(change(rig.slider, {name: values[name][i] for name in names}) for i in range(count)),
         *(change(rig.slider, {"phi": end}) for end in ends),
         turn_to(rig.slider, 0.0),
     ]
@@ -142,10 +141,29 @@ def budget(rig: Rig, progress: Progress) -> Budget:
     progress(1.0)
     angles = values["phi"] - rig.slider.turn
     others = tuple(name for name in names if name != "phi")
-    at_ends = found[DRAWS : DRAWS + len(ends)]
+    at_ends = found[count : count + len(ends)]
     return Budget(
-        angles, found[:DRAWS], ends - rig.slider.turn, at_ends, Reading(*found[-1]), limit, others
+        angles, found[:count], ends - rig.slider.turn, at_ends, Reading(*found[-1]), limit, others
     )
+
+
+def draw_values(rig: Rig) -> dict[str, Floats]:
+    """Return values (n,) of each uncertain parameter that the description takes together.
+
+    They are the first of Sobol's sequence.
+    """
+    from scipy.stats.qmc import Sobol
+
+    sequence, rows = Sobol(len(rig.priors), seed=0), np.empty((0, len(rig.priors)))
+    for _ in range(MOST_ROUNDS):
+        shares = sequence.random(DRAWS).T
+        pairs = zip(rig.priors.values(), shares, strict=True)
+        new = np.stack([prior.quantile(its) for prior, its in pairs], axis=1)
+        taken = [is_allowed(rig.slider, dict(zip(rig.priors, row, strict=True))) for row in new]
+        rows = np.concatenate([rows, new[taken]])[:DRAWS]
+        if len(rows) == DRAWS:
+            break
+    return dict(zip(rig.priors, rows.T, strict=True))
 
 
 def change(slider: Slider, values: dict[str, float]) -> Slider:

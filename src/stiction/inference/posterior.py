@@ -140,11 +140,12 @@ class Fit:
         pairs = zip(*(each.trend for each in seen), strict=True)
         trend = Trend(*map(steadiness, pairs))  # of all records
         plan = library.plan
+        sample = possible(plan, sample)
         scores, coverage = resample(sample), learned.coverage(INTERVAL)
-        before = np.random.default_rng(0).standard_normal((DRAWS, len(plan.priors)))
+        before = draw_prior(plan)
         estimates = tuple(
-            estimate(plan, name, sample.scores[:, i], sample.weights, float(coverage[i]))
-            for i, name in enumerate(plan.priors)
+            estimate(plan, name, (sample.scores[:, i], before[:, i]), sample.weights, its)
+            for i, (name, its) in enumerate(zip(plan.priors, coverage.tolist(), strict=True))
         )
         after, prior = dataset(plan, scores), dataset(plan, before)
         short = short_names(plan.priors)
@@ -295,16 +296,42 @@ class Fit:
         return target
 
 
-def estimate(plan: Plan, name: str, scores: Floats, weights: Floats, coverage: float) -> Estimate:
-    """Return the estimate of a parameter from the weighted normal scores of its posterior."""
-    prior = plan.priors[name]
+def possible(plan: Plan, sample: Sample) -> Sample:
+    """Return the part of a sample that the description takes, where priors are restricted.
+
+    A local regression moves some draws over the border.
+    """
+    if not plan.restricted:
+        return sample
+    weights = sample.weights * [plan.takes(scores) for scores in sample.scores]
+    total = weights.sum()
+    return Sample(sample.scores, weights / total) if total > 0.0 else sample
+
+
+def draw_prior(plan: Plan) -> Floats:
+    """Return normal scores (n, p) of draws of the prior."""
+    random, count = np.random.default_rng(0), len(plan.priors)
+    if not plan.restricted:
+        return random.standard_normal((DRAWS, count))
+    return np.stack([plan.draw(random) for _ in range(DRAWS)])
+
+
+def estimate(
+    plan: Plan, name: str, scores: tuple[Floats, Floats], weights: Floats, coverage: float
+) -> Estimate:
+    """Return the estimate of a parameter from normal scores: weighted ones of its posterior, and
+    of draws of the prior, which count where this is restricted."""
+    prior, (after, before) = plan.priors[name], scores
     tails = np.array([0.5, 0.5 - 0.5 * INTERVAL, 0.5 + 0.5 * INTERVAL])
-    middle, low, high = prior.quantile(ndtr(quantiles(scores, weights, tails))).tolist()
-    mid, bottom, top = prior.quantile(tails).tolist()
-    mean = weights @ scores
-    deviation = float(np.sqrt(weights @ (scores - mean) ** 2))
+    middle, low, high = prior.quantile(ndtr(quantiles(after, weights, tails))).tolist()
+    shares = ndtr(np.quantile(before, tails)) if plan.restricted else tails
+    mid, bottom, top = prior.quantile(shares).tolist()
+    mean = weights @ after
+    deviation = float(np.sqrt(weights @ (after - mean) ** 2))
+    wide = float(before.std()) if plan.restricted else 1.0
+    narrower = deviation / wide
     return Estimate(
-        name, unit_of(plan, name), middle, low, high, mid, bottom, top, deviation, coverage
+        name, unit_of(plan, name), middle, low, high, mid, bottom, top, narrower, coverage
     )
 
 

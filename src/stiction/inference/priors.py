@@ -6,7 +6,8 @@ A value of a description may be uncertain in three ways:
     phi = {value = "2 deg", uncertainty = "1 deg"}      # a normal distribution; also "5 %"
     phi = {low = "0.5 deg", high = "5 deg"}             # uniform; scale = "log": of its logarithm
 
-A normal distribution ends where a value would be impossible, such as a stiffness at zero.
+A normal distribution ends where a value would be impossible, such as a stiffness at zero. What is
+impossible only together, such as mu_static below mu_0, is not drawn (`simulated.restriction`).
 """
 
 from __future__ import annotations

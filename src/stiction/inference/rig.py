@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import partial
 from math import radians
@@ -15,12 +16,14 @@ from stiction.errors import DescriptionError, Fault
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.inference.priors import NORMAL, UNIFORM, Normal, Prior, Uniform, middle, read_prior
+from stiction.inference.simulated.restriction import is_allowed_somewhere
 from stiction.system.parameter import change_parameter, change_parameters, quantity, unit
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
 from stiction.text.paths import canonical, slug
 from stiction.text.toml import folder_of, gather, read_toml
 from stiction.text.units import Kind, split_uncertain
 
+NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*?)\s*")
 LARGEST_ANGLE = radians(89.9)  # at 90 deg the drive pulls across
 UNDRAWN = 7.1  # standard deviations from the mean: beyond, nothing is drawn (`priors.EDGE`)
 
@@ -91,10 +94,9 @@ class Rig(NamedTuple):
             )
         )
         priors = read_priors(slider, stated)
-        middles = {name: middle(prior) for name, prior in priors.items()}
-        given = {name: quantity(slider, name, value) for name, value in middles.items()}
-        slider = change_parameters(slider, given) if given else slider
-        return cls(slider, priors)
+        slider = in_the_middle(slider, priors)
+        priors = within_ranges(slider, priors)
+        return cls(in_the_middle(slider, priors), priors)
 
 
 def rig_of(source: Any) -> Rig:
@@ -123,7 +125,7 @@ def _certain(value: Any, keys: tuple[str, ...], stated: dict[str, Any]) -> Any:
     parsed = spread(value)
     if parsed is not None:
         stated[canonical(".".join(keys))] = parsed
-        return parsed["value"] if "value" in parsed else parsed["low"]
+        return parsed["value"] if "value" in parsed else between(parsed)
     if isinstance(value, Mapping):
         return dict(without_spread(value, keys, stated))
     if isinstance(value, list):
@@ -134,6 +136,24 @@ def _certain(value: Any, keys: tuple[str, ...], stated: dict[str, Any]) -> Any:
             for number, each in enumerate(value, 1)
         ]
     return value
+
+
+def between(table: Mapping[str, Any]) -> Any:
+    """Return a value between the ends of a uniform prior, `low` where they differ in their unit.
+
+    >>> between({"low": 0.2, "high": 0.5}), between({"low": "1 deg", "high": "3 deg"})
+    (0.35, '2.0 deg')
+    >>> between({"low": "1 um", "high": "3 mm"})
+    '1 um'
+    """
+    parts = [NUMBER.fullmatch(str(table[end])) for end in ("low", "high")]
+    if not all(parts):
+        return table["low"]
+    (low, unit), (high, other) = (part.groups() for part in parts if part)
+    if unit != other:
+        return table["low"]
+    value = 0.5 * (float(low) + float(high))
+    return f"{value!r}{unit}" if unit else value
 
 
 def element_key(element: Mapping[str, Any], number: int) -> str:
@@ -166,8 +186,7 @@ def read_priors(slider: Slider, stated: Mapping[str, Mapping[str, Any]]) -> dict
         try:
             its = unit(slider, path)
             example = "1 deg" if its == "rad" else f"1 {its}".rstrip()
-            prior = read_prior(table, Kind(path, its, example))
-            priors[path] = within_range(slider, path, prior)
+            priors[path] = read_prior(table, Kind(path, its, example))
         except PydanticCustomError as error:
             faults.append(Fault(path, error.message()))
         except ValueError as error:
@@ -179,19 +198,52 @@ def read_priors(slider: Slider, stated: Mapping[str, Mapping[str, Any]]) -> dict
     return priors
 
 
-def within_range(slider: Slider, path: str, prior: Prior) -> Prior:
+def in_the_middle(slider: Slider, priors: Mapping[str, Prior]) -> Slider:
+    """Return the slider with every uncertain value in the middle of its prior.
+
+    Raises
+    ------
+    DescriptionError
+        If the description refuses these values together.
+    """
+    middles = {name: middle(prior) for name, prior in priors.items()}
+    given = {name: quantity(slider, name, value) for name, value in middles.items()}
+    return change_parameters(slider, given) if given else slider
+
+
+def within_ranges(slider: Slider, priors: Mapping[str, Prior]) -> dict[str, Prior]:
+    """Return priors that end where a value would be impossible, or every fault.
+
+    `slider` is in the middle of them.
+    """
+    found, faults = dict[str, Prior](), list[Fault]()
+    for path, prior in priors.items():
+        others = {name: its for name, its in priors.items() if name != path}
+        try:
+            found[path] = within_range(slider, path, prior, others)
+        except DescriptionError as error:
+            faults += error.faults
+    if faults:
+        raise DescriptionError(faults)
+    return found
+
+
+def within_range(slider: Slider, path: str, prior: Prior, others: Mapping[str, Prior]) -> Prior:
     """Return a prior that ends where a value would be impossible.
 
     Raises
     ------
     DescriptionError
-        If the value itself, or an end of a uniform prior, is impossible.
+        If an end of a uniform prior is impossible, whatever values the others have.
     """
     if isinstance(prior, Uniform):
         for end in (prior.low, prior.high):
-            change_parameter(slider, path, quantity(slider, path, end))
+            try:
+                change_parameter(slider, path, quantity(slider, path, end))
+            except DescriptionError:
+                if not is_allowed_somewhere(slider, {path: end}, others):
+                    raise
         return prior
-    change_parameter(slider, path, quantity(slider, path, prior.mean))
     if path == "phi" and abs(prior.mean) + UNDRAWN * prior.deviation > LARGEST_ANGLE:
         return Normal(prior.mean, prior.deviation, -LARGEST_ANGLE, LARGEST_ANGLE)
     try:

@@ -28,6 +28,7 @@ from stiction.inference.observation import Conditions
 from stiction.inference.priors import Prior, Uniform, middle
 from stiction.inference.rig import Rig
 from stiction.inference.simulated.plan import Plan, plan
+from stiction.inference.simulated.restriction import is_allowed, is_restricted
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 
@@ -111,14 +112,15 @@ def levels(rig: Rig) -> Levels:
     """Return the coefficients that the description's law has, over its priors."""
     random = np.random.default_rng(0)
     own, _ = split(rig.priors)
+    restricted = is_restricted(rig.slider, own)
     found = []
     for shares in random.uniform(size=(DRAWN, len(own))):
-        slider = rig.slider
-        for (path, prior), share in zip(own.items(), shares, strict=True):
-            slider = change_unchecked(slider, path, float(prior.quantile(share)))
-        law: Any = slider.law
-        at_rest = max(law.coefficient(0.0), getattr(law, "mu_static", 0.0))
-        found.append((at_rest, law.coefficient(fastest(rig.slider))))
+        pairs = zip(own.items(), shares, strict=True)
+        values = {path: float(prior.quantile(share)) for (path, prior), share in pairs}
+        if restricted and not is_allowed(rig.slider, values):
+            continue
+        found.append(coefficients_of(rig.slider, values))
+    found = found or [coefficients_of(rig.slider, {})]  # hardly any is allowed
     (s_low, k_low), (s_high, k_high) = np.quantile(found, BOUNDS_95, axis=0)
     s_low, k_low, s_high, k_high = (
         s_low * (1.0 - WIDER), k_low * (1.0 - WIDER), s_high * (1.0 + WIDER), k_high * (1.0 + WIDER)
@@ -127,6 +129,16 @@ def levels(rig: Rig) -> Levels:
         between = 0.5 * (k_high + s_low)
         s_low, k_high = max(s_low, between), min(k_high, between)
     return Levels((float(s_low), float(s_high)), (float(k_low), float(k_high)))
+
+
+def coefficients_of(slider: Slider, values: Mapping[str, float]) -> tuple[float, float]:
+    """Return the coefficient at rest and in rapid slip, with other values of the friction law."""
+    changed = slider
+    for path, value in values.items():
+        changed = change_unchecked(changed, path, value)
+    law: Any = changed.law
+    at_rest = max(law.coefficient(0.0), getattr(law, "mu_static", 0.0))
+    return at_rest, law.coefficient(fastest(slider))
 
 
 def fastest(slider: Slider) -> float:

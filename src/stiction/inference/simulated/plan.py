@@ -7,12 +7,17 @@ from collections.abc import Mapping, Sequence
 from hashlib import sha256
 from typing import NamedTuple
 
+import numpy as np
+
 from stiction.arrays import Floats
+from stiction.errors import ResultError
 from stiction.inference.observation import Conditions
 from stiction.inference.priors import Normal, Prior, Uniform
+from stiction.inference.simulated.restriction import is_allowed, is_restricted
 from stiction.system.slider import Slider
 
 JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
+MOST_DRAWS = 10_000  # of one set of parameters, where the priors are restricted
 FORMAT = 8  # of stored simulations and of what is learned from them
 
 
@@ -32,18 +37,22 @@ class Plan(NamedTuple):
     basis : Slider, optional
         What features are relative to, where it is not `slider`: plans with the same basis can be
         compared.
+    restricted : bool, optional
+        Whether the description refuses some combinations of values of the friction law, each
+        within its prior: then those are drawn again.
     """
 
     slider: Slider
     priors: dict[str, Prior]
     conditions: tuple[Conditions, ...]
     basis: Slider | None = None
+    restricted: bool = False
 
     @property
     def key(self) -> str:
         """A hash of all that decides what is simulated."""
         parts = self.slider, self.priors, self.conditions, self.basis
-        text = json.dumps([FORMAT, *map(repr, parts)])
+        text = json.dumps([FORMAT, *map(repr, parts), *["restricted"] * self.restricted])
         return sha256(text.encode()).hexdigest()[:16]
 
     def parameters(self, scores: Floats) -> dict[str, float]:
@@ -53,6 +62,25 @@ class Plan(NamedTuple):
         shares = ndtr(scores)
         pairs = zip(self.priors.items(), shares, strict=True)
         return {name: float(prior.quantile(share)) for (name, prior), share in pairs}
+
+    def draw(self, random: np.random.Generator) -> Floats:
+        """Return normal scores (p,) of parameters drawn from the priors.
+
+        Where these are restricted, from the part that the description takes; they are then not
+        normal, nor independent.
+        """
+        for _ in range(MOST_DRAWS if self.restricted else 1):
+            scores = random.standard_normal(len(self.priors))
+            if self.takes(scores):
+                return scores
+        raise ResultError(
+            f"of {MOST_DRAWS} draws of the priors the description refuses each: narrow the priors "
+            "of the friction law, so that most combinations are possible"
+        )
+
+    def takes(self, scores: Floats) -> bool:
+        """Return whether the description takes the parameters with these normal scores, (p,)."""
+        return not self.restricted or is_allowed(self.slider, self.parameters(scores))
 
 
 def plan(slider: Slider, priors: Mapping[str, Prior], conditions: Sequence[Conditions]) -> Plan:
@@ -66,5 +94,8 @@ def plan(slider: Slider, priors: Mapping[str, Prior], conditions: Sequence[Condi
     if force.drift:
         own["zero_drift"] = Normal(0.0, force.drift)
     return Plan(
-        slider, {**priors, **{k: v for k, v in own.items() if k not in priors}}, tuple(conditions)
+        slider,
+        {**priors, **{k: v for k, v in own.items() if k not in priors}},
+        tuple(conditions),
+        restricted=is_restricted(slider, priors),
     )

@@ -32,7 +32,7 @@ class Synthetic(NamedTuple):
 def draw(plan: Plan, number: int, seed: int) -> tuple[Floats, Iterator[Synthetic | None]]:
     """Return normal scores drawn for one simulation, and its records."""
     random = np.random.default_rng([seed, number])
-    drawn = random.standard_normal(len(plan.priors))
+    drawn = plan.draw(random)
     return drawn, synthesise(plan, drawn, random)
 
 
