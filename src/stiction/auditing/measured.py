@@ -24,7 +24,7 @@ from stiction.inference.posterior import RARE, Estimate, Fit
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.progress import silent
 from stiction.inference.rig import Rig
-from stiction.inference.simulated.library import SIMULATIONS
+from stiction.inference.simulated.library import SIMULATIONS, library_folder
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
@@ -109,6 +109,7 @@ def compare(
         If nothing of the rig is uncertain, or it is not of a kind that can be fitted.
     """
     check(rig)
+    library_folder(library)  # refused at once, and not as a reason why there is no verdict
     report = progress or silent
     try:
         seen = observe(record, rig.slider)

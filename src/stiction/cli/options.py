@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from stiction.errors import StictionError, echo
+from stiction.errors import ResultError, StictionError, echo
 
 if TYPE_CHECKING:
     from stiction.analysis.record import Record
@@ -64,9 +64,9 @@ Library = Annotated[
     Path | None,
     Parameter(
         help=(
-            "Folder for the simulated records, by default in the user's cache. An interrupted "
-            "command continues there, and another record under the same conditions needs no new "
-            "simulations. Example: --library simulations."
+            "Folder for the simulated records, by default in the user's cache, if that can be "
+            "written to. An interrupted command continues there, and another record under the same "
+            "conditions needs no new simulations. Example: --library simulations."
         ),
     ),
 ]
@@ -174,6 +174,25 @@ class RecordOptions:
     def arguments(self) -> dict[str, Any]:
         """Return what is given, by name."""
         return {name: value for name, value in vars(self).items() if value is not None}
+
+
+def library_or_cache(library: Path | None) -> Path:
+    """Return the folder of libraries: that which is named, or else that in the user's cache.
+
+    Where nothing can be written to the latter, say once that nothing is stored.
+    """
+    from stiction.cli.terminal import note
+    from stiction.storage.arrays import cache_folder
+    from stiction.storage.files import prepare_folder
+
+    if library is not None:
+        return library
+    folder = cache_folder()
+    try:
+        prepare_folder(folder)
+    except ResultError as error:
+        note(f"Simulations are not stored for the next time: {error}, by --library.")
+    return folder
 
 
 def record_in(path: Path, measured: RecordOptions | None, trust: bool) -> Record:

@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
-from stiction.friction import has_state
+from stiction.friction import Anisotropic, has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
 from stiction.inference.learning.summary import FeatureSummary
@@ -26,11 +26,19 @@ from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
-from stiction.inference.simulated.library import SIMULATIONS, Library, build, refuse_too_few
+from stiction.inference.simulated.jitter import coefficients
+from stiction.inference.simulated.library import (
+    SIMULATIONS,
+    Library,
+    build,
+    library_folder,
+    refuse_too_few,
+)
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
+VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
 
@@ -79,15 +87,17 @@ def fit(
     Raises
     ------
     ResultError
-        If a record cannot be used, or the priors lead to too few records with cycles.
+        If a record cannot be used, the priors lead to too few records with cycles, or nothing can
+        be written to `library`.
     DescriptionError
         If nothing is uncertain, or the rig is not of a kind that can be fitted.
     """
     known = rig_of(rig)
     check(known)
+    place = library_folder(library)
     seen = observe_all(records, known.slider)
     plan_of = plan_for(known, [each.conditions for each in seen])
-    folder = None if library is None else Path(library) / f"{plan_of.key}-{seed}"
+    folder = None if place is None else place / f"{plan_of.key}-{seed}"
     whole = progress or silent
     simulated = build(plan_of, simulations, folder, seed=seed, progress=part(whole, 0, 10, of=7))
     found = compare(simulated, seen, folder, part(whole, 7, 10, of=3))
@@ -102,20 +112,33 @@ def check(rig: Rig) -> None:
         message = "nothing is uncertain, and a fit estimates what is; write for example "
         message += 'phi = "2 +- 1 deg"'
         faults.append(Fault("slider", message))
-    law = type(rig.slider.law)
-    if not _is_fitted(law):
-        known = ", ".join(name for name, kind in LAWS.items() if _is_fitted(kind))
-        message = f"{law.__name__} is not fitted; take one of {known}, or one of your own with mu_0"
-        faults.append(Fault("friction.law", message))
+    faults += law_faults(rig.slider.law)
     if not isinstance(rig.slider.motion, ConstantVelocity) or rig.slider.load is not None:
         faults.append(Fault("drive", "must be steady, and the load constant, for a fit"))
     if faults:
         raise DescriptionError(faults)
 
 
-def _is_fitted(law: type[Any]) -> bool:
-    """Return whether a law can be fitted: it has a coefficient mu_0, and no internal state."""
-    return "mu_0" in getattr(law, "_fields", ()) and not has_state(law)
+def law_faults(law: Any) -> Iterator[Fault]:
+    """Yield why a law cannot be fitted, and which can."""
+    inner = law.law if isinstance(law, Anisotropic) else law
+    if _is_fitted(inner):
+        return
+    known = ", ".join(name for name, kind in LAWS.items() if _is_fitted(kind))
+    lack = "it has internal states" if has_state(inner) else f"it has no coefficient {VARIED}"
+    yield Fault(
+        "friction.law",
+        f"{type(inner).__name__} is not fitted, as {lack}; take one of {known}, or one of your own "
+        "with such a coefficient, and without states",
+    )
+
+
+def _is_fitted(law: Any) -> bool:
+    """Return whether a law, or a kind of it, can be fitted: its coefficients alone vary by cycle.
+
+    It has no internal state, and a coefficient mu_... beside that of static friction.
+    """
+    return not has_state(law) and bool({*coefficients(law)} - {"mu_static"})
 
 
 def plan_for(rig: Rig, conditions: Sequence[Conditions], signed: bool | None = None) -> Plan:

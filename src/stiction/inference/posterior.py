@@ -258,7 +258,7 @@ class Fit:
         if self.drifts:
             found.append(
                 "The peaks have a trend from cycle to cycle, the drops show none, as where a zero "
-                f"drifts: mu_0 and mu_inf are then uncertain by more. {STATE_DRIFT}"
+                f"drifts: friction coefficients are then uncertain by more. {STATE_DRIFT}"
             )
         return found
 

@@ -7,14 +7,34 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from stiction.storage.files import make_folders, whole
+from stiction.errors import ResultError
+from stiction.storage.files import prepare_folder, whole
 
 
 def write_arrays(path: Path, **arrays: np.ndarray) -> None:
-    """Write arrays, whole or not at all; the folder is made where there is none."""
-    make_folders(path.parent)
-    with whole(path) as part, part.open("wb") as opened:
-        np.savez(opened, allow_pickle=False, **arrays)
+    """Write arrays, whole or not at all; the folder is made where there is none.
+
+    In the user's cache, which nobody named, only if possible: what is not there is computed again.
+
+    Raises
+    ------
+    ResultError
+        If they cannot be written to another folder.
+    """
+    try:
+        prepare_folder(path.parent)
+        with whole(path) as part, part.open("wb") as opened:
+            np.savez(opened, allow_pickle=False, **arrays)
+    except ResultError:
+        if not path.is_relative_to(cache_folder()):
+            raise
+
+
+def cache_folder() -> Path:
+    """Return the folder of libraries in the user's cache."""
+    from platformdirs import user_cache_path
+
+    return user_cache_path("stiction") / "libraries"
 
 
 def read_arrays(path: Path | None) -> dict[str, np.ndarray] | None:

@@ -115,6 +115,22 @@ def make_folder(folder: Path) -> Path:
     return folder
 
 
+def prepare_folder(folder: Path) -> Path:
+    """Make a folder and its missing parents, into which files will be written; return it.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be made, or be written to.
+    """
+    try:
+        make_folders(folder)
+    except OSError as error:
+        raise ResultError(f"{folder}: cannot be made: {reason(error)}") from None
+    _refuse_unwritable(folder, folder)
+    return folder
+
+
 @contextmanager
 def whole(target: Path) -> Iterator[Path]:
     """Yield a temporary path, which replaces `target` once it is written completely.

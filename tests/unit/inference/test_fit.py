@@ -13,7 +13,7 @@ import stiction as st
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features, of_trend
-from stiction.inference.fit import plan_for
+from stiction.inference.fit import check, plan_for
 from stiction.inference.observation import (
     Noise,
     Trend,
@@ -451,6 +451,42 @@ def test_without_jitter_a_record_is_that_of_one_run(rig):
     assert len(motion.troughs) >= 3
     # a relative error of 1e-4 shifts each slip by 1e-4 of a cycle, 0.2 ms of the 25 ms of a fall
     assert np.abs(force - plain).max() < 0.01 * plain.max()
+
+
+LAWS = st.laws
+EXPONENTIAL = LAWS.ExponentialWeakening(mu_0=0.6, mu_inf=0.35, v_f=0.01)
+FITTED = {
+    "stribeck": LAWS.Stribeck(mu_s=0.6, mu_c=0.35, v_s=0.01, c=0.1),
+    "two-exponentials": LAWS.TwoExponentials(mu_inf=0.35, mu_1=0.1, v_1=0.01, mu_2=0.15, v_2=0.05),
+    "anisotropic": LAWS.Anisotropic(law=EXPONENTIAL, ratio=1.2),
+}
+
+
+@pytest.mark.parametrize("name", FITTED)
+def test_laws_without_states_are_fitted_whatever_their_coefficients_are_called(rig, name):
+    """Stribeck's law lacks `mu_0`: it was "not fitted", while the guide said that it is."""
+    other = rig._replace(slider=rig.slider.replace(friction=FITTED[name]))
+    priors = {path: its for path, its in rig.priors.items() if not path.startswith("friction.")}
+    other = other._replace(priors=priors | {"jitter": Uniform(0.01, 0.03)})
+    check(other)
+    seen = observe(record_of(rig.slider, 7, channels=("force",)), rig.slider)
+    _, [made] = draw(plan_for(other, [seen.conditions]), 1, 0)
+    drops = made.channels["force"][made.cycles.peak] - made.channels["force"][made.cycles.after]
+    assert np.ptp(drops) > 0.005 * drops.mean()  # its coefficients differ from cycle to cycle
+
+
+@pytest.mark.parametrize(
+    ("law", "lacks"),
+    [
+        (LAWS.Table(v=["0 m/s", "1 mm/s"], mu=[0.6, 0.4], mu_static=0.7), "it has no coefficient"),
+        (LAWS.LuGre(0.2, 0.3, 0.01, 1e5, 300.0), "it has internal states"),
+    ],
+)
+def test_other_laws_are_refused_with_the_reason(rig, law, lacks):
+    with pytest.raises(DescriptionError) as error:
+        check(rig._replace(slider=rig.slider.replace(friction=law)))
+    assert f"{type(law).__name__} is not fitted, as {lacks}" in str(error.value)
+    assert "power-law-weakening, stribeck, two-exponentials, or one of your own" in str(error.value)
 
 
 def test_a_record_without_cycles_is_refused(rig):

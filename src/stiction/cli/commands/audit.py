@@ -13,6 +13,7 @@ from stiction.cli.options import (
     Simulations,
     Trust,
     changes,
+    library_or_cache,
     record_in,
     rig_from,
 )
@@ -67,7 +68,6 @@ def audit(
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
-    from stiction.inference.simulated.library import cache_folder
 
     rig = rig_from(config, preset, changes(set), trust)
     title = str(config or preset)
@@ -76,10 +76,9 @@ def audit(
         from stiction.storage.files import placeable
 
         placeable(output, SUFFIXES)
-    seen = None
+    seen = kept = None
     if record is not None:
-        seen = record_in(record, measured, trust)
-    kept = cache_folder() if library is None else library
+        seen, kept = record_in(record, measured, trust), library_or_cache(library)
     with progress("auditing") as report:
         found = examine(rig, report, record=seen, simulations=simulations, library=kept)
     print_sections(title, found.tables())

@@ -20,6 +20,7 @@ from stiction.inference.mechanism.rivals import Mechanism, mechanisms
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
+from stiction.inference.simulated.library import library_folder
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import explain_unlike
 
@@ -79,9 +80,9 @@ def mechanism(
     if known.slider.phi == 0.0 and "phi" not in known.priors:
         message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
         raise DescriptionError.of("phi", message)
+    place = library_folder(library)
     seen = observe_all(records, known.slider)
     rivals = mechanisms(known, [each.conditions for each in seen])
-    place = None if library is None else Path(library)
     whole = progress or silent
     simulating = part(whole, 0, 10, of=8)
     simulated = simulate(rivals, simulations, place, seed=seed, progress=simulating)

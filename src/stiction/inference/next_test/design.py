@@ -38,7 +38,12 @@ from stiction.inference.next_test.further import (
 from stiction.inference.observation import PER_CYCLE, Conditions, Source, observe, record_from
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
-from stiction.inference.simulated.library import have_cycles, refuse_too_few, simulate_all
+from stiction.inference.simulated.library import (
+    have_cycles,
+    library_folder,
+    refuse_too_few,
+    simulate_all,
+)
 from stiction.inference.simulated.plan import Plan
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical, last_part
@@ -113,7 +118,7 @@ def design(
     """
     known = rig_of(rig)
     check(known)
-    slider = known.slider
+    place, slider = library_folder(library), known.slider
     if record is not None and several(channels) != ("force",):
         message = "are those of the record; leave them out, or the record"
         raise DescriptionError.of("channels", message)
@@ -136,7 +141,7 @@ def design(
     records = [test.record for test in tests if test.record is not None]
     signed = "force_across" in measured or present.yaw != 0.0
     trial = plan_for(known, [present, *records], signed)
-    folder = None if library is None else Path(library) / f"{trial.key}-{seed}"
+    folder = None if place is None else place / f"{trial.key}-{seed}"
     whole = progress or silent
     simulating, learning = part(whole, 0, 10, of=6), part(whole, 6, 10, of=4)
     scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=simulating)

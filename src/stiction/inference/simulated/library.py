@@ -19,7 +19,8 @@ from stiction.inference.features import features
 from stiction.inference.progress import Progress, silent
 from stiction.inference.simulated.plan import Plan
 from stiction.inference.simulated.synthetic import draw
-from stiction.storage.arrays import read_arrays, write_arrays
+from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
+from stiction.storage.files import prepare_folder
 from stiction.study.execution.cores import Cores
 
 SIMULATIONS = 4000  # of a library, by default
@@ -125,11 +126,20 @@ def refuse_too_few(
     )
 
 
-def cache_folder() -> Path:
-    """Return the folder of libraries in the user's cache."""
-    from platformdirs import user_cache_path
+def library_folder(library: str | Path | None) -> Path | None:
+    """Return the folder of libraries, made and ready to be written to; None where none is named.
 
-    return user_cache_path("stiction") / "libraries"
+    That in the user's cache need not be: nothing is stored then.
+
+    Raises
+    ------
+    ResultError
+        If another one cannot be made, or be written to.
+    """
+    if library is None:
+        return None
+    folder = Path(library)
+    return folder if folder == cache_folder() else prepare_folder(folder)
 
 
 def write_block(folder: Path, block: int, scores: Floats, found: Floats) -> None:

@@ -16,6 +16,7 @@ from stiction.cli.options import (
     Simulations,
     Trust,
     changes,
+    library_or_cache,
     record_in,
 )
 from stiction.cli.terminal import say
@@ -94,7 +95,6 @@ def design(
     from stiction.inference.next_test.design import design as find
     from stiction.inference.next_test.further import ANGLES
     from stiction.inference.rig import Rig
-    from stiction.inference.simulated.library import cache_folder
 
     if output is not None:
         from stiction.plotting.page.save import drawable
@@ -114,7 +114,7 @@ def design(
             noise=noise,
             position_noise=position_noise,
             simulations=simulations,
-            library=cache_folder() if library is None else library,
+            library=library_or_cache(library),
             seed=seed,
             progress=report,
         )

@@ -17,6 +17,7 @@ from stiction.cli.options import (
     Simulations,
     Trust,
     changes,
+    library_or_cache,
     record_in,
 )
 from stiction.cli.terminal import say
@@ -93,7 +94,6 @@ def fit(
     from stiction.inference.mechanism.comparison import SHARE
     from stiction.inference.mechanism.comparison import mechanism as find
     from stiction.inference.rig import Rig
-    from stiction.inference.simulated.library import cache_folder
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
     placeable(output, NETCDF)
@@ -104,7 +104,7 @@ def fit(
         raise DescriptionError.of("--turned", f"{message}, or state it in a file beside that one")
     known = Rig.from_toml(rig, changes(set), trust=trust)
     given = [record_in(path, measured, trust) for path in records]
-    kept = cache_folder() if library is None else library
+    kept = library_or_cache(library)
     with progress("simulating and learning") as report:
         found = infer(
             given, known, simulations=simulations, library=kept, seed=seed, progress=report

@@ -1,0 +1,79 @@
+"""Folders in which simulations are stored: one that is named, and the user's cache."""
+
+import numpy as np
+import pytest
+from tests.uncertain import TEXT
+
+import stiction as st
+from stiction.cli.options import library_or_cache
+from stiction.errors import ResultError
+from stiction.inference import fit as fits
+from stiction.inference.mechanism import comparison
+from stiction.inference.next_test import design as designs
+from stiction.inference.simulated.library import library_folder
+from stiction.storage import arrays
+from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
+
+
+@pytest.fixture
+def unwritable(tmp_path):
+    """A folder that cannot be made, by anybody: its parent is a file."""
+    (tmp_path / "file").write_text("")
+    return tmp_path / "file" / "libraries"
+
+
+@pytest.fixture
+def cache(unwritable, monkeypatch):
+    """The user's cache, which cannot be written to."""
+    monkeypatch.setattr(arrays, "cache_folder", lambda: unwritable)
+    monkeypatch.setattr("stiction.inference.simulated.library.cache_folder", lambda: unwritable)
+    return unwritable
+
+
+@pytest.mark.parametrize("name", ["fit", "mechanism", "design"])
+def test_a_library_that_cannot_be_made_is_refused_before_simulating(
+    name, unwritable, rig, record, monkeypatch
+):
+    def simulate(*_, **__):
+        raise AssertionError("something is simulated")
+
+    for module, function in (
+        (fits, "build"), (comparison, "simulate"), (designs, "simulate_all"), (designs, "observe"),
+    ):  # fmt: skip
+        monkeypatch.setattr(module, function, simulate)
+    given = (rig, record) if name == "design" else (record, rig)
+    with pytest.raises(ResultError, match=r"libraries: cannot be made: "):
+        getattr(st, name)(*given, library=unwritable)
+
+
+def test_an_audit_refuses_it_too_and_does_not_call_it_no_verdict(unwritable, record):
+    with pytest.raises(ResultError, match=r"libraries: cannot be made: "):
+        st.audit(st.Rig.from_toml(TEXT), record=record, library=unwritable)
+
+
+def test_a_cache_that_cannot_be_written_to_is_said_once_and_passed_over(cache, capsys):
+    """A fit ended after its first block: "Read-only file system; choose another, or make room"."""
+    assert library_or_cache(None) == cache
+    said = capsys.readouterr().err
+    assert said.startswith("Simulations are not stored for the next time: ")
+    assert said.rstrip().endswith("by --library.")
+    assert library_folder(cache) == cache
+    block = cache / "key-0" / "00000.npz"
+    write_arrays(block, scores=np.zeros(3))
+    assert read_arrays(block) is None
+
+
+def test_other_folders_are_written_or_refused(tmp_path, unwritable, capsys):
+    folder = tmp_path / "new" / "libraries"
+    assert library_or_cache(folder) == library_folder(folder) == folder
+    assert not capsys.readouterr().err
+    assert library_folder(None) is None
+    write_arrays(folder / "key-0" / "00000.npz", scores=np.zeros(3))
+    assert read_arrays(folder / "key-0" / "00000.npz")["scores"].tolist() == [0.0, 0.0, 0.0]
+    with pytest.raises(ResultError, match="cannot be made"):
+        write_arrays(unwritable / "00000.npz", scores=np.zeros(3))
+
+
+def test_the_cache_is_in_the_users_cache():
+    assert cache_folder().name == "libraries"
+    assert "stiction" in cache_folder().parts
