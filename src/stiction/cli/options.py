@@ -191,7 +191,7 @@ def library_or_cache(library: Path | None) -> Path:
     try:
         prepare_folder(folder)
     except ResultError as error:
-        note(f"Simulations are not stored for the next time: {error}, by --library.")
+        note(f"Simulations are not stored: {error}. --library FOLDER stores them elsewhere.")
     return folder
 
 

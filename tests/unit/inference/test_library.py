@@ -55,8 +55,8 @@ def test_a_cache_that_cannot_be_written_to_is_said_once_and_passed_over(cache, c
     """A fit ended after its first block: "Read-only file system; choose another, or make room"."""
     assert library_or_cache(None) == cache
     said = capsys.readouterr().err
-    assert said.startswith("Simulations are not stored for the next time: ")
-    assert said.rstrip().endswith("by --library.")
+    assert said.startswith("Simulations are not stored: ")
+    assert said.rstrip().endswith("--library FOLDER stores them elsewhere.")
     assert library_folder(cache) == cache
     block = cache / "key-0" / "00000.npz"
     write_arrays(block, scores=np.zeros(3))

@@ -527,6 +527,14 @@ def test_a_claim_of_contacts_with_memory_names_the_law_that_may_pass_for_it():
     assert "may pass" not in " ".join(odds_with().sentences())
 
 
+def test_a_claim_of_static_friction_names_the_rate_and_state_that_is_like_it():
+    """Below the smallest direct effect that is simulated, it was claimed without a word."""
+    sure = np.array([0.02, 0.95, 0.03])
+    static = odds_with(probabilities=sure, by_halves=np.array([sure, sure]))
+    assert "rate and state with a direct effect a below the" in " ".join(static.sentences())
+    assert "direct effect" not in " ".join(odds_with().sentences())
+
+
 def test_mechanisms_that_were_not_compared_are_named():
     assert "LuGre" in " ".join(odds_with(absent=("LuGre",)).sentences())
     only = odds_with(names=(ROTATION, "LuGre", RATE_AND_STATE))

@@ -195,6 +195,11 @@ class Odds:
                 "Not excluded: a Stribeck curve with a static peak on a misaligned rig, which is "
                 f"not among the mechanisms compared and may pass for {self.decision}."
             )
+        if self.decision == STATIC and RATE_AND_STATE in self.names:
+            found.append(
+                "Not excluded: rate and state with a direct effect a below the simulated ones, "
+                "which may pass for static friction."
+            )
         if self.absent:
             found.append(
                 f"Not compared: {', '.join(self.absent)}. Hardly any record simulated by it has "
