@@ -170,6 +170,9 @@ class Fit:
         if not found:
             known = ", ".join(x.name for x in self.estimates)
             raise ResultError(f"no parameter {echo(name)} was fitted; known: {known}")
+        if len(found) > 1:
+            several = ", ".join(x.name for x in found)
+            raise ResultError(f"{echo(name)} is the name of several parameters: {several}")
         return found[0]
 
     def tables(self) -> list[Section]:

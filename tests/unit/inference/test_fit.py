@@ -453,6 +453,18 @@ def test_without_jitter_a_record_is_that_of_one_run(rig):
     assert np.abs(force - plain).max() < 0.01 * plain.max()
 
 
+def test_a_name_that_several_parameters_share_is_refused(found):
+    """Each of several springs has a k_x; the first was taken."""
+    names = {"k_x": "springs.arm.k_x", "k_y": "springs.cell.k_x"}
+    estimates = (x._replace(name=names.get(x.name, x.name)) for x in found.estimates)
+    both = replace(found, estimates=tuple(estimates))
+    assert both["springs.cell.k_x"].median == found["k_y"].median
+    rows = {row[0] for row in both.tables()[0].table.rows}
+    assert rows == {"phi", *names.values(), "mu_0", "mu_inf", "jitter"}
+    with pytest.raises(ResultError, match=r"several parameters: springs\.arm\.k_x, springs\.cell"):
+        both["k_x"]
+
+
 LAWS = st.laws
 EXPONENTIAL = LAWS.ExponentialWeakening(mu_0=0.6, mu_inf=0.35, v_f=0.01)
 FITTED = {
