@@ -134,8 +134,8 @@ class VelocitySteps:
         sentences = [self._a_minus_b(), *self._trend(), *self.fitted]
         if self.stiffness < STIFF:
             sentences.append(
-                f"The rig is not stiff, k D_c/(b W) = {self.stiffness:.3g}: a, b and D_c are right "
-                "if its stiffness is, or a record shows it."
+                f"The rig is not stiff, k D_c/(b W) = {self.stiffness:.3g}: its spring shapes the "
+                "curves."
             )
         sentences += self.left_out
         rows = [_row(each) for each in (*self.steps, *self.other)]
@@ -279,7 +279,7 @@ def velocity_steps(
 def _least_stiffness(test: FrictionTest, jumps: Jumps, steps: Sequence[VelocityStep]) -> float:
     """Return the least k D_c/(b W) of all steps, NaN if it is unknown."""
     known = [
-        test.stiffness * each.D_c / (two.load * abs(each.b))
+        test.stiffness * each.stiffness_ratio * each.D_c / (two.load * abs(each.b))
         for each, (_, two) in zip(steps, jumps, strict=True)
         if not isnan(each.D_c)
     ]
