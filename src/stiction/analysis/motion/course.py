@@ -26,9 +26,6 @@ TWO, LEFT_OF_TWO = 2, 2 / 3  # of only two swings, if it is quiet for long after
 # factor: the largest and the smallest factor differ by less. Of irregular vibrations 3 in 100 have
 # three such swings, 7 in 1000 four, 2 in 1000 five.
 STEADILY = 0.3
-# Swings that build up: less than half the median, so many in succession (by chance once in a
-# thousand records where a quarter of all are so small)
-BELOW, BUILDING = 0.5, 5
 BEGINS_UNLOADED = 0.3  # of the largest force, below which a record begins with an unloaded spring
 PER_QUARTER = 8  # medians in each quarter of a record: few enough to be free of noise
 COURSE_PARTS = 4 * PER_QUARTER
@@ -84,29 +81,6 @@ def _decays_steadily(size: Floats) -> bool:
         return False
     factor = size[1:] / size[:-1]
     return bool(factor.max() < 1.0 and np.ptp(factor) < STEADILY)
-
-
-def built_up(drop: ArrayLike) -> slice:
-    """Return the slice of swings without the build-up before and the decay after them.
-
-    The number of these depends on sampling and noise: they are not cycles of the motion.
-
-    Parameters
-    ----------
-    drop : array
-        (n,) of each swing, in any unit.
-    """
-    size = np.asarray(drop, dtype=np.float64)
-    first, last = (_building(each) for each in (size, size[::-1]))
-    return slice(first, len(size) - last)
-
-
-def _building(size: np.ndarray) -> int:
-    """Return how many swings build up at the beginning."""
-    if not len(size):
-        return 0
-    count = int(np.argmax(size >= BELOW * median(size)))
-    return count if count >= BUILDING else 0
 
 
 def order(values: np.ndarray) -> float:

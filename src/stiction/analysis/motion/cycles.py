@@ -6,8 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
-from stiction.analysis.motion.course import built_up, dies_out, is_over
+from stiction.analysis.motion.changes.sizes import find_corners
+from stiction.analysis.motion.course import dies_out, is_over
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
     is_beside,
@@ -18,14 +20,12 @@ from stiction.analysis.motion.disturbance import (
     may_be_carried,
     slow_wave,
 )
-from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_frequencies
-from stiction.analysis.signals.peak_refinement import Vertices, vertices
 from stiction.analysis.signals.robust import without_outliers
-from stiction.analysis.signals.turning_points import TurningPoints, turning_points
+from stiction.analysis.signals.turning_points import turning_points
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
 
@@ -41,7 +41,9 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     There is nothing to tune. Cycles stand apart from all smaller reversals of the force
     (`stiction.analysis.signals.turning_points`): noise, ripple, single wild samples and slow drift
     are not cycles. A dip that is small beside the fall of its cycle counts as a hesitation
-    (`stiction.analysis.motion.hesitations`), and swings that die out are a transient. Left out are
+    (`stiction.analysis.motion.hesitations`), and swings that die out are a transient. Where larger
+    cycles leave a long stretch free, as after a change of the load, smaller ones are sought there
+    by themselves (`stiction.analysis.motion.changes.sizes`). Left out are
     cycles cut by the beginning or end of the record, cycles with a gap of a quarter of their period
     between samples, and the first loading from an unloaded spring, before which there is no slip.
 
@@ -171,7 +173,9 @@ def swings(record: Record) -> Swings:
 
 def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
     """Return stick-slip that goes on before or after swings that die out, as after a knock."""
-    ringing = None if record.slip_speed is not None else ringing_of(record.time, found.table)
+    if record.slip_speed is not None:
+        return None
+    ringing = ringing_of(record.time, found.table["peak_time"], found.table["drop"])
     if ringing is None:
         return None
     smooth = without_ringing(record.time, record.force, ringing)
@@ -234,8 +238,9 @@ def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
 
 def _swings(record: Record, wave: Floats | None = None) -> Swings:
     """Return the swings of the force less a wave (N), of which the table has the whole force."""
-    points = turning_points(record.force if wave is None else record.force - wave)
-    corners, dips = _corners(record, points)
+    force = record.force if wave is None else record.force - wave
+    points = turning_points(force)
+    corners, dips, turns = find_corners(record.time, force, points)
     if wave is not None:
         there = np.interp(corners.time, record.time, wave)
         corners = corners._replace(value=np.asarray(corners.value + there))
@@ -245,19 +250,5 @@ def _swings(record: Record, wave: Floats | None = None) -> Swings:
         rest = record.steady_until(table["start"][-1]) - table["trough_time"][-1]
         over = record.sticks is not None and is_over(table["period"], rest)
         dying = over or dies_out(table["drop"], table["period"], rest)
-    found = Swings(table, dying, len(points.index), points.noise, points.clearness, record.force)
+    found = Swings(table, dying, turns, points.noise, points.clearness, record.force)
     return found._replace(over=over)
-
-
-def _corners(record: Record, points: TurningPoints) -> tuple[Vertices, Vertices]:
-    """Return alternating troughs and peaks, a trough first and last; and hesitations.
-
-    A hesitation has the time of its first point, and its depth as value.
-    """
-    if len(points.index) < 3:
-        none = Vertices(np.zeros(0), np.zeros(0))
-        return none, none
-    found = vertices(record.time, points)
-    ends = points.before, points.after
-    kept, at, depth = cycle_corners(found.value, found.time, ends, bool(points.trough[0]))
-    return Vertices(found.time[kept], found.value[kept]), Vertices(found.time[at], depth)

@@ -36,6 +36,8 @@ LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading
 FEWEST_SAMPLES = 32  # with fewer the kind of motion is not known, either: see `COURSE_PARTS`
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
+# A level before the peak: its least share of the rise, how far the force goes above it, and means
+LOW, HIGHER, FEWEST_MEANS = 0.1, 1.2, 4
 # Standard deviations of white noise: by so much, and no more, the mean of peaks is too high where
 # each peak is sought among some samples; 0.4 in the median of random records
 ABOVE = 0.5
@@ -195,15 +197,14 @@ def _find_break_away(
     time: Floats, force: Floats, cycles: CycleTable, load: Floats
 ) -> tuple[Measured | None, str]:
     """Find the break-away, in so much of a force as resolves its first loading; or the reason."""
-    end = len(force)
+    end = until = len(force)
     if len(cycles):
         before, first = np.searchsorted(time, [cycles["start"][0], cycles["trough_time"][0]])
-        end = min(
-            end, max(FEWEST_SAMPLES, int(first) + 1, MEANS_OF_RECORD // LOADING * int(before))
-        )
+        until = max(FEWEST_SAMPLES, int(first) + 1)
+        end = min(end, max(until, MEANS_OF_RECORD // LOADING * int(before)))
     force = force[:end]
     forces, noise = _means(force)
-    at, reason = _first_peak(forces, noise)
+    at, reason = _first_peak(forces, -(-min(until, end) * len(forces) // end), noise)
     if at is None:
         return None, reason
     return _break_away(force, forces, at, noise, load), ""
@@ -217,19 +218,45 @@ def _means(force: Floats) -> tuple[Floats, float]:
     return forces, noise
 
 
-def _first_peak(forces: Floats, noise: float) -> tuple[int | None, str]:
-    """Return the index of the first maximum of a loading; or None and the reason."""
+def _first_peak(forces: Floats, until: int, noise: float) -> tuple[int | None, str]:
+    """Return the index of the first maximum of a loading; or None and the reason.
+
+    Of the forces, those before `until` belong to the loading and the first cycle: a later load, or
+    velocity, may raise the others.
+    """
     highest = np.maximum.accumulate(forces)
+    rise = highest - forces[0]
     if forces[0] > BEGINS_UNLOADED * highest[-1] or _is_within(forces):
         return None, "the record does not begin with an unloaded spring"
-    fall = np.maximum(STANDS_OUT * noise, PEAK * (highest - forces[0]))
-    risen = highest - forces[0] > 0.5 * (highest[-1] - forces[0])
-    risen &= highest - forces[0] > 2.0 * STANDS_OUT * noise
+    risen = (rise > 0.5 * rise[until - 1]) & (rise > 2.0 * STANDS_OUT * noise)
+    if _dwells(forces, rise, int(np.argmax(risen)), noise):
+        return None, (
+            "the force stays at a lower level before its first peak, as where the load changes "
+            "while the mass slides: analyse the part before that change by itself"
+        )
+    fall = np.maximum(STANDS_OUT * noise, PEAK * rise)
     fallen = np.flatnonzero((highest - forces > fall) & risen)
     if not len(fallen):
         least = f"{percent(PEAK)} of its rise"
         return None, f"the first loading does not end in a fall of more than {least}"
     return int(np.argmax(forces[: fallen[0] + 1])), ""
+
+
+def _dwells(forces: Floats, rise: Floats, until: int, noise: float) -> bool:
+    """Return whether forces stay at a level, before an index, for longer than they rose to it.
+
+    There a mass may slide, and has broken away before; in a single loading they rise on.
+    """
+    level = np.arange(until)[
+        (rise[:until] > LOW * rise[until]) & (rise[:until] > 2.0 * STANDS_OUT * noise)
+    ]
+    begin = np.searchsorted(rise, LOW * rise[level], side="right")
+    end = np.searchsorted(rise, HIGHER * rise[level], side="right")
+    for at in level[end - level > np.maximum(level - begin, FEWEST_MEANS)]:
+        stays = forces[at : np.searchsorted(rise, HIGHER * rise[at])] - forces[0]
+        if np.median(stays) > 0.5 * rise[at]:
+            return True
+    return False
 
 
 def _is_within(forces: Floats) -> bool:

@@ -13,7 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.course import PER_QUARTER, built_up, dies_out, is_over
+from stiction.analysis.motion.changes.cycles import built_up
+from stiction.analysis.motion.course import PER_QUARTER, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.vibration import FastOscillation, irregularity

@@ -1,13 +1,14 @@
-"""Changes among cycles: parts with their own period, a changing rate of loading, cycles apart."""
+"""Changes among cycles: parts of their own, a build-up, a rate of loading, cycles apart."""
 
 from __future__ import annotations
 
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.motion.course import ORDERED, order
+from stiction.analysis.signals.robust import median
 from stiction.arrays import TINY, Floats, xr
 from stiction.drive.recorded.resolution import NORMAL_MEDIAN
 
@@ -20,14 +21,19 @@ SURE = 20.0
 # these left out at each end where there are many; of measured stick-slip the largest comes to 1.4
 FAR, BEYOND, FEWEST_CYCLES, MANY = 2.0, 5.0, 5, 10
 RARE = 4  # one in so many at most
+# Swings that build up: less than half the median, so many in succession (by chance once in a
+# thousand records where a quarter of all are so small)
+BELOW, BUILDING = 0.5, 5
+GROWN = 0.1  # logarithm of the last over the first of some that grow, in order
 
 
-def parts_of(period: Floats) -> list[slice]:
+def parts_of(values: Floats) -> list[slice]:
     """Return the parts of cycles with a period of their own, as after each step of the velocity.
 
-    Each part differs from its neighbours by far more than its cycles do; a single part is none.
+    Or with a drop of their own. Each part differs from its neighbours by far more than its cycles
+    do; a single part is none.
     """
-    size = np.log(np.maximum(period, TINY))
+    size = np.log(np.maximum(values, TINY))
     edges = [0, *_splits(size), len(size)]
     margins = [_margin(size, edges, k) for k in range(1, len(edges) - 1)]
     while margins and min(margins) < 0.0:
@@ -72,6 +78,40 @@ def _margin(size: Floats, edges: list[int], k: int) -> float:
     change = abs(float(np.median(after) - np.median(before)))
     spread = max(float(np.ptp(np.percentile(part, (10.0, 90.0)))) for part in (before, after))
     return change - max(CHANGED, 2.0 * spread)
+
+
+def built_up(drop: ArrayLike) -> slice:
+    """Return the slice of swings without the build-up before and the decay after them.
+
+    The number of these depends on sampling and noise: they are not cycles of the motion. Smaller
+    swings that form a part of their own, as under a smaller load, are cycles.
+
+    Parameters
+    ----------
+    drop : array
+        (n,) of each swing, in any unit.
+    """
+    size = np.asarray(drop, dtype=np.float64)
+    first, last = (_building(each) for each in (size, size[::-1]))
+    return slice(first, len(size) - last)
+
+
+def _building(size: Floats) -> int:
+    """Return how many swings build up at the beginning."""
+    count = _below(size)
+    if not count:
+        return 0
+    first = size[parts_of(size)[0]]
+    grows = order(first) >= -ORDERED and np.ptp(np.log(np.maximum(first, TINY))) > GROWN
+    return count if grows else _below(first)
+
+
+def _below(size: Floats) -> int:
+    """Return how many swings at the beginning are small beside the others, if they are many."""
+    if not len(size):
+        return 0
+    count = int(np.argmax(size >= BELOW * median(size)))
+    return count if count >= BUILDING else 0
 
 
 def steady_change(rate: Floats) -> tuple[float, float] | None:

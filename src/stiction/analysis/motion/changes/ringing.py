@@ -25,9 +25,17 @@ class Ringing(NamedTuple):
     height: float
 
 
-def ringing_of(time: Floats, table: CycleTable) -> Ringing | None:
-    """Return where swings that die out ring, if that is a short part within a record."""
-    peak, gaps = table["peak_time"], np.diff(table["peak_time"])
+def ringing_of(time: Floats, peak: Floats, drop: Floats) -> Ringing | None:
+    """Return where swings that die out ring, if that is a short part within a record.
+
+    Parameters
+    ----------
+    time : ndarray
+        (n,), of the record, s.
+    peak, drop : ndarray
+        (m,), time of each swing's peak, s, and its height, N.
+    """
+    gaps = np.diff(peak)
     if not len(gaps):
         return None
     period = float(np.median(gaps))
@@ -35,11 +43,11 @@ def ringing_of(time: Floats, table: CycleTable) -> Ringing | None:
     if near.any():  # it has fewer swings than there are cycles
         period, largest = float(np.median(gaps[near])), int(np.argmax(near))
     else:
-        near, largest = gaps <= ELSEWHERE * period, int(np.argmax(table["drop"]))
+        near, largest = gaps <= ELSEWHERE * period, int(np.argmax(drop))
     apart = np.flatnonzero(~near)
     first = int(apart[apart < largest][-1]) + 1 if (apart < largest).any() else 0
     last = int(apart[apart >= largest][0]) if (apart >= largest).any() else len(peak) - 1
-    size = table["drop"][first : last + 1]
+    size = drop[first : last + 1]
     if len(size) < FEWEST_SWINGS or order(size) > ORDERED:
         return None
     factor = min(float(size[-1] / size[0]) ** (1.0 / (len(size) - 1)), SLOWEST)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from stiction.analysis.motion.changes.cycles import BELOW
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
-from stiction.analysis.motion.course import BELOW, COURSE_PARTS
+from stiction.analysis.motion.course import COURSE_PARTS
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
