@@ -4,8 +4,8 @@ from math import isnan
 
 import numpy as np
 import pytest
-from benchmarks.accuracy import velocity_steps as drawn
 from benchmarks.explore.draw import Draw
+from benchmarks.state_laws import velocity_steps as drawn
 from tests.drawn import SEED
 
 import stiction as st

@@ -7,8 +7,8 @@ from math import log, sinh
 
 import numpy as np
 import pytest
-from benchmarks.accuracy import velocity_steps as drawn
 from benchmarks.explore.draw import Draw
+from benchmarks.state_laws import velocity_steps as drawn
 from scipy.integrate import solve_ivp
 from scipy.signal import lfilter
 from tests.drawn import SEED, inside

@@ -1,4 +1,4 @@
-"""``python -m benchmarks.accuracy.velocity_steps``: a, b and D_c of records of velocity steps.
+"""``python -m benchmarks.state_laws.velocity_steps``: a, b and D_c of records of velocity steps.
 
 Each record is that of a law drawn at random on a random rig, with noise up to 2 % of b, samples
 from two to sixty within D_c, a clock that is off by some samples and a stiffness that is off by
@@ -98,7 +98,7 @@ def deviations(drawn: DrawnSteps, found: VelocitySteps) -> list[list[float]]:
 
 def main() -> int:
     """Look at as many records as are asked for; return 1 if a bound is broken."""
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.accuracy.velocity_steps")
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.state_laws.velocity_steps")
     parser.add_argument("--records", type=int, default=200)
     parser.add_argument("--seed", type=int, default=7)
     parser.add_argument("--late", type=float, default=6.0, help="samples of the clock, at most")
