@@ -105,7 +105,7 @@ def explain_unlike(changes: Sequence[Sequence[str]]) -> str:
 
     Of the changes within each record.
 
-    >>> explain_unlike([(), ("At 3 s the force falls by 2 N.",)])[:62]
+    >>> explain_unlike([(), ("At 3 s the force falls by 2 N.",)])[:63]
     'Cycles differ within the record, which may explain it. Record 2'
     """
     several = len(changes) > 1
