@@ -104,8 +104,10 @@ def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> flo
 
     It follows from differences, which cancel what is smooth over `order` + 1 samples (T. Gasser,
     L. Sroka & C. Jennen-Steinmetz, Biometrika 73, 625 (1986)), by the median of their size, which a
-    few slips do not move.
+    few slips do not move. Samples that are too few for it show no noise.
     """
+    if len(values) <= order:
+        return 0.0
     weights = sqrt(comb(2 * order, order))  # root of the sum of their squares
     return _median(np.abs(np.diff(values, order)), step) / (NORMAL_MEDIAN * weights)
 

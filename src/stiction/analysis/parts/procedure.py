@@ -6,6 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.doubts.warnings import variations
+from stiction.analysis.motion.regime.kinds import STICK_SLIP
 from stiction.analysis.record import Record
 from stiction.errors import ResultError
 from stiction.text.sections import Section
@@ -18,13 +19,15 @@ if TYPE_CHECKING:
 def find(found: Analysis) -> Any:
     """Return the first analysis of a test that suits a run, or a record of the drive as well.
 
-    None where nothing varies. Loops of a measured drive are two strokes, for which there are words.
+    None where nothing varies. In a record of stick-slip no change of the drive's speed shows steady
+    friction; and the strokes of a drive that goes back and forth are analysed one by one.
     """
     source = found.source
     if isinstance(source, Trajectory):
         its = ("velocity_steps", "healing", "hysteresis", "load_dependence")
         return _first(source, its) if variations(source) else None
-    if source.drive_position is None or source.normal_load is None:
+    measured = source.drive_position is not None and source.normal_load is not None
+    if not measured or found.regime.kind == STICK_SLIP:
         return None
     from stiction.analysis.protocols.friction_test import friction_test
 

@@ -123,9 +123,9 @@ class FrictionTest(NamedTuple):
         return OFF_BY * (stretch.end - stretch.start) if self.law is None else 0.0
 
     def clock_at_jump(self, one: ConstantStretch, two: ConstantStretch) -> float:
-        """Return by how much the jump from one stretch to the next may be off, s: a sample or more.
+        """Return by how much the jump from one stretch to the next may be off, s.
 
-        0 for a run.
+        It is a sample at least, and 0 for a run.
         """
         interval = float(np.median(np.diff(self.time[self.within(*two[:2])])))
         off = max(min(self.clock(one), self.clock(two)), interval)
@@ -134,7 +134,7 @@ class FrictionTest(NamedTuple):
     def until_end(self, stretch: ConstantStretch, early: float = 0.0) -> Indices:
         """Return the indices of the samples of a stretch without those that may be of the next.
 
-        From some time `early` (s) before it begins.
+        They begin by a time `early` (s) before the stretch does.
         """
         return self.within(stretch.start - early, stretch.end - self.clock(stretch))
 
@@ -153,7 +153,9 @@ class FrictionTest(NamedTuple):
 
     def is_sampled(self, stretch: ConstantStretch) -> bool:
         """Return whether a stretch, and its end, have enough samples to see a change there."""
-        return len(self.within(*stretch[:2])) >= FEWEST_SAMPLES and len(self.late(stretch)) > 0
+        return (
+            len(self.within(*stretch[:2])) >= FEWEST_SAMPLES and len(self.surely_late(stretch)) > 0
+        )
 
     def slides(self, stretch: ConstantStretch) -> bool:
         """Return whether the mass slides in the end of a stretch: the spring is loaded no more.
@@ -202,7 +204,7 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
         A record needs its normal load.
     program : DriveProgram, optional
         The program by which a record was taken, with t = 0 as in its time; by default its measured
-        `drive_position` tells. That of the run is known.
+        `drive_position` tells, whenever the record begins. That of the run is known.
 
     Raises
     ------
@@ -222,7 +224,7 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
             "the drive of a record is unknown; give its program, such as "
             "st.protocols.velocity_steps(...), or its measured drive_position"
         )
-    measured = measured_stretches(source.time, source.drive_position, source.force)
+    measured = measured_stretches(source.time, source.drive_position)
     return of_record(source, DriveProgram(), loads, measured)
 
 
@@ -257,15 +259,17 @@ def of_record(
     measured: Stretches | None = None,
 ) -> FrictionTest:
     """Return a record with a normal load as a friction test, by its program or as measured."""
+    force = record.force
     if measured is None:
         found = stretches(drive, loads, record.time)
     else:
         found = _stretches(measured, loads, record.time, -inf)
+        force = _against_friction(record, found)
     load = (record.normal_load or nan) * record.relative_load()
-    lag = record.force / record.stiffness if record.stiffness else np.zeros(len(record.time))
+    lag = force / record.stiffness if record.stiffness else np.zeros(len(force))
     return FrictionTest(
         record.time,
-        record.force,
+        force,
         load,
         lag,
         record.stiffness or nan,
@@ -275,6 +279,16 @@ def of_record(
         drive,
         found,
     )
+
+
+def _against_friction(record: Record, found: list[ConstantStretch]) -> Floats:
+    """Return the force with the sign by which a measured drive does work: friction takes it."""
+    edges = [np.searchsorted(record.time, each[:2]) for each in found]
+    work = [
+        each.way * float(record.force[first:last].sum())
+        for each, (first, last) in zip(found, edges, strict=True)
+    ]
+    return np.asarray(-record.force if sum(work) < 0.0 else record.force)
 
 
 def stretches(

@@ -14,12 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import StraightLine, line
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, Stretches
 from stiction.errors import ResultError
-from stiction.recording.noise import seeming_motion
+from stiction.recording.noise import seeming_motion, white_noise
 
 MEANS = 4000  # of the record, at most: noise is averaged out
 FEWEST_MEANS = 3.0  # over which a velocity lasts: a bend is not better placed
@@ -27,7 +28,8 @@ FEWEST_MEANS = 3.0  # over which a velocity lasts: a bend is not better placed
 BENDS = 1e-3
 BRIEF = 0.1  # of a neighbour, in time and way: a drive takes less from one velocity to the next
 SAME = 0.01  # of a velocity: a program has the same twice
-BENT = 0.1  # of the deviation that makes a bend: a part that sags by more is not straight
+SAG = 0.1  # of the deviation that makes a bend: means of a part that spread by more are not a line
+CERTAIN = 6.0  # errors of a mean: eight means of noise spread by more once in a thousand
 BENT_SHARE = 0.3  # of the record: where more is bent the drive swings, and keeps to no velocity
 SAGS = 8  # means of a part that show it
 
@@ -49,16 +51,15 @@ class _Part(NamedTuple):
         return self.duration * abs(self.line.slope)
 
 
-def measured_stretches(time: Floats, position: Floats, force: Floats) -> Stretches:
+def measured_stretches(time: Floats, position: Floats) -> Stretches:
     """Return the stretches of constant velocity of a drive: the end of each (s), and its velocity.
 
-    A brief change from one velocity to the next counts as a jump. The velocity is that along the
-    force: positive where the drive loads the spring in the direction of a positive force.
+    A brief change from one velocity to the next counts as a jump.
 
     Parameters
     ----------
-    time, position, force : array
-        (n,), s, m, N.
+    time, position : array
+        (n,), s, m.
 
     Raises
     ------
@@ -74,18 +75,19 @@ def measured_stretches(time: Floats, position: Floats, force: Floats) -> Stretch
         )
     least = BENDS * float(np.ptp(position))
     speeds = _alike(np.array([each.line.slope if each.way > least else 0.0 for each in parts]))
-    means = [force[slice(*np.searchsorted(time, each[:2]))].sum() for each in parts]
-    if float(np.dot(speeds, means)) < 0.0:  # friction takes power from the drive
-        speeds = -speeds
-    ends = [_crossing(one, two) for one, two in pairwise(parts)]
-    velocities = [ConstantVelocity._make((float(each),)) for each in speeds]
-    return tuple(zip([*ends, inf], velocities, strict=True))
+    ends = [*(_crossing(one, two) for one, two in pairwise(parts)), inf]
+    lasts = np.append(speeds[1:] != speeds[:-1], True)  # of neighbours that are alike
+    return tuple(
+        (end, ConstantVelocity._make((float(speed),)))
+        for end, speed, last in zip(ends, speeds, lasts, strict=True)
+        if last
+    )
 
 
 def _parts(time: Floats, position: Floats) -> list[_Part]:
     """Return the parts of a record between bends of the displacement, each with its line."""
     times, places = part_means(time, MEANS), part_means(position, MEANS)
-    far = max(seeming_motion(places), BENDS * float(np.ptp(places)))
+    far = max(seeming_motion(places), BENDS * float(np.ptp(places)), resolution(position))
     bends = times[_bends(times, places, far)]
     edges = [float(time[0]), *bends[1:-1].tolist(), float(time[-1])]
     return [_part(time, position, *each, far) for each in pairwise(edges)]
@@ -115,9 +117,10 @@ def _part(time: Floats, position: Floats, start: float, end: float, far: float) 
     inside = slice(inside.start + cut, max(inside.stop - cut, inside.start + 2))
     since, place = time[inside] - start, position[inside]
     found = line(since, place)
-    off = part_means(found.deviations(since, place), SAGS)
-    sag = float(off[[0, -1]].mean() - off[len(off) // 2 - 1 : len(off) // 2 + 1].mean())
-    return _Part(start, end, found, len(off) == SAGS and abs(sag) > BENT * far)
+    off = part_means(found.deviations(since, place), SAGS) if len(since) else since
+    error = white_noise(place) * (SAGS / max(len(place), 1)) ** 0.5
+    least = max(SAG * far, resolution(position), CERTAIN * error)
+    return _Part(start, end, found, len(off) == SAGS and float(np.ptp(off)) > least)
 
 
 def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
@@ -138,7 +141,7 @@ def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
             or (
                 two.duration < BRIEF * max(one.duration, three.duration)
                 and two.way < BRIEF * max(one.way, three.way)
-                and (two.line.slope - one.line.slope) * (three.line.slope - two.line.slope) > 0.0
+                and (two.line.slope - one.line.slope) * (three.line.slope - two.line.slope) >= 0.0
             )
         ]
         if not brief:

@@ -10,11 +10,12 @@ import numpy as np
 from stiction.analysis.protocols.friction_test import ConstantStretch, FrictionTest
 from stiction.analysis.protocols.settling import SettledPart, settled_part
 from stiction.analysis.signals.correlated_noise import CorrelatedNoise, noise_about
-from stiction.arrays import TINY, Floats, Indices
+from stiction.arrays import Floats, Indices
 
 SLOPE = 12.0**0.5  # error of a rise in a straight line, over that of its mean
 TAIL_MEAN = 0.5  # mean of what is left of an evolution in a part, over its first value, at most
 SURE = 3.0  # standard errors beyond which there is a trend
+LEAST_ERROR = 1e-6  # of the largest error: a slope without noise has not all the weight
 SCATTERED = 3.0  # times the scatter by chance: slopes of stretches with more are not alike
 
 
@@ -42,16 +43,17 @@ def common_trend(slopes: Floats, errors: Floats) -> TravelTrend:
     that of a single one (R. DerSimonian & N. Laird, Control. Clin. Trials 7, 177 (1986)).
     """
     known = np.isfinite(slopes) & np.isfinite(errors)
-    slopes, weights = slopes[known], errors[known].clip(TINY) ** -2.0
-    if not len(slopes):
+    if not known.any():
         return TravelTrend()
+    unit = float(errors[known].max()) or 1.0  # of errors: weights are those over it
+    slopes, weights = slopes[known], np.maximum(errors[known] / unit, LEAST_ERROR) ** -2.0
     total, free = float(weights.sum()), len(slopes) - 1
     slope = float(weights @ slopes) / total
-    square, varies = float(weights @ (slopes - slope) ** 2), 0.0
+    square, varies = float(weights @ (slopes - slope) ** 2) / unit**2, 0.0
     others = total - float(weights @ weights) / total  # nothing if one has all the weight
     if square > SCATTERED * free and others > 0.0:
-        varies = (square - free) / others
-    return TravelTrend(slope, sqrt(1.0 / total + varies))
+        varies = unit**2 * (square - free) / others
+    return TravelTrend(slope, sqrt(unit**2 / total + varies))
 
 
 NO_TREND, NO_NOISE = TravelTrend(), CorrelatedNoise()

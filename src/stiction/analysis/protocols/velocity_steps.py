@@ -157,7 +157,8 @@ class VelocitySteps:
             way = f"{'weakens' if mean < 0.0 else 'strengthens'} with speed"
         elif not isnan(error):
             way = "does not depend on speed beyond its error"
-        few = f" of {len(known)} steps: after the others it has not settled"
+        steps = "one step" if len(known) == 1 else f"{len(known)} steps"
+        few = f" of {steps}: after the others it has not settled"
         where = few if len(known) < len(self.steps) else ""
         value = f"{mean:+.4f} ± {number_text(error, '.1g')}"
         return f"Steady friction {way}: a - b = {value} on average{where}."
@@ -272,7 +273,8 @@ def velocity_steps(
     steps = _steps(test, levels, jumps, data, choice.best)
     other = () if choice.other is None else _steps(test, levels, jumps, data, choice.other)
     stiffness = _least_stiffness(test, jumps, steps)
-    fitted = (*choice.said, *say_rig_and_clock(data, choice.best.steps))
+    drive = "the displacement of the drive" if program is None else "the program"
+    fitted = (*choice.said, *say_rig_and_clock(data, choice.best.steps, drive))
     return VelocitySteps(steps, stiffness, tuple(left_out), other, fitted, *levels.trend)
 
 
@@ -382,7 +384,7 @@ def _step(
         (steady - before) / by,
         fit.D_c,
         fit.D_c_error,
-        slip - one.way * (lag - lag[0]),
+        slip - one.way * (lag - lag[0]) * exp(-fit.stiffer),
         data.mu[after] + trend,
         fit.fit[after] + trend,
         fit.a_error,

@@ -9,6 +9,7 @@ from benchmarks.state_laws import velocity_steps as drawn
 from tests.drawn import SEED
 
 import stiction as st
+from stiction.analysis.protocols.friction_test import friction_test
 from stiction.analysis.protocols.measured_drive import measured_stretches
 
 p = st.protocols
@@ -30,7 +31,7 @@ def test_velocities_and_jumps_are_those_of_the_program():
         step = draw.decades(3e-9, 1e-7)
         random = np.random.default_rng([SEED, number])
         X = np.round((X + 0.5 * step * random.standard_normal(len(X))) / step) * step
-        found = measured_stretches(time, X, np.ones(len(X)))
+        found = measured_stretches(time, X)
         assert [each.velocity for _, each in found] == pytest.approx(speeds, rel=0.01)
         between = time[1] + 3.0 * step / np.abs(np.diff(speeds))
         assert (np.abs([end for end, _ in found[:-1]] - jumps[:-1]) < between).all()
@@ -44,15 +45,111 @@ def test_a_drive_that_takes_time_to_change_its_velocity_steps():
         program=[p.Constant(V, 40.0), p.Ramp(10 * V, 0.2), p.Constant(10 * V, 10.0), p.Hold(5.0)],
     )
     time = np.arange(0.0, 55.2, 0.01)
-    found = measured_stretches(time, program.travel(0.0, time)[0], np.ones(len(time)))
+    found = measured_stretches(time, program.travel(0.0, time)[0])
     assert [each.velocity for _, each in found] == pytest.approx([V, 10 * V, 0.0])
     assert [end for end, _ in found[:-1]] == pytest.approx([40.1, 50.2], abs=0.02)
 
 
 def test_a_drive_that_is_measured_backwards_pulls_all_the_same():
     time = np.linspace(0.0, 10.0, 500)
-    found = measured_stretches(time, -1e-3 * time, np.full(500, 2.0))
-    assert found[0][1].velocity == pytest.approx(1e-3)
+    record = st.Record(
+        time=time, force=np.full(500, 2.0), drive_position=-1e-3 * time, normal_load=4.0
+    )
+    test = friction_test(record)
+    assert test.stretches[0].way * test.mu == pytest.approx(np.full(500, 0.5))
+
+
+def stretches_of(times, ways, noise=0.0):
+    """Return the stretches of a drive that comes to some `ways` (m) at some times (s)."""
+    time = np.linspace(0.0, times[-1], 4000)
+    X = np.interp(time, times, ways) + noise * np.random.default_rng(1).standard_normal(4000)
+    return measured_stretches(time, X)
+
+
+def test_what_bends_and_what_does_not():
+    """A brief hold, an intermediate velocity, 0.2 % of the way; noise of 1 % of it does not."""
+    hold = stretches_of([0, 50, 52, 102], [0, 50e-6, 50e-6, 100e-6])
+    assert [each.velocity for _, each in hold] == pytest.approx([1e-6, 0.0, 1e-6])
+    between = stretches_of([0, 50, 60, 110], [0, 50e-6, 75e-6, 275e-6])
+    assert [each.velocity for _, each in between] == pytest.approx([1e-6, 2.5e-6, 4e-6])
+    assert len(stretches_of([0, 20, 100], [0, 0.198, 1.0])) == 2
+    assert len(stretches_of([0, 100], [0, 1e-4], noise=1e-6)) == 1
+
+
+@pytest.mark.parametrize(("by", "same"), [(1.005, True), (1.02, False)])
+def test_velocities_that_differ_by_less_than_a_hundredth_are_the_same(by, same):
+    found = stretches_of([0, 50, 60, 110], [0, 50e-6, 50e-6, (50 + 50 * by) * 1e-6])
+    assert (found[0][1].velocity == found[2][1].velocity) is same
+
+
+@pytest.mark.parametrize("codes", [20, 100, 400, 2000])
+def test_an_encoder_of_few_steps_is_no_staircase_of_holds(codes):
+    """Of fewer than 500 steps all velocities were 0."""
+    time = np.arange(0.0, 24.0, 0.002)
+    step = 60e-3 / codes
+    way = np.floor(np.interp(time, [0.0, 15.0, 24.0], [0.0, 15e-3, 60e-3]) / step) * step
+    found = measured_stretches(time, way)
+    assert [each.velocity for _, each in found] == pytest.approx([1e-3, 5e-3], rel=0.05)
+
+
+def test_a_screw_that_errs_has_no_stretches():
+    time = np.linspace(0.0, 20.0, 40_000)
+    way = 1e-3 * time + 20e-6 * np.sin(2.0 * np.pi * time)
+    with pytest.raises(st.ResultError, match="has no stretches of constant velocity"):
+        measured_stretches(time, way)
+
+
+@pytest.mark.parametrize("change", ["soft start", "twice as fast", "pause"])
+def test_stick_slip_shows_no_steady_friction_whatever_its_drive_does(change):
+    """It was said to heal, or to strengthen with speed, by the swings of the force."""
+    time = np.arange(0.0, 30.0, 0.002)
+    points = {
+        "soft start": ([0.0, 2.0, 30.0], [0.0, 1e-3, 29e-3]),
+        "twice as fast": ([0.0, 15.0, 30.0], [0.0, 15e-3, 45e-3]),
+        "pause": ([0.0, 14.0, 16.0, 30.0], [0.0, 14e-3, 14e-3, 28e-3]),
+    }
+    way = np.interp(time, *points[change])
+    saw = 1.0 + 0.4 * (way / 1e-3 % 1.0)
+    saw *= np.minimum(way / 1e-3, 1.0)
+    force = saw + 2e-3 * np.random.default_rng(SEED).standard_normal(len(time))
+    record = st.Record(time=time, force=force, drive_position=way, normal_load=4.0, stiffness=400.0)
+    assert st.analyse(record).parts["procedure"] is None
+
+
+@pytest.mark.parametrize("count", [3, 4, 5, 9, 40])
+def test_a_record_of_few_samples_with_its_drive_is_analysed(count):
+    """It ended with an IndexError, or of a stretch of three samples with a ValueError."""
+    time = np.arange(float(count))
+    way = np.interp(time, [0.0, count - 3.0, count - 1.0], [0.0, count - 3.0, count + 20.0])
+    record = st.Record(time=time, force=1.0 + 0.1 * np.sin(time), drive_position=way, normal_load=2)
+    assert "Motion" in str(st.analyse(record))
+
+
+def test_a_brief_stretch_of_a_program_is_left_out():
+    time = np.arange(0.0, 400.3, 0.1)
+    program = p.DriveProgram(
+        velocity=1e-6,
+        program=[p.Constant(1e-6, 200.0), p.Constant(1e-5, 0.3), p.Constant(1e-6, 200.0)],
+    )
+    record = st.Record(time=time, force=np.sin(time), normal_load=1.0)
+    with pytest.raises(st.ResultError, match="too few samples"):
+        st.analysis.velocity_steps(record, program)
+
+
+def test_a_program_counts_and_not_the_displacement():
+    time = np.arange(0.0, 20.0, 0.01)
+    record = st.Record(time=time, force=np.ones(2000), normal_load=2.0, drive_position=1e-6 * time)
+    pieces = [p.Constant(1e-6, 10.0), p.Constant(1e-5, 10.0)]
+    program = p.DriveProgram(velocity=1e-6, program=pieces)
+    assert len(friction_test(record, program).stretches) == 2
+
+
+def test_a_clock_is_off_by_a_sample_at_least():
+    time = np.arange(20.0)
+    record = st.Record(time=time, force=1.0 + 0.01 * np.sin(time), normal_load=2.0)
+    pieces = [p.Constant(1e-6, 10.0), p.Constant(1e-5, 10.0)]
+    test = friction_test(record, p.DriveProgram(velocity=1e-6, program=pieces))
+    assert test.clock_at_jump(*test.stretches) == 1.0
 
 
 @pytest.mark.parametrize("periods", [0.3, 1.0, 7.0, 30.0])
@@ -61,7 +158,7 @@ def test_a_drive_without_a_constant_velocity_is_refused(periods):
     swings = 1e-3 * np.sin(2.0 * np.pi * periods * time)
     noise = 1e-7 * np.random.default_rng(SEED).standard_normal(len(time))
     with pytest.raises(st.ResultError, match="has no stretches of constant velocity"):
-        measured_stretches(time, swings + noise, swings)
+        measured_stretches(time, swings + noise)
 
 
 def test_velocity_steps_of_a_record_with_its_drive_need_no_program():

@@ -14,9 +14,10 @@ from scipy.signal import lfilter
 from tests.drawn import SEED, inside
 
 import stiction as st
-from stiction.analysis.protocols.inversion.fit import invert
+from stiction.analysis.protocols.inversion.fit import invert, unknown
+from stiction.analysis.protocols.inversion.rig_and_clock import say_rig_and_clock
 from stiction.analysis.protocols.inversion.spring_slider import SpringSlider, course_after_a_step
-from stiction.analysis.protocols.inversion.step import StepData
+from stiction.analysis.protocols.inversion.step import StepData, onset, step_problem
 from stiction.presets.preset import on_a_line
 
 A, B, D, W, MU = 0.008, 0.012, 5e-6, 12.5e3, 0.6
@@ -170,12 +171,78 @@ def test_a_rig_that_is_not_as_stated_is_named():
     assert found.stiffness == pytest.approx(SOFT * D / (B * W), rel=0.03)  # not that stated
     assert "The steps come" not in said(0.0)
     assert "The steps come 400 ms later than the program has them, ± " in said(0.4)
-    far = said(2.0)
-    assert (
-        "Friction begins to change 2.1 s after the step at 100 s, 2.1 s after the step at 110 s: "
-        in far
+    late = "2.1 s after the program has the step at "
+    assert f"Friction begins to change {late}100 s, {late}110 s: are both on one clock?" in said(
+        2.0
     )
-    assert "is t = 0 of the program that of the record?" in far
+    assert "Friction has changed before the program has the step at 100 s" in said(-2.0)
+
+
+def step_of(slip, mu, noise=1e-4, k=1e6):
+    """Return a step to ten times the speed, stated within 5 um of travel, 1e-7 m a sample."""
+    before = MU + noise * np.random.default_rng(0).normal(size=100)
+    rig = SpringSlider(10.0, k, 0.0)
+    return StepData(0.0, rig, slip, mu, before, float(mu[-1]), 0.0, speed=1e-6, clock=5e-6)
+
+
+SLIP = np.arange(-5e-6, 50e-6, 1e-7)
+STEP = step_of(SLIP, np.where(SLIP < 0.0, MU, MU + 0.02))
+
+
+@pytest.mark.parametrize(
+    ("stiffer", "error", "named"), [(0.05, 0.01, True), (0.03, 1e-3, True), (0.05, 0.02, False)]
+)
+def test_a_stiffness_is_named_beyond_three_errors_and_2_percent(stiffer, error, named):
+    fit = unknown(3)._replace(D_c=D, stiffer=stiffer, stiffer_error=error, delay_error=1e-9)
+    assert bool(say_rig_and_clock([STEP], [fit], "the program")) is named
+
+
+@pytest.mark.parametrize("delays", [(-4e-7, 8e-7), (0.9e-7,)])
+def test_steps_are_late_by_more_than_a_sample_and_their_scatter(delays):
+    known = unknown(3)._replace(D_c=D, stiffer_error=1.0, delay_error=1e-9)
+    fits = [known._replace(delay=each) for each in delays]
+    assert not say_rig_and_clock([STEP] * len(fits), fits, "the program")
+
+
+def test_a_change_after_twice_the_clock_is_named():
+    late = step_of(SLIP, np.where(SLIP < 10e-6, MU, MU + 0.02))
+    assert "begins to change 10 s" in say_rig_and_clock([late], [unknown(3)], "the program")[0]
+
+
+def test_onset_is_where_friction_leaves_its_noise():
+    """Four deviations, or a hundredth of the jump; it goes back from where it is sure."""
+    rise = MU + np.interp(SLIP, [0.0, 20e-6], [0.0, 0.02])
+    at = onset(step_of(SLIP, rise, noise=1e-6), rise)
+    assert SLIP[at] == pytest.approx(0.2e-6, abs=1.01e-7)
+    at = onset(step_of(SLIP, rise, noise=5e-4), rise)
+    assert SLIP[at] == pytest.approx(2e-6, abs=5e-7)
+
+
+def test_a_delay_is_sought_where_the_line_of_the_spring_begins():
+    mu = MU + np.minimum(np.maximum(SLIP - 1e-6, 0.0) * 1e3 * 0.9, 0.02)
+    found = step_problem(step_of(SLIP, mu, noise=3e-4, k=1e3), "ageing").delay
+    assert found.likely == pytest.approx(1e-6, abs=1.5e-7)
+    assert (found.least, found.largest) == pytest.approx((-5e-6, 5e-6))  # the flank is seen
+
+
+@pytest.mark.parametrize(("rise", "seen"), [(0.3, False), (0.9, False), (1.1, True)])
+def test_the_flank_of_a_jump_within_a_sample_is_left_out(rise, seen):
+    k = 0.02 / (0.9 * rise * 1e-7)
+    mu = MU + np.clip((SLIP - 0.5e-7) * 0.9 * k, 0.0, 0.02)
+    problem = step_problem(step_of(SLIP, mu, noise=1e-5, k=k), "ageing")
+    assert (problem.delay.largest == pytest.approx(5e-6)) is seen
+    near = np.abs(SLIP) < 1e-6
+    assert (np.abs(problem.slip) < 1e-6).sum() == near.sum() - (not seen)
+    if not seen:
+        assert problem.delay.error == pytest.approx(1e-7 / 12**0.5, rel=0.01)
+
+
+def test_samples_without_any_change_are_not_fitted():
+    """A hundred steps of a screw's error took a minute."""
+    noise = 1e-4 * np.random.default_rng(SEED).normal(size=len(SLIP))
+    data = step_of(SLIP, MU + noise)
+    assert np.isnan(invert(data, "ageing").D_c)
+    assert not step_problem(data, "ageing").found
 
 
 @pytest.mark.parametrize("law", ["ageing", "slip"])

@@ -92,6 +92,9 @@ def invert(data: StepData, law: Law) -> Inversion:
     if len(data.mu) < FEWEST or not np.isfinite(data.rig.stiffness):
         return unknown(len(data.mu))
     problem, best, least = step_problem(data, law), None, inf
+    slow, quick = variances(problem.changes, 1)
+    if slow < BY_CHANCE * quick:  # nothing changes beyond noise
+        return unknown(len(data.mu))
     minimised: Any = least_squares
     for start in _starts(problem):
         known = problem.known_slopes(len(start), problem.noise)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import expm1, isnan, log, sqrt
+from math import exp, expm1, isnan, log, sqrt
 
 import numpy as np
 
 from stiction.analysis.protocols.inversion.fit import Inversion
-from stiction.analysis.protocols.inversion.step import StepData, onset
+from stiction.analysis.protocols.inversion.step import StepData, has_changed, onset
 from stiction.arrays import Floats
 from stiction.text.lists import in_list, number_text
 from stiction.text.units import in_words
@@ -17,33 +17,48 @@ SURE = 3.0  # standard errors beyond which a stiffness is not as stated, a step 
 ALIKE = log(1.02)  # stiffnesses that are so near to each other are not worth a sentence
 
 
-def say_rig_and_clock(steps: Sequence[StepData], fits: Sequence[Inversion]) -> list[str]:
-    """Return how far stiffness and times of the steps are from those stated, where they are."""
+def say_rig_and_clock(
+    steps: Sequence[StepData], fits: Sequence[Inversion], drive: str
+) -> list[str]:
+    """Return how far stiffness and times of the steps are from those stated, where they are.
+
+    Parameters
+    ----------
+    steps, fits : sequence
+        Those of a record.
+    drive : str
+        What tells the times of the steps: "the program", "the displacement of the drive".
+    """
     pairs = [(step, fit) for step, fit in zip(steps, fits, strict=True) if step.clock > 0.0]
-    said = _say_clock([step for step, fit in pairs if isnan(fit.D_c)])
+    said = _say_clock([step for step, fit in pairs if isnan(fit.D_c)], drive)
     known = [(step, fit) for step, fit in pairs if not isnan(fit.D_c)]
     if not known:
         return said
     stiffer = np.array([(fit.stiffer, fit.stiffer_error) for _, fit in known])
     late = np.array([(fit.delay / step.speed, fit.delay_error / step.speed) for step, fit in known])
     interval = max(step.interval for step, _ in known)
-    return [*_say_stiffness(*_mean(stiffer)), *_say_delay(late, interval), *said]
+    return [*_say_stiffness(*_mean(stiffer)), *_say_delay(late, interval, drive), *said]
 
 
-def _say_clock(steps: Sequence[StepData]) -> list[str]:
+def _say_clock(steps: Sequence[StepData], drive: str) -> list[str]:
     """Return that friction changes at other times than steps do, where no curve was fitted."""
-    late = [float(each.slip[onset(each, each.mu)]) / each.speed for each in steps]
-    far = [
-        f"{in_words(by, 's', 2)} after the step at {in_words(step.time, 's')}"
-        for step, by in zip(steps, late, strict=True)
-        if by * step.speed > step.clock
+    found = [(each, onset(each, each.mu)) for each in steps]
+    late = [
+        f"{in_words(float(step.slip[at]) / step.speed, 's', 2)} after {drive} has the step at "
+        f"{in_words(step.time, 's')}"
+        for step, at in found
+        if float(step.slip[at]) > step.clock
     ]
-    if not far:
-        return []
-    return [
-        f"Friction begins to change {in_list(far)}: is t = 0 of the program that of the record? "
-        "Add to the record's times what is missing."
-    ]
+    early = [in_words(step.time, "s") for step, at in found if at == 0 and has_changed(step)]
+    said = []
+    if late:
+        said.append(f"Friction begins to change {in_list(late)}: are both on one clock?")
+    if early:
+        said.append(
+            f"Friction has changed before {drive} has the step at {in_list(early)}: are both on "
+            "one clock?"
+        )
+    return said
 
 
 def _say_stiffness(by: float, error: float) -> list[str]:
@@ -51,21 +66,20 @@ def _say_stiffness(by: float, error: float) -> list[str]:
     if abs(by) < max(SURE * error, ALIKE):
         return []
     share, way = 100.0 * abs(expm1(by)), "stiffer" if by > 0.0 else "softer"
-    off = number_text(100.0 * error, ".1g")
+    off = number_text(100.0 * exp(by) * error, ".1g")
     return [
         f"By the curves the rig is {share:.2g} % {way} than stated, ± {off} %: a, b and D_c are "
         "those with that stiffness."
     ]
 
 
-def _say_delay(late: Floats, interval: float) -> list[str]:
+def _say_delay(late: Floats, interval: float, drive: str) -> list[str]:
     """Return that steps come earlier or later than stated, if they do by more than a sample."""
     mean, error = _mean(late)
     if abs(mean) < max(SURE * error, interval):
         return []
     way, by = "later" if mean > 0.0 else "earlier", in_words(abs(mean), "s", 2)
-    off = in_words(error, "s", 1)
-    return [f"The steps come {by} {way} than the program has them, ± {off} on average."]
+    return [f"The steps come {by} {way} than {drive} has them, ± {in_words(error, 's', 1)}."]
 
 
 def _mean(values: Floats) -> tuple[float, float]:

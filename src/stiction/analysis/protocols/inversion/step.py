@@ -22,10 +22,8 @@ from stiction.arrays import Floats
 # parameters of a curve; that of a run has the first four
 LEVEL, LOG_A, LOG_D, CHANGE, DELAY, LOG_K = range(6)
 STIFFER = log(1.5)  # by which the stiffness of a rig may be off, either way
-ONSET, ABOVE_NOISE = (
-    0.2,
-    4.0,
-)  # of the first change of friction, and deviations of noise: it is seen
+ONSET = 0.2  # of the first change of friction: from there on it is surely seen
+ABOVE_NOISE = 4.0  # deviations of noise: what is more is a change
 FIRST_SEEN = 0.01  # of that change: what is less may be left of an evolution before
 RESOLVED = 1.0  # samples in which the spring takes up the jump: with fewer it is not seen
 INSIDE = 0.9  # of the interval in which a parameter is sought: a fit begins within
@@ -174,6 +172,11 @@ class StepProblem(NamedTuple):
         return self.found[place]
 
     @property
+    def changes(self) -> Floats:
+        """Weighted deviations of the bins from steady sliding before the step."""
+        return np.asarray(np.sqrt(self.weight[1:]) * (self.mu[1:] - self.mu[0]))
+
+    @property
     def tilt(self) -> Floats:
         """Weighted deviations by the standard error of the trend."""
         travel = np.concatenate([[self.data.travel_before], self.slip])
@@ -249,11 +252,24 @@ def step_problem(data: StepData, law: Law) -> StepProblem:
 
 def onset(data: StepData, mu: Floats) -> int:
     """Return the first sample, or bin, in which friction has changed beyond its noise."""
-    off = np.abs(mu - data.level)
-    jump = float(off[int((data.up * mu).argmax())])
-    least = max(ABOVE_NOISE * float(data.before.std()), FIRST_SEEN * jump)
-    surely = int((off > max(ONSET * jump, least)).argmax())
+    off, least = np.abs(mu - data.level), _least_change(data, mu)
+    surely = int((off > max(ONSET * _jump(data, mu), least)).argmax())
     return surely - int((off[:surely][::-1] <= least).argmax()) if surely else 0
+
+
+def has_changed(data: StepData) -> bool:
+    """Return whether friction has changed in the first sample."""
+    return abs(float(data.mu[0]) - data.level) > _least_change(data, data.mu)
+
+
+def _jump(data: StepData, mu: Floats) -> float:
+    """Return the first change of friction."""
+    return abs(float(mu[int((data.up * mu).argmax())]) - data.level)
+
+
+def _least_change(data: StepData, mu: Floats) -> float:
+    """Return the change of friction that is seen beyond noise, and beyond what evolves still."""
+    return max(ABOVE_NOISE * float(data.before.std()), FIRST_SEEN * _jump(data, mu))
 
 
 def _delay(data: StepData, slip: Floats, mu: Floats, shortest: float) -> tuple[Delay, slice]:
@@ -261,10 +277,9 @@ def _delay(data: StepData, slip: Floats, mu: Floats, shortest: float) -> tuple[D
 
     The spring takes up the first of a jump undisturbed.
     """
-    clock, off, first = data.clock, np.abs(mu - data.level), onset(data, mu)
-    jump = float(off[int((data.up * mu).argmax())])
-    last, rise = float(slip[first]), travel_of_spring(data, jump)
-    likely = last - 0.5 * shortest - travel_of_spring(data, off[first])
+    clock, first = data.clock, onset(data, mu)
+    last, rise = float(slip[first]), travel_of_spring(data, _jump(data, mu))
+    likely = last - 0.5 * shortest - travel_of_spring(data, float(mu[first]) - data.level)
     if clock > 0.0 and rise < RESOLVED * shortest and last < clock:
         width = shortest + travel_of_spring(data, ABOVE_NOISE * float(data.before.std()))
         flank = slice(first, first + 1 + int(rise / shortest))
