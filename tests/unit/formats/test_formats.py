@@ -160,6 +160,25 @@ def test_npz_with_dates(tmp_path, resolution):
     assert record.origin.start.startswith("2026-03-01T12:00:00")
 
 
+def test_npz_with_a_first_date_that_is_missing(tmp_path):
+    dates = DATES.astype("M8[s]")
+    dates[0] = np.datetime64("NaT")
+    np.savez(tmp_path / "a.npz", date=dates, force_N=np.arange(50.0))
+    record = st.read_record(tmp_path / "a.npz", force="N")
+    assert record.time.tolist() == [float(x) for x in range(49)]
+    assert record.force[0] == 1.0
+    assert record.origin.start == "2026-03-01T12:00:01"
+
+
+@pytest.mark.parametrize("resolution", ["M", "Y"])
+def test_npz_with_dates_in_months_is_refused(tmp_path, resolution):
+    """They have not one length."""
+    dates = np.arange(0, 50).astype(f"M8[{resolution}]")
+    np.savez(tmp_path / "a.npz", date=dates, force_N=np.arange(50.0))
+    with pytest.raises(st.ResultError, match="no column is the time"):
+        st.read_record(tmp_path / "a.npz", force="N")
+
+
 # --- Parquet --------------------------------------------------------------------------------------
 
 

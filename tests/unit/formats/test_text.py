@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.formats.text.cell_units import without_units
+from stiction.formats.units import size_of
 
 COUNT = 8
 TIME = 0.5 * np.arange(COUNT)
@@ -254,7 +256,9 @@ def test_a_stress_is_a_force_by_the_area_it_acts_on(write, said):
 def test_meganewtons_are_named_in_words(write, said):
     record = st.read_record(write("time [s],force [MN]\n" + lines()), **said)
     assert "MN is read as meganewtons, a million newtons each; millinewtons are mN" in notes(record)
-    assert "meganewtons" not in notes(st.read_record(write("time [s],force [mN]\n" + lines())))
+    for unit in ("mN", "kN", "N"):
+        record = st.read_record(write(f"time [s],force [{unit}]\n" + lines()))
+        assert "meganewtons" not in notes(record)
 
 
 def test_a_unit_that_is_a_time_is_none_of_a_force(write):
@@ -895,9 +899,65 @@ def test_a_column_with_two_units_is_refused(write):
         st.read_record(write(f"time;force\n{rows}"))
 
 
-def test_a_heading_has_its_unit_before_the_cells(write):
-    rows = "\n".join(f"{0.1 * x:.1f};{x} g" for x in range(40))
-    assert st.read_record(write(f"time [s];force [mN]\n{rows}")).force[3] == pytest.approx(3e-3)
+@pytest.mark.parametrize("third", ["45 %", "21.5 °C", "7 °/s", "3 1/min", "2 m/s^2", "run"])
+def test_a_column_beside_those_with_units_may_hold_anything(write, third):
+    """One such column lost the whole file: "no line has samples"."""
+    rows = [f"{x / 100.0} s;{1.0 + x % 7 / 10.0} N;{third}" for x in range(40)]
+    record = st.read_record(write("time;force;other\n" + "\n".join(rows)))
+    assert record.time == pytest.approx(np.arange(40) / 100.0)
+    assert record.force == pytest.approx(1.0 + np.arange(40) % 7 / 10.0)
+
+
+def test_clocks_and_stresses_stand_beside_units(write):
+    rows = [f"12:00:{x:02d};{1.0 + x % 7 / 10.0:.2f} kN/m^2" for x in range(40)]
+    record = st.read_record(write("time;stress\n" + "\n".join(rows)), force="2=25 mm^2*kN/m^2")
+    assert record.time == pytest.approx(np.arange(40.0))
+    assert record.force == pytest.approx(0.025 * (1.0 + np.arange(40) % 7 / 10.0))
+
+
+@pytest.mark.parametrize("word", ["OVERLOAD", "#DIV/0!", "nan", "--"])
+@pytest.mark.parametrize("share", [0.1, 0.7])
+def test_overloaded_lines_have_units_too(write, word, share):
+    lost = np.arange(100) % 10 < 10 * share
+    rows = [f"{x / 100.0} s;{word if lost[x] else f'{x / 10.0} N'}" for x in range(100)]
+    record = st.read_record(write("time;force\n" + "\n".join(rows)))
+    assert record.time == pytest.approx(np.flatnonzero(~lost) / 100.0)
+    assert record.force == pytest.approx(np.flatnonzero(~lost) / 10.0)
+
+
+@pytest.mark.parametrize(("many", "bare"), [(9, False), (10, False), (11, True)])
+def test_units_are_behind_more_than_half_of_the_lines(many, bare):
+    rows = [f"0.{x:02d};1.5{' N' if x < many else ''}" for x in range(20)]
+    found = without_units(["time;force", *rows])
+    assert found == ["time;force", *(x.removesuffix(" N") if bare else x for x in rows)]
+
+
+@pytest.mark.parametrize(
+    ("heading", "cell"),
+    [("N", "mN"), ("mN", "N"), ("mN", "g"), ("N", "kg"), ("N", "mm"), ("V", "mV"), ("MPa", "kPa")],
+)
+def test_a_heading_in_another_unit_than_its_cells_is_refused(write, heading, cell):
+    """The heading's was taken without a word: mN were read as N."""
+    rows = "\n".join(f"{0.1 * x:.1f} s;{x} {cell}" for x in range(40))
+    message = (
+        rf"line 2, column 2: has {cell} behind its number, its heading is 'force \[{heading}\]'"
+    )
+    with pytest.raises(st.ResultError, match=message):
+        st.read_record(write(f"time [s];force [{heading}]\n{rows}"), force="2=2 N/V")
+
+
+@pytest.mark.parametrize(("heading", "cell"), [("gf", "g"), ("µN", "uN"), ("Newton", "N")])
+def test_a_unit_may_stand_in_the_heading_and_behind_the_numbers(write, heading, cell):
+    rows = "\n".join(f"{0.1 * x:.1f} sec;{x} {cell};{x} °C" for x in range(40))
+    record = st.read_record(write(f"time [s];force [{heading}];room [C]\n{rows}"))
+    assert record.force[3] == pytest.approx(3.0 * size_of(cell, "N").value)
+
+
+@pytest.mark.parametrize(("one", "other"), [("V", "mV"), ("kPa", "MPa"), ("N", "s")])
+def test_a_column_of_any_kind_with_two_units_is_refused(write, one, other):
+    rows = "\n".join(f"{0.1 * x:.1f} s;{x} {other if x == 9 else one}" for x in range(40))
+    with pytest.raises(st.ResultError, match=f"column 2 is in {one} and in {other}; write it in"):
+        st.read_record(write(f"time;force\n{rows}"), force="2=2 N/V")
 
 
 def test_half_days_are_no_units(write):

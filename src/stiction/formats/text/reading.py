@@ -15,7 +15,7 @@ from stiction.arrays import Floats, Indices
 from stiction.errors import Faults, ResultError, echo
 from stiction.formats import TextLayout
 from stiction.formats.table import FileColumn, FileTable, Remark, number_of
-from stiction.formats.text.cell_units import units_of, without_units
+from stiction.formats.text.cell_units import CellUnit, conflict, units_of, without_units
 from stiction.formats.text.dialect import (
     MISSING,
     Dialect,
@@ -37,15 +37,30 @@ def read(path: Path, layout: TextLayout) -> list[FileTable]:
     lines = without_units(given)
     dialect = find_dialect(path, lines, layout)
     units = units_of(path, given, dialect) if lines is not given else {}
-    return [_with_units(table, units) for table in read_lines(path, lines, dialect)]
+    return [_with_units(path, table, units) for table in read_lines(path, lines, dialect)]
 
 
-def _with_units(table: FileTable, units: Mapping[int, str]) -> FileTable:
-    """Return a table with the units of its columns that their headings do not state."""
-    columns = tuple(
-        replace(each, unit=each.unit or units.get(each.number - 1, "")) for each in table.columns
-    )
-    return replace(table, columns=columns) if units else table
+def _with_units(path: Path, table: FileTable, units: Mapping[int, CellUnit]) -> FileTable:
+    """Return a table with the units behind the numbers of its columns.
+
+    Raises
+    ------
+    ResultError
+        If a heading states another unit than the cells below it.
+    """
+    faults = Faults()
+    columns = []
+    for each in table.columns:
+        behind = units.get(each.number - 1)
+        if behind is not None and each.unit and conflict(each.unit, behind.name):
+            faults.add(
+                f"{path}: line {behind.line}, column {each.number}: has {behind.name} behind its "
+                f"number, its heading is {echo(each.heading)}; correct one of them"
+            )
+        stated = each.unit or (behind.name if behind is not None else "")
+        columns.append(replace(each, unit=stated))
+    faults.refuse()
+    return replace(table, columns=tuple(columns)) if units else table
 
 
 @dataclass
