@@ -17,6 +17,7 @@ import stiction as st
 from stiction.__main__ import main as start
 from stiction.cli import COMMANDS, app, main, progress
 from stiction.cli.commands.run import report_lines
+from stiction.cli.tokens import join_negative_values
 
 # runs the command, and says so once the simulation is on its way
 TOLD = """
@@ -53,6 +54,14 @@ def inside(*arguments: object) -> int:
     with pytest.raises(SystemExit) as end:
         main([str(argument) for argument in arguments])
     return int(end.value.code or 0)
+
+
+@pytest.mark.parametrize(
+    "words",
+    [["--", "--zero", "-3"], ["--zero", "-o"], ["data.csv", "-3"], ["-3"], ["--Zero", "-3"]],
+)
+def test_words_below_zero_that_follow_no_option_stand_alone(words):
+    assert join_negative_values(words) == words
 
 
 @pytest.fixture

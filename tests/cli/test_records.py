@@ -56,7 +56,10 @@ def test_cycles_that_are_not_shown_are_counted(tmp_path, capsys):
     assert inside("analyse", record.save(tmp_path / "a.nc")) == 0
     said = " ".join(capsys.readouterr().out.split())
     assert count > 8
-    assert f"These are the first 8 of {count} cycles; cycles.csv has all." in said
+    export = "export(...) writes all, stiction analyse to cycles.csv."
+    assert f"These are the first 8 of {count} cycles; {export}" in said
+    rows = (tmp_path / "a-analysis" / "cycles.csv").read_text().splitlines()
+    assert len([x for x in rows if not x.startswith("#")]) == 1 + count
 
 
 @pytest.mark.parametrize("value", ["-1kg", "-1 kg", "-.5 kg"])

@@ -12,10 +12,20 @@ import stiction as st
 from stiction.analysis.creep.findings import calibrate
 from stiction.analysis.export import write
 from stiction.analysis.parts import creep
+from stiction.analysis.parts.wording import SHOWN, rows_left_out
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
 
 PAPER = st.presets.nakano_popov_2020()
+
+
+@pytest.mark.parametrize("count", [0, SHOWN, SHOWN + 1])
+def test_rows_that_a_table_lacks_are_told(count):
+    said = (
+        f"These are the first {SHOWN} of {count} rows; export(...) writes all, stiction analyse "
+        "to energy.csv."
+    )
+    assert rows_left_out(count, "rows", "energy.csv") == [said] * (count > SHOWN)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ from typing import Any
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
-SHOWN = 8  # cycles in the terminal; files hold all
+SHOWN = 8  # cycles in the terminal; tables that are exported hold all
 SLIGHT = 1e-3  # of a value: an error that is less is not worth a word
 ALIKE = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
 
@@ -27,12 +27,15 @@ def rows_left_out(count: int, things: str, file: str) -> list[str]:
 
     Examples
     --------
-    >>> rows_left_out(53, "cycles", "cycles.csv"), rows_left_out(8, "cycles", "cycles.csv")
-    (['These are the first 8 of 53 cycles; cycles.csv has all.'], [])
+    >>> rows_left_out(8, "cycles", "cycles.csv")
+    []
+    >>> print(*rows_left_out(53, "cycles", "cycles.csv"))
+    These are the first 8 of 53 cycles; export(...) writes all, stiction analyse to cycles.csv.
     """
     if count <= SHOWN:
         return []
-    return [f"These are the first {SHOWN} of {count} {things}; {file} has all."]
+    some = f"These are the first {SHOWN} of {count} {things}"
+    return [f"{some}; export(...) writes all, stiction analyse to {file}."]
 
 
 def number(value: Any) -> float | None:
