@@ -256,7 +256,7 @@ def test_a_stress_is_a_force_by_the_area_it_acts_on(write, said):
 def test_meganewtons_are_named_in_words(write, said):
     record = st.read_record(write("time [s],force [MN]\n" + lines()), **said)
     assert "MN is read as meganewtons, a million newtons each; millinewtons are mN" in notes(record)
-    for unit in ("mN", "kN", "N"):
+    for unit in ("mN", "kN", "N", "GN", "Mdyn"):
         record = st.read_record(write(f"time [s],force [{unit}]\n" + lines()))
         assert "meganewtons" not in notes(record)
 
@@ -944,6 +944,17 @@ def test_a_heading_in_another_unit_than_its_cells_is_refused(write, heading, cel
     )
     with pytest.raises(st.ResultError, match=message):
         st.read_record(write(f"time [s];force [{heading}]\n{rows}"), force="2=2 N/V")
+
+
+@pytest.mark.parametrize("many", [1, 19, 20])
+def test_a_unit_behind_few_numbers_of_a_column_is_refused(write, many):
+    rows = "\n".join(f"{0.1 * x:.1f} s;{x}{' mN' if x < many else ''}" for x in range(40))
+    path = write(f"time;force\n{rows}")
+    if many == 20:
+        assert st.read_record(path).force[39] == pytest.approx(0.039)
+        return
+    with pytest.raises(st.ResultError, match=r"line 2, column 2: has mN .* behind all or none"):
+        st.read_record(path)
 
 
 @pytest.mark.parametrize(("heading", "cell"), [("gf", "g"), ("µN", "uN"), ("Newton", "N")])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from functools import lru_cache
 from itertools import islice
@@ -69,17 +70,27 @@ def units_of(path: object, lines: Sequence[str], dialect: Dialect) -> dict[int, 
     Raises
     ------
     ResultError
-        If a column has several: a load cell that changes its range, say.
+        If a column has several: a load cell that changes its range, say; or most numbers of a
+        column have none.
     """
     found: dict[int, dict[str, CellUnit]] = {}
+    more: Counter[int] = Counter()  # numbers with a unit than without
     for line, text in enumerate(lines, 1):
         if _bare(text) != text:
             for at, cell in enumerate(dialect.cells(text)):
                 if (unit := CELL.fullmatch(cell)) and _is_unit(unit[3]):
                     name = spell(unit[3])
                     found.setdefault(at, {}).setdefault(name, CellUnit(name, line))
+                    more[at] += 1
+                elif dialect.is_number(cell):
+                    more[at] -= 1
     for at, units in found.items():
         first, *others = units.values()
+        if more[at] < 0:
+            raise ResultError(
+                f"{path}: line {first.line}, column {at + 1}: has {first.name} behind its number, "
+                "most others have none; write it behind all or none"
+            )
         if any(conflict(first.name, each.name) for each in others):
             raise ResultError(
                 f"{path}: column {at + 1} is in {' and in '.join(units)}; write it in one unit"
