@@ -74,7 +74,8 @@ def measured_stretches(time: Floats, position: Floats) -> Stretches:
             "the program of the test"
         )
     least = BENDS * float(np.ptp(position))
-    speeds = _alike(np.array([each.line.slope if each.way > least else 0.0 for each in parts]))
+    speeds = np.array([each.line.slope if each.way > least else 0.0 for each in parts])
+    speeds = _alike(speeds, np.array([each.duration for each in parts]))
     ends = [*(_crossing(one, two) for one, two in pairwise(parts)), inf]
     lasts = np.append(speeds[1:] != speeds[:-1], True)  # of neighbours that are alike
     return tuple(
@@ -87,10 +88,11 @@ def measured_stretches(time: Floats, position: Floats) -> Stretches:
 def _parts(time: Floats, position: Floats) -> list[_Part]:
     """Return the parts of a record between bends of the displacement, each with its line."""
     times, places = part_means(time, MEANS), part_means(position, MEANS)
-    far = max(seeming_motion(places), BENDS * float(np.ptp(places)), resolution(position))
+    code = resolution(position)
+    far = max(seeming_motion(places), BENDS * float(np.ptp(places)), code)
     bends = times[_bends(times, places, far)]
     edges = [float(time[0]), *bends[1:-1].tolist(), float(time[-1])]
-    return [_part(time, position, *each, far) for each in pairwise(edges)]
+    return [_part(time, position, *each, max(SAG * far, code)) for each in pairwise(edges)]
 
 
 def _bends(times: Floats, places: Floats, far: float) -> list[int]:
@@ -110,8 +112,11 @@ def _bends(times: Floats, places: Floats, far: float) -> list[int]:
     return sorted(found)
 
 
-def _part(time: Floats, position: Floats, start: float, end: float, far: float) -> _Part:
-    """Return a part with the line through its samples, those at its ends left out."""
+def _part(time: Floats, position: Floats, start: float, end: float, least: float) -> _Part:
+    """Return a part with the line through its samples, those at its ends left out.
+
+    It is bent if means spread about the line by `least` (m), and by more than their noise.
+    """
     inside = slice(*np.searchsorted(time, [start, end]))
     cut = (inside.stop - inside.start) // 10
     inside = slice(inside.start + cut, max(inside.stop - cut, inside.start + 2))
@@ -119,8 +124,8 @@ def _part(time: Floats, position: Floats, start: float, end: float, far: float) 
     found = line(since, place)
     off = part_means(found.deviations(since, place), SAGS) if len(since) else since
     error = white_noise(place) * (SAGS / max(len(place), 1)) ** 0.5
-    least = max(SAG * far, resolution(position), CERTAIN * error)
-    return _Part(start, end, found, len(off) == SAGS and float(np.ptp(off)) > least)
+    bent = len(off) == SAGS and float(np.ptp(off)) > max(least, CERTAIN * error)
+    return _Part(start, end, found, bent)
 
 
 def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
@@ -149,15 +154,19 @@ def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
         del parts[min(brief)[1]]
 
 
-def _alike(speeds: Floats) -> Floats:
-    """Return velocities of which those that differ by little are the same."""
+def _alike(speeds: Floats, durations: Floats) -> Floats:
+    """Return velocities of which those that differ by little are the same.
+
+    The variance of a slope falls with the cube of its duration.
+    """
     found = speeds.copy()
     order = np.argsort(np.abs(found))
     sizes = np.abs(found)[order]
     groups = np.cumsum(np.diff(sizes, prepend=sizes[0]) > SAME * sizes)
     for group in np.unique(groups):
         here = order[groups == group]
-        found[here] = np.sign(found[here]) * float(np.abs(found[here]).mean())
+        mean = np.average(np.abs(found[here]), weights=durations[here] ** 3)
+        found[here] = np.sign(found[here]) * float(mean)
     return found
 
 
