@@ -96,12 +96,12 @@ def invert(data: StepData, law: Law) -> Inversion:
     if slow < BY_CHANCE * quick:  # nothing changes beyond noise
         return unknown(len(data.mu))
     minimised: Any = least_squares
+    known = problem.known_slopes(problem.noise)
     for start in _starts(problem):
-        known = problem.known_slopes(len(start), problem.noise)
         found = minimised(
             lambda at: np.append(problem.residuals(at), problem.known_residuals(at)), start,
-            lambda at, known=known: np.append(np.nan_to_num(problem.slopes(at)), known, axis=0),
-            bounds=problem.bounds(len(start)), x_scale="jac", max_nfev=20, xtol=1e-8, ftol=1e-8,
+            lambda at: np.append(np.nan_to_num(problem.slopes(at)), known, axis=0),
+            bounds=problem.bounds, x_scale="jac", max_nfev=20, xtol=1e-8, ftol=1e-8,
         )  # fmt: skip
         if found.cost < least:
             best, least = found.x, float(found.cost)
@@ -151,7 +151,7 @@ def _verdict(problem: StepProblem, at: Floats) -> Inversion:
     # what all samples are off by together is as any smooth curve of few parameters
     alone = variance + together * weight / len(at)
     whole = alone + (AMISS**2 * variance if misses else 0.0)
-    slopes = np.concatenate([slopes, problem.known_slopes(len(at), sqrt(whole))])
+    slopes = np.concatenate([slopes, problem.known_slopes(sqrt(whole))])
     tilt = np.concatenate([problem.tilt, np.zeros(len(at[DELAY:]))])
     a, D, b, errors = _with_errors(at, slopes, sqrt(whole), tilt)
     seen = problem.shortest / E_FOLDS < D < problem.longest

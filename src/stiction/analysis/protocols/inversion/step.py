@@ -77,9 +77,14 @@ class StepData(NamedTuple):
     clock: float = 0.0
 
     @property
+    def shortest(self) -> float:
+        """Travel from one sample to the next, m."""
+        return float(np.median(np.diff(self.slip)))
+
+    @property
     def interval(self) -> float:
         """Time from one sample to the next, s."""
-        return float(np.median(np.diff(self.slip))) / self.speed
+        return self.shortest / self.speed
 
     @property
     def level(self) -> float:
@@ -124,23 +129,27 @@ class StepProblem(NamedTuple):
         """Slip since the step, m."""
         return float(self.data.slip[-1])
 
-    def bounds(self, count: int) -> tuple[list[float], list[float]]:
-        """Return the least and the largest values of the first parameters."""
-        low, high = (
-            [*[-inf] * DELAY, self.delay.least, -STIFFER],
-            [*[inf] * DELAY, self.delay.largest, STIFFER],
-        )
-        return low[:count], high[:count]
+    @property
+    def parameters(self) -> int:
+        """How many parameters a curve has: of a run, delay and stiffness are known."""
+        return LOG_K + 1 if self.data.clock else DELAY
 
-    def known_slopes(self, count: int, noise: float) -> Floats:
+    @property
+    def bounds(self) -> tuple[list[float], list[float]]:
+        """The least and the largest values of the parameters."""
+        low = [*[-inf] * DELAY, self.delay.least, -STIFFER]
+        high = [*[inf] * DELAY, self.delay.largest, STIFFER]
+        return low[: self.parameters], high[: self.parameters]
+
+    def known_slopes(self, noise: float) -> Floats:
         """Return the derivatives of what is known of delay and stiffness without the curve."""
-        errors = np.array([self.delay.error, 2.0 * FLAT * STIFFER])
-        return np.eye(count)[DELAY:] * (noise / errors[: max(count - DELAY, 0), None])
+        errors = np.array([self.delay.error, 2.0 * FLAT * STIFFER])[: self.parameters - DELAY]
+        return np.eye(self.parameters)[DELAY:] * (noise / errors[:, None])
 
     def known_residuals(self, at: Floats) -> Floats:
         """Return the deviations of delay and stiffness from what is known without the curve."""
-        expected = np.array([0.0, 0.0, 0.0, 0.0, self.delay.likely, 0.0])[: len(at)]
-        return np.asarray(self.known_slopes(len(at), self.noise) @ (at - expected))
+        expected = np.array([0.0, 0.0, 0.0, 0.0, self.delay.likely, 0.0])[: self.parameters]
+        return np.asarray(self.known_slopes(self.noise) @ (at - expected))
 
     def curve(self, at: Floats, x: Floats) -> FrictionCourse:
         """Return friction at slips `x`; NaN where the slip runs away, or D_c is out of sight."""
@@ -235,7 +244,7 @@ def step_problem(data: StepData, law: Law) -> StepProblem:
     came between them, and what lies on the flank of the curve is left out: how it would deviate is
     far from linear in the delay.
     """
-    slip, shortest = data.slip, float(np.median(np.diff(data.slip)))
+    slip, shortest = data.slip, data.shortest
     width = np.maximum(shortest, slip / BINS_PER_E_FOLD)
     place = np.concatenate([[0.0], np.cumsum(np.diff(slip) / width[1:])])
     # a sample that is alone in its bin stays as it is
