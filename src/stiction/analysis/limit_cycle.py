@@ -59,7 +59,7 @@ def scales(slider: Slider) -> tuple[float, float, float]:
     """Return the period of the leading mode (s), a block of time (s), the kick's amplitude (m)."""
     linear = steady_sliding(slider)
     c, s = slider.direction
-    speed = hypot(*slider.motion.rate(0.0))
+    speed = slider.drive_speed
     compliance = c * c / slider.k_x + s * s / slider.k_y
     natural = sqrt(max(slider.masses) * compliance)
     frequency = float(linear.frequencies[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import atan2, degrees, hypot, isfinite, pi, sin, sqrt, tan
+from math import atan2, degrees, isfinite, pi, sin, sqrt, tan
 from typing import Any
 
 import numpy as np
@@ -37,7 +37,7 @@ ASKEW = 0.02  # sine of the angle between load cell and spring: 2 % of friction 
 def suppositions(slider: Slider, p: Prediction) -> list[str]:
     """Return the assumptions of Eqs. (7) and (10) that the apparatus violates, with its numbers."""
     if has_state(slider.law):
-        V = in_words(hypot(*slider.motion.rate(0.0)), "m/s")
+        V = in_words(slider.drive_speed, "m/s")
         return [f"friction has no internal state; here F_0 is that at {V}"]
     return [
         *_of_springs(slider, p),
@@ -51,7 +51,7 @@ def creep_suppositions(slider: Slider, p: Prediction) -> list[str]:
     """Return the assumptions that only the creep before a slip violates, with its numbers."""
     if has_state(slider.law) or not _creeps(p):
         return []
-    covered = hypot(*slider.motion.rate(0.0)) / (2.0 * pi * p.f_x)
+    covered = slider.drive_speed / (2.0 * pi * p.f_x)
     if covered <= SET_IN * p.creep_distance:
         return []
     return [
@@ -110,7 +110,7 @@ def _of_friction(s: Slider, p: Prediction) -> Iterator[str]:
         yield from _of_creep_end(s, p)
     elif not p.slips:
         yield from _of_sliding(s, p)
-    swing = hypot(*s.motion.rate(0.0)) * sqrt(s.k_x * s.masses[0])
+    swing = s.drive_speed * sqrt(s.k_x * s.masses[0])
     if p.slips and swing > WEAKENED * p.drop:
         yield (
             "the mass leaves rest slowly beside its slip; here the drive's velocity alone swings "
@@ -127,7 +127,7 @@ def _of_friction(s: Slider, p: Prediction) -> Iterator[str]:
 
 def _of_creep_end(s: Slider, p: Prediction) -> Iterator[str]:
     """Yield that friction weakens too steeply for a creep that lasts until zeta = 1."""
-    phi, V = abs(s.misalignment), hypot(*s.motion.rate(0.0))
+    phi, V = abs(s.misalignment), s.drive_speed
     theta, l_x = weakening_angle(s, p), s.F_0 / s.k_x
     until = creep_distance(V, phi, l_x, float(theory.creep_time(theta, V, phi, l_x)))
     if until < (1.0 - EARLIER) * p.creep_distance:
@@ -165,7 +165,7 @@ def weakening_angle(s: Slider, p: Prediction) -> float:
     phi = abs(s.misalignment)
     theta = np.linspace(0.5 * pi, np.fmax(p.theta_c, phi), ANGLES)
     across, along = np.sin(theta) ** 2, np.cos(theta) ** 2
-    speed = hypot(*s.motion.rate(0.0)) * sin(phi) / np.sin(theta)
+    speed = s.drive_speed * sin(phi) / np.sin(theta)
     slope: Floats = np.array([float(law.slope(v)) for v in speed]) * s.normal_load
     unstable = s.F_0 / speed * across + s.c_x + slope * along < 0.0
     m_x, m_y = s.masses

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from math import hypot
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -47,7 +46,7 @@ def creep(found: Audit) -> Figure | None:
     curves = creep_curves(seen.run, seen.cycles)
     if slider.misalignment == 0.0 or not np.isfinite(curves["velocity"].values).any():
         return None
-    V, phi = hypot(*slider.motion.rate(0.0)), abs(slider.misalignment)
+    V, phi = slider.drive_speed, abs(slider.misalignment)
     # Eqs. (7) and (8) suppose friction without internal state
     lines = None if has_state(slider.law) else creep_theory(V, phi, slider.F_0 / slider.k_x)
     return figure_of(plot_creep, curves, mean_creep(curves), V, lines)

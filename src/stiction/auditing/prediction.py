@@ -88,7 +88,7 @@ def predict(slider: Slider) -> Prediction:
     at the drive's speed. Only the magnitude of the misalignment counts.
     """
     s, phi = slider, abs(slider.misalignment)
-    V = hypot(*s.motion.rate(0.0))
+    V = s.drive_speed
     F_0, l_x = s.F_0, s.F_0 / s.k_x
     F_static = F_0 if has_state(s.law) else static_coefficient(s.law) * s.normal_load
     f_x, f_y = s.natural_frequency_x, s.natural_frequency_y
@@ -167,7 +167,7 @@ def _forces(slider: Slider, F_static: float, turn: float, fast: bool) -> tuple[f
     if drop > 0.0:
         return mean + 0.5 * drop, mean, drop  # it rises until the mass is as fast as the drive
     # friction does not fall below the spring's force: steady sliding follows
-    steady = s.law.coefficient(hypot(*s.motion.rate(0.0))) * s.normal_load * cos(phi)
+    steady = s.law.coefficient(s.drive_speed) * s.normal_load * cos(phi)
     return max(peak, steady) if fast else steady, steady, nan
 
 
@@ -195,7 +195,7 @@ def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tu
     A free swing of the mass on a spring about the mean friction, from rest at the force `peak`, by
     (E1) and (E2) of docs/explanation/estimates.md. The fall is below zero where there is none.
     """
-    V, scale = hypot(*slider.motion.rate(0.0)), sqrt(stiffness * mass)
+    V, scale = slider.drive_speed, sqrt(stiffness * mass)
     coefficient, load = slider.law.coefficient, slider.normal_load
     mean, swing = 0.5 * peak, 0.0
     for _ in range(60):  # damped by one half: steeply weakening friction would overshoot
@@ -215,7 +215,7 @@ def stick_slip_period(slider: Slider, drop: float) -> float:
 
     By (E3) of docs/explanation/estimates.md.
     """
-    V, k = hypot(*slider.motion.rate(0.0)), slider.k_x
+    V, k = slider.drive_speed, slider.k_x
     by_drive = V * sqrt(k * slider.masses[0])
     over = sqrt(max((0.5 * drop) ** 2 - by_drive**2, 0.0)) if isfinite(drop) else nan
     slip = (0.5 + atan2(by_drive, over) / pi) / slider.natural_frequency_x

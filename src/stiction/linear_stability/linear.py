@@ -171,7 +171,7 @@ class Linearisation:
         except IndexError:
             message = f"must be below {self.shapes.shape[1]}, the number of modes, is {echo(mode)}"
             raise DescriptionError.of("mode", message) from None
-        speed = hypot(*self.slider.motion.rate(0.0))
+        speed = self.slider.drive_speed
         rates = np.abs(shape[2:4])
         shape = shape / np.exp(1j * np.angle(shape[2 + int(np.argmax(rates))]))
         aged = np.abs(shape[4:]) / np.maximum(np.abs(self.state[4:]), 1.0)

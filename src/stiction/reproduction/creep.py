@@ -58,7 +58,7 @@ def creep(run: Trajectory) -> Figure:
         Without misalignment or drive, because there is no creep.
     """
     slider = run.slider
-    V, phi = abs(slider.motion.rate(0.0)[0]), abs(slider.misalignment)
+    V, phi = slider.drive_speed, abs(slider.misalignment)
     if V == 0 or sin(phi) == 0:
         raise ValueError(f"creep needs a drive and a misalignment; V is {V:g} m/s, phi {phi:g} rad")
     l_x = float(theory.slip_length(slider.F_0, slider.k_x))

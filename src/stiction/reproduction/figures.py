@@ -255,7 +255,7 @@ def figure5(slider: Slider, other_phi: float | None = radians(10)) -> Figure:
 
 def damping_number(slider: Slider, phi: float) -> float:
     """Return A of Eq. (10) for the slider at a misalignment `phi` (rad), dimensionless."""
-    V = abs(slider.motion.rate(0.0)[0])
+    V = slider.drive_speed
     if V == 0 or sin(phi) == 0:
         raise ValueError(f"A needs a drive and a misalignment; V is {V:g} m/s, phi {phi:g} rad")
     return theory.damping_number_of(slider, V, phi)

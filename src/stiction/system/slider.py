@@ -23,6 +23,7 @@ from stiction.drive import (
     read_drive,
     read_load,
 )
+from stiction.drive.program import nominal_velocity
 from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import Anisotropic, Law, has_state, read_law, registered_name
@@ -265,6 +266,14 @@ class Slider(Apparatus):
         drive: Drive = self.drive
         return drive.simplest() if isinstance(drive, DriveProgram) else drive
 
+    @property
+    def drive_speed(self) -> float:
+        """The one speed of the drive that others vary from, in m/s; zero if there is none.
+
+        See `stiction.drive.program.nominal_velocity`.
+        """
+        return abs(nominal_velocity(self.motion))
+
     @cached_property
     def direction(self) -> tuple[float, float]:
         """Unit vector of X in the axes (x, y), (cos phi, sin phi), exact at a right angle."""
@@ -284,9 +293,9 @@ class Slider(Apparatus):
     @property
     def F_0(self) -> float:
         """Friction force at vanishing slip, mu_0 W, in N; for a law with internal state, which may
-        have none at rest, at the slip speed of the drive."""
-        speed = abs(self.motion.rate(0.0)[0]) if has_state(self.law) else 0.0
-        return self.law.coefficient(speed) * self.normal_load
+        have none at rest, at the drive's speed (that of its start, if it goes to and fro)."""
+        sliding = self.drive_speed or abs(self.motion.rate(0.0)[0])
+        return self.law.coefficient(sliding if has_state(self.law) else 0.0) * self.normal_load
 
     @property
     def natural_frequencies(self) -> tuple[float, float]:

@@ -66,6 +66,22 @@ def test_units_become_si(slider):
     assert slider.F_0 == 2.0
 
 
+AGEING = st.laws.RateStateAgeing(0.01, 0.015, "1 um", mu_star=0.6, V_star="1 um/s")
+SLIDE = st.protocols.Constant("1 mm/s", "1 s")
+PROGRAMS = {
+    "soft start": [st.protocols.Ramp("1 mm/s", "1 s")],
+    "start from rest": [st.protocols.Hold("1 s"), SLIDE],
+    "to and fro": [SLIDE, st.protocols.Reversal()],
+}
+
+
+@pytest.mark.parametrize("program", PROGRAMS.values(), ids=list(PROGRAMS))
+def test_friction_with_state_is_that_at_the_drive_s_speed(slider, program):
+    state = slider.replace(friction=AGEING)
+    driven = state.replace(drive=st.protocols.DriveProgram(program=program))
+    assert driven.F_0 == state.F_0 == state.law.coefficient(1e-3) * state.normal_load
+
+
 def test_every_fault_at_once_by_path(tmp_path):
     found = faults(
         write_file(

@@ -15,7 +15,6 @@ from stiction.analysis.creep.misalignment import REST_SPEED, SURE, Misalignment,
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
-from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError, StictionError
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -109,7 +108,7 @@ def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
     A run yields the drive's full velocity; its record has only the part along the soft spring.
     """
     if isinstance(source, Trajectory):
-        return abs(nominal_velocity(source.slider.motion)) or None
+        return source.slider.drive_speed or None
     return record.drive_velocity
 
 

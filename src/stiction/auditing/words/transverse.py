@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import hypot, sin
+from math import sin
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.regime.kinds import TRANSVERSE
@@ -95,7 +95,7 @@ def transverse_decay(slider: Slider) -> float:
 
     By (E6) of docs/explanation/estimates.md. If negative, the oscillation lasts.
     """
-    speed = hypot(*slider.motion.rate(0.0)) * abs(sin(slider.misalignment))
+    speed = slider.drive_speed * abs(sin(slider.misalignment))
     law: Any = slider.law
     slope = float(law.slope(speed)) * slider.normal_load
     return 0.5 * (slider.c_y + slope) / slider.masses[1]

@@ -122,19 +122,17 @@ def share(result: Trajectory) -> str:
 
 def rests_throughout(result: Trajectory) -> bool:
     """Return whether the mass did not move, although its law does not allow true rest."""
-    from stiction.drive.program import nominal_velocity
 
-    V, slip = abs(nominal_velocity(result.slider.motion)), result.samples["slip_speed"]
+    V, slip = result.slider.drive_speed, result.samples["slip_speed"]
     return V > 0.0 and bool((slip[1:] < REST * V).all())
 
 
 def longer(result: Trajectory) -> str:
     """Return the remedy for a run that is too short for slip."""
-    from stiction.drive.program import nominal_velocity
     from stiction.text.units import in_words
 
     slider = result.slider
-    V = abs(nominal_velocity(slider.motion))
+    V = slider.drive_speed
     if not V > 0.0:
         return "run it longer"
     most, load = in_words(slider.F_0, "N"), in_words(slider.F_0 / slider.k_x / V, "s")

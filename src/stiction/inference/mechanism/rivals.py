@@ -149,7 +149,7 @@ def fastest(slider: Slider) -> float:
 def priors_of(law: Any, slider: Slider, level: Levels) -> Iterator[tuple[str, Prior]]:
     """Yield the priors of a law's parameters, by their path."""
     static, kinetic = level
-    fall, speed = level.fall, abs(slider.motion.rate(0.0)[0])
+    fall, speed = level.fall, slider.drive_speed
     if law is Coulomb:
         yield "friction.mu_0", Uniform(*kinetic)
         yield "friction.mu_static", Uniform(*static)
@@ -179,5 +179,5 @@ def middle_of(law: Any, slider: Slider, priors: dict[str, Prior]) -> Any:
     """Return a law in the middle of its priors; the reference speed is that of the drive."""
     middles = {path.removeprefix("friction."): middle(prior) for path, prior in priors.items()}
     if "V_star" in law._fields:
-        middles["V_star"] = abs(slider.motion.rate(0.0)[0])
+        middles["V_star"] = slider.drive_speed
     return law(**middles)

@@ -181,7 +181,7 @@ def first_loading(slider: Slider) -> float:
 
     It is as long as many cycles where a slip takes little of the force.
     """
-    return AT_REST * slider.F_0 / (slider.k_x * abs(float(slider.motion.rate(0.0)[0])))
+    return AT_REST * slider.F_0 / (slider.k_x * slider.drive_speed)
 
 
 def stretch(times: Floats, begin: int, end: int) -> tuple[float, Floats]:

@@ -13,7 +13,6 @@ from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.slip import is_undersampled
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
-from stiction.drive.program import nominal_velocity
 from stiction.drive.recorded.piece import RECORDS, Recorded, RecordedLoad
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
@@ -165,7 +164,7 @@ def scales_in_words(slider: Slider) -> list[str]:
         rf"$F_0 = \mu_0 W$ = {in_words(slider.F_0, 'N')}",
         rf"$\omega_x/2\pi$ = {in_words(f_x, 'Hz')}, $\omega_y/2\pi$ = {in_words(f_y, 'Hz')}",
     ]
-    V, phi = abs(nominal_velocity(slider.motion)), abs(slider.misalignment)
+    V, phi = slider.drive_speed, abs(slider.misalignment)
     if V > 0 and sin(phi) > 0:
         A = theory.damping_number_of(slider, V)
         zeta = plain(A * sin(phi) ** 3, 2)

@@ -6,7 +6,6 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
-from stiction.drive.program import nominal_velocity
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.plotting.page.canvas import panel
@@ -34,7 +33,7 @@ def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = Non
     """
     with style():
         ax = panel(ax, 2.2)
-        speed = 10.0 * abs(nominal_velocity(slider.motion)) if fastest is None else fastest
+        speed = 10.0 * slider.drive_speed if fastest is None else fastest
         draw_law(ax, slider, speed)
     return ax
 

@@ -11,7 +11,6 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from stiction.arrays import Floats
-from stiction.drive.program import nominal_velocity
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
 from stiction.plotting.page.style import BLACK, BLUE, GREY, ORANGE, PAGE, RED, style
@@ -96,7 +95,7 @@ def _system(ax: Axes, run: Trajectory) -> None:
 
 
 def _law(ax: Axes, run: Trajectory) -> None:
-    drive = abs(nominal_velocity(run.slider.motion))  # the slip speed of steady sliding
+    drive = run.slider.drive_speed  # the slip speed of steady sliding
     draw_law(ax, run.slider, max(drive, float(np.nanmax(run.samples["slip_speed"]))))
 
 
