@@ -22,7 +22,7 @@ from benchmarks.explore.systems.set_valued import LAWS as PLAIN
 from benchmarks.explore.systems.set_valued import named_law
 from stiction.auditing import Audit
 from stiction.auditing.page import page
-from stiction.auditing.simulated_test import OSCILLATES, SLIDES, outcome
+from stiction.auditing.simulated_test import OSCILLATES, SLIDES, final_state
 from stiction.auditing.words.stick import VIBRATES
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.unit_text import registry
@@ -188,7 +188,7 @@ def dies_out_once(found: Audit) -> bool:
     longer = st.simulate(
         found.slider, 4.0 * seen.run.samples["time"][-1], sample_rate=seen.record.sample_rate / 4.0
     )
-    return outcome(longer, seen.growth) == OSCILLATES
+    return final_state(longer, seen.growth) == OSCILLATES
 
 
 def theory_without_doubt(found: Audit) -> bool:

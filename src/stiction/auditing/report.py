@@ -11,7 +11,6 @@ from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record, as_record
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
-from stiction.auditing.chain_words import chain_sections
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import (
     MOST_WORK,
@@ -23,6 +22,7 @@ from stiction.auditing.simulated_test import (
     simulate_test,
 )
 from stiction.auditing.tolerance import Budget, budget, section
+from stiction.auditing.words.chain import chain_sections
 from stiction.auditing.words.changes import changes
 from stiction.auditing.words.load_cell import TITLE as LOAD_CELL
 from stiction.auditing.words.load_cell import load_cell

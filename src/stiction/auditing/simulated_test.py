@@ -109,7 +109,7 @@ class SimulatedTest:
 
         It slides, oscillates, is stuck, or is still changing when the test ends ("unsettled").
         """
-        return outcome(self.run, self.growth)
+        return final_state(self.run, self.growth)
 
     @property
     def motion(self) -> str:
@@ -226,7 +226,7 @@ def from_sliding(
     )
 
 
-def outcome(run: Trajectory, growth: float = nan) -> str:
+def final_state(run: Trajectory, growth: float = nan) -> str:
     """Return the final state of a run, from the deviation from the drive's speed at the end.
 
     The last quarters of the run count. A mass at rest deviates by the full speed; larger deviations

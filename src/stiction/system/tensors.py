@@ -52,6 +52,19 @@ def stiffness_tensor(slider: Slider) -> Floats:
     return np.diag([slider.k_x, slider.k_y])
 
 
+def stiffness_and_mass_along(slider: Slider, direction: tuple[float, float]) -> tuple[float, float]:
+    """Return stiffness (N/m) and mass (kg) of a swing along a unit vector in the axes x and y.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> stiffness_and_mass_along(st.presets.nakano_popov_2020(), (1.0, 0.0))
+    (1000.0, 0.25)
+    """
+    e = np.array(direction)
+    return float(e @ stiffness_tensor(slider) @ e), float(e @ mass_tensor(slider) @ e)
+
+
 def damping_tensor(slider: Slider) -> Floats:
     """Return the damping tensor in the axes x and y, (2, 2), N s/m."""
     return principal(slider.c_x, slider.c_y, slider.damping_angle - slider.turn)

@@ -670,8 +670,9 @@ def test_what_dies_out_slowly_is_no_second_motion(phi):
     run = seen.run
     assert -1.0 / growth > 500.0
     assert seen.comes_to == UNSETTLED
-    assert simulated_test.outcome(run) == OSCILLATES  # if nothing is known of small disturbances
-    assert simulated_test.outcome(run, 1e-3) == OSCILLATES
+    # if nothing is known of small disturbances
+    assert simulated_test.final_state(run) == OSCILLATES
+    assert simulated_test.final_state(run, 1e-3) == OSCILLATES
 
 
 def test_a_remedy_that_is_not_tried_is_not_said_to_be_none():
@@ -801,7 +802,7 @@ def test_a_test_lasts_until_the_softer_spring_has_settled():
 
 def test_a_run_that_ended_before_its_second_half_is_not_settled():
     run = st.simulate(PAPER, "10 ms", sample_rate=0)
-    assert simulated_test.outcome(run) == simulated_test.UNSETTLED
+    assert simulated_test.final_state(run) == simulated_test.UNSETTLED
 
 
 @pytest.mark.parametrize("quick", [0.01, 0.1, 1.0, 5.0])

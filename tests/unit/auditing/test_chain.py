@@ -9,7 +9,7 @@ from scipy.linalg import eigh
 import stiction as st
 from stiction.auditing.advice import further
 from stiction.auditing.chain import SMALL, axis, examine, parts, softest_path, yield_of_mass
-from stiction.auditing.chain_words import chain_sections, masses
+from stiction.auditing.words.chain import chain_sections, masses
 from stiction.auditing.words.changes import name_of
 from stiction.auditing.words.verdict import final_motion
 from stiction.system.tensors import principal

@@ -12,6 +12,7 @@ from stiction.arrays import Floats, xr
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
+from stiction.system.tensors import stiffness_and_mass_along
 from stiction.trajectory import Trajectory
 
 # Least gain of a slip on the drive, in units of the drive's speed over the slower and over the
@@ -99,8 +100,7 @@ def _runs_away(slider: Slider) -> bool:
 def along_force(slider: Slider) -> tuple[float, float]:
     """Return stiffness and mass of the swing along the force at the end of the first stick."""
     angle = float(theory.first_force_angle(slider.misalignment, slider.k_x, slider.k_y))
-    c, s, (m_x, m_y) = cos(angle) ** 2, sin(angle) ** 2, slider.masses
-    return c * slider.k_x + s * slider.k_y, c * m_x + s * m_y
+    return stiffness_and_mass_along(slider, (cos(angle), sin(angle)))
 
 
 def _least_gain(slider: Slider) -> float:

@@ -58,7 +58,7 @@ def do_block(study: Study, store: Store, task: int, unwanted: Callable[[], bool]
     arrays = [np.full((*size, *each.shape), each.unknown, each.dtype) for each in wanted]
     try:
         for place, index in zip(np.ndindex(size), places(region), strict=True):
-            status[place], message[place], values = outcome(study, wanted, index, unwanted)
+            status[place], message[place], values = run_one(study, wanted, index, unwanted)
             for array, value in zip(arrays, values, strict=False):  # a failed run has no values
                 array[place] = value
     except Unwanted:
@@ -68,7 +68,7 @@ def do_block(study: Study, store: Store, task: int, unwanted: Callable[[], bool]
     return Came(status.size, int(np.count_nonzero(status != COMPLETED)))
 
 
-def outcome(
+def run_one(
     study: Study, wanted: Sequence[Kept], index: Index, unwanted: Callable[[], bool]
 ) -> StoredOutcome:
     """Do one run; an error in it becomes its outcome."""

@@ -27,7 +27,7 @@ from stiction.study.variables.fast_regime import SwingShapes, cycles_among, kind
 from stiction.study.variables.features import Features, even_columns, features
 from stiction.system.description import Description
 from stiction.system.slider import Slider
-from stiction.system.tensors import mass_tensor, stiffness_tensor
+from stiction.system.tensors import stiffness_and_mass_along
 
 # With samples this dense, a parabola finds peaks to 1e-5 of the amplitude for a harmonic, and to
 # 1e-4 for the paper's system. The samples cost about a hundredth of the run's time.
@@ -244,9 +244,8 @@ def observe_run(description: Description, report: Callable[[float], None] | None
 
 def coupled_frequency(slider: Slider) -> float:
     """Return the frequency (Hz) of the mass if friction lets it move only along the drive."""
-    e = np.array(slider.direction)
-    stiffness, mass = e @ stiffness_tensor(slider) @ e, e @ mass_tensor(slider) @ e
-    return float(sqrt(stiffness / mass) / (2.0 * pi))
+    stiffness, mass = stiffness_and_mass_along(slider, slider.direction)
+    return sqrt(stiffness / mass) / (2.0 * pi)
 
 
 def seconds_of(description: Description) -> float:
