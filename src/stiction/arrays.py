@@ -1,4 +1,4 @@
-"""Arrays of numbers, as annotations name them, a least divisor, and xarray, imported when used."""
+"""Arrays of numbers, as annotations name them, two constants, and xarray, imported when used."""
 
 from __future__ import annotations
 
@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["TINY", "Complex", "Floats", "Indices", "xr"]
+__all__ = ["NORMAL_MEDIAN", "TINY", "Complex", "Floats", "Indices", "xr"]
 
 TINY = 1e-300  # nothing beside any quantity in SI, and more than 0: of a divisor, or in a logarithm
+NORMAL_MEDIAN = 0.6744897501960817  # of |x| of a standard normal x
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]

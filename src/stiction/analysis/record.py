@@ -17,7 +17,7 @@ from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
 from stiction.names import draw
 from stiction.recording.guess.clock import rate_of
-from stiction.recording.noise import ORDER, white_noise
+from stiction.recording.noise import ORDER, difference_gain, white_noise
 from stiction.recording.origin import Origin
 from stiction.recording.request import KNOWN, SignedForce
 from stiction.recording.sensor import Sensor
@@ -375,8 +375,9 @@ class Record(Described):
             return 0.0
         # mean squares, as variances are subtracted: if a load flickers between two readings,
         # `white_noise`, by the median, is 0
-        differences = np.diff(self.load, 4)
-        noise = inner_product(differences, differences) / 70.0 / max(len(differences), 1)
+        differences = np.diff(self.load, ORDER)
+        square = inner_product(differences, differences) / difference_gain(ORDER)
+        noise = square / max(len(differences), 1)
         rest = float(self.load.var()) - noise
         sure = rest > CERTAIN * (2.0 / len(self)) ** 0.5 * noise
         return float((8.0 * rest) ** 0.5 / self.load.mean()) if sure else 0.0

@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import Floats
-from stiction.drive.recorded.resolution import NORMAL_MEDIAN
+from stiction.arrays import NORMAL_MEDIAN, Floats
 
 ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
 FEWEST_SAMPLES = 64  # so many tell white noise to a fifth
@@ -108,8 +107,16 @@ def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> flo
     """
     if len(values) <= order:
         return 0.0
-    weights = sqrt(comb(2 * order, order))  # root of the sum of their squares
-    return _median(np.abs(np.diff(values, order)), step) / (NORMAL_MEDIAN * weights)
+    gain = sqrt(difference_gain(order))
+    return _median(np.abs(np.diff(values, order)), step) / (NORMAL_MEDIAN * gain)
+
+
+def difference_gain(order: int) -> int:
+    """Return the variance of differences of white noise over that of the noise.
+
+    It is the sum of the squares of their weights, which are binomial coefficients.
+    """
+    return comb(2 * order, order)
 
 
 def rounding_error(values: Floats, step: float) -> float:

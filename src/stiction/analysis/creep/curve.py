@@ -12,7 +12,7 @@ from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
-from stiction.recording.noise import rounding_error
+from stiction.recording.noise import difference_gain, rounding_error
 from stiction.trajectory import Trajectory
 
 FINEST = 100  # bins in a stick phase, if all were as narrow as the last
@@ -192,7 +192,7 @@ def _least_width(record: Record, position: Floats, length: Floats, exact: bool) 
     if not len(length) or record.drive_velocity is None or len(record) <= 2 * LAG + 1:
         return fine
     bent = position[: -2 * LAG] - 2.0 * position[LAG:-LAG] + position[2 * LAG :]
-    noise = trimmed_mean(bent).error * (len(bent) / 6.0) ** 0.5  # standard deviation, if normal
+    noise = trimmed_mean(bent).error * (len(bent) / difference_gain(2)) ** 0.5  # if it is normal
     samples = record.sample_rate * len(length)  # per second, of all phases
     wanted = (4.0 * noise / (AIM * record.drive_velocity) / samples**0.5) ** (2.0 / 3.0)
     return max(fine, float(wanted))

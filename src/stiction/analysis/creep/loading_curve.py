@@ -10,7 +10,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
-from stiction.recording.noise import rounding_error
+from stiction.recording.noise import difference_gain, rounding_error
 
 LEVELS = 40  # number of forces on the curve
 FEWEST_BINS = 10  # bins in a rise, each of at least two samples
@@ -111,7 +111,9 @@ def _scatter(apart: Floats, rows: list[Floats]) -> float:
     """Return the standard error of the mean from the scatter of cycles, or the noise of one."""
     count = len(rows)
     if count == 1:  # by mean squares: of 40 levels they tell more than the median of `white_noise`
-        return float(np.std(np.diff(rows[0], 3)) / 20.0**0.5)  # that of white noise, less a cubic
+        return float(
+            np.std(np.diff(rows[0], 3)) / difference_gain(3) ** 0.5
+        )  # that of white noise, less a cubic
     return float(np.sqrt((apart**2).sum(axis=0).mean() / (count - 1) / count))
 
 

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import Floats
+from stiction.arrays import NORMAL_MEDIAN, Floats
 
 FEWEST_JUDGED_ROWS = 8  # rows: fewer are taken as they are
 NOTICED = 1e-3  # of the largest value: smaller deviations, as of rounded digits, have no effect
@@ -22,7 +22,6 @@ SLOPE_NOISE = 3.0 * sqrt(2.0 / sqrt(3.0) - 1.0)
 ISOLATED = 0.2  # typical deviation over the root of the mean square: below, few rows have it all
 FAR = 6.0  # typical deviations: beyond it is a jump
 BINS, ABOVE, MARGIN = 9, 5.0, 2.0  # of the spectrum: smoothed over, over the noise, of a cut-off
-NORMAL_MEDIAN = 0.6744897501960817  # of |x| of a standard normal x
 
 
 class Roughness(NamedTuple):

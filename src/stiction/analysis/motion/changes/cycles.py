@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiction.analysis.motion.course import ORDERED, order
 from stiction.analysis.signals.robust import median
 from stiction.arrays import TINY, Floats, xr
-from stiction.drive.recorded.resolution import NORMAL_MEDIAN
+from stiction.recording.noise import white_noise
 
 FEW_CYCLES = 4  # in each part
 CHANGED = 0.25  # logarithm of the ratio of two periods, or rates: a quarter more or less
@@ -44,18 +44,13 @@ def parts_of(values: Floats) -> list[slice]:
     return [slice(a, b) for a, b in pairwise(edges)]
 
 
-def _variance(size: Floats) -> float:
-    """Return the variance from cycle to cycle, to which single steps do not belong."""
-    steps = np.abs(np.diff(size))
-    return 0.5 * (float(np.median(steps)) / NORMAL_MEDIAN) ** 2 if len(steps) else 0.0
-
-
 def _splits(size: Floats) -> list[int]:
     """Return where a sequence is best split in two, and each part again (binary segmentation).
 
     A part whose values all lie within half a change is not split: no edge in it is a change.
     """
-    found, waiting, least = [], [(0, len(size))], SURE * _variance(size)
+    found, waiting = [], [(0, len(size))]
+    least = SURE * white_noise(size, order=1) ** 2  # single steps do not move it
     while waiting:
         first, last = waiting.pop()
         part, count = size[first:last], last - first
