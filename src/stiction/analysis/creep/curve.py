@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.record import Record, as_record
@@ -206,6 +207,10 @@ class Bins(NamedTuple):
     force: Floats
     begin: Floats
     end: Floats
+
+    def some(self, which: NDArray[np.bool_]) -> Bins:
+        """Return a subset."""
+        return Bins(*(column[which] for column in self))
 
 
 def bin_edges(least: float, longest: float) -> Floats:

@@ -2,82 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
-from warnings import catch_warnings, simplefilter
 
 import numpy as np
 
+from stiction.analysis.creep.least_squares import fit_parameters, used_bins
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
-from stiction.text.units import in_words
 
 EDGE = 0.01  # an exponent so near to the end of its range is none
 LAG = 1e-3  # of the loading time: a typical delay of the divergence after the slip
-THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 # Accuracy of the exponent: a mass slips because friction weakens, and that begins while it creeps;
 # Eq. (8) has constant friction. In noise-free runs of random rigs n scatters by 0.06 to 0.2
 WEAKENED = 0.1
-
-
-def used_bins(curve: xr.Dataset, low: float, high: float) -> list[Floats]:
-    """Return begin, end, velocity, velocity error and force of the bins in a stretch (s)."""
-    names = ("begin", "end", "velocity", "velocity_error", "force")
-    columns = np.stack([curve[name].values for name in names])
-    begin, end, velocity, error, _ = columns
-    inside = (end >= low) & (begin <= high) & np.isfinite(velocity)
-    if inside.sum() < 5:
-        raise ResultError(
-            f"{inside.sum()} bins of the creep curve lie between {in_words(low, 's')} and "
-            f"{in_words(high, 's')} before "
-            "slip and 5 are needed; widen the stretch, or make narrower bins (width)"
-        )
-    columns[3] = np.hypot(np.nan_to_num(error), THEORY * np.abs(velocity))
-    return list(columns[:, inside])
-
-
-def fit_parameters(
-    model: Callable[..., Floats],
-    at: Floats,
-    values: Floats,
-    errors: Floats,
-    start: tuple[float, ...],
-    bounds: tuple[tuple[float, ...], tuple[float, ...]],
-    sizes: tuple[float, ...],
-) -> tuple[list[float], list[float]]:
-    """Return parameters and standard errors, which are scaled up if the misfit exceeds them.
-
-    Parameters are varied in units of their `sizes`: the optimiser's steps have no unit.
-
-    Raises
-    ------
-    ResultError
-        If the fit does not converge.
-    """
-    from scipy.optimize import OptimizeWarning, curve_fit
-
-    def scaled(at: Floats, *shares: float) -> Floats:
-        return model(at, *np.multiply(shares, sizes))
-
-    try:
-        with catch_warnings():
-            simplefilter("ignore", OptimizeWarning)  # then the standard errors are infinite
-            found, covariance = curve_fit(  # type: ignore[no-untyped-call]
-                scaled,
-                at,
-                values,
-                np.divide(start, sizes),
-                sigma=errors,
-                absolute_sigma=True,
-                bounds=np.divide(bounds, sizes),
-                max_nfev=2000,
-            )
-    except RuntimeError:
-        raise ResultError("the creep curve does not have the shape that is fitted") from None
-    missed = (values - scaled(at, *found)) / errors
-    excess = max(1.0, float(np.sum(missed**2)) / (len(values) - len(found)))
-    spread = np.sqrt(np.diag(covariance) * excess)
-    return (found * sizes).tolist(), (spread * sizes).tolist()
 
 
 class Divergence(NamedTuple):
@@ -167,7 +104,7 @@ def fit_divergence(
     0.5
     """
     low, high = stretch[0] * loading_time, stretch[1] * loading_time
-    begin, end, velocity, error, _ = used_bins(curve, low, high)
+    velocity, error, _, begin, end = used_bins(curve, low, high)
 
     def mean(_: Floats, amplitude: float, exponent: float, lag: float) -> Floats:
         early, late = (1.0 - (T + lag) / loading_time for T in (begin, end))

@@ -68,7 +68,7 @@ def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Float
     drive : ndarray
         (n,), velocity of the drive along X, m/s; (1,) if it is constant.
     """
-    from stiction.analysis.creep.loading import find_slip
+    from stiction.analysis.creep.slip_finder import find_slip
 
     least = float(np.abs(drive).max()) * _least_gain(slider)
     return FirstLoading(*find_slip(time, elongation, drive, least))

@@ -18,7 +18,7 @@ from stiction.text.quantity_text import percent
 
 GRID = 400  # angles at which the closed form is tabled
 MODEL = 1e-4  # of the drop: least error of Eq. (7) with the terms below
-MISSED = 4.0  # weight of a misfit that all cycles share: it is as smooth as the curve
+SHARED = 4.0  # weight of a misfit that all cycles share: it is as smooth as the curve
 WORST = 1e-3  # of the drop: with a larger misfit, the rises do not have the shape
 # Unknowns of a record, assumed value and width of each: relative error of the stated stiffness,
 # logarithms of k_x/k_y and of the weakening of friction at the drive velocity.
@@ -26,11 +26,13 @@ TAILS = (0.0, log(1e-3), log(1e-2))
 WIDTHS = (0.02, 1.5, 1.3)
 # Relative accuracy of phi at the best: the transverse oscillation lowers friction, too. Of 600 rigs
 # of `python -m benchmarks.explore.misalignment` the intervals hold 95 %, with 0.1 they held 94 %
-THEORY = 0.15
+AT_BEST = 0.15
 # Accuracy of F_0 by this theory, of its excess over the peak and of the peak itself: where the fit
 # has next to no excess, the peak is 1 % or 2 % off
 EXCESS, PEAK = 0.5, 0.01
-KNOWN = 0.3  # relative standard error above which an angle is not determined
+# Relative standard error above which an angle is not determined: more than that of one by creep
+# itself (`findings`), whose theory is better
+KNOWN = 2.0 * AT_BEST
 EARLY = 0.5  # F_0 above the peak by this share
 SURELY = 20.0  # deg: a smaller upper limit is worth a word
 LOWEST = (1e-5, log(1e-5), -0.1, log(1e-6), log(1e-5))
@@ -89,7 +91,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     best, covariance, gain, misfit, apart = _fit(curve)
     phi, excess, off = float(best[0]), exp(best[1]), float(best[2])
     error = max(float(covariance[0, 0]) ** 0.5, apart, _over_cycles(curve, gain))
-    error = float(np.hypot(error, THEORY * phi))
+    error = float(np.hypot(error, AT_BEST * phi))
     _refuse(phi, error, excess, misfit, off)
     F_0 = curve.peak * (1.0 + excess)
     over = excess * float(np.hypot(covariance[1, 1] ** 0.5, EXCESS))
@@ -98,7 +100,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     return Misalignment(phi, error, F_0, F_0_error, stiffness)
 
 
-def creep_distance(
+def crept_force(
     force: Floats, phi: float, F_0: float, ratio: float = 0.0, weakening: float = 0.0
 ) -> Floats:
     """Return k_x times the distance crept (N) up to each force, up to a constant, by Eq. (7).
@@ -147,7 +149,7 @@ def _fit(curve: LoadingCurve) -> _Fit:
     middle, width = np.array(TAILS), np.array(WIDTHS)
 
     def deviation(p: Floats) -> Floats:
-        x = creep_distance(curve.force, p[0], curve.peak * (1.0 + exp(p[1])), exp(p[3]), exp(p[4]))
+        x = crept_force(curve.force, p[0], curve.peak * (1.0 + exp(p[1])), exp(p[3]), exp(p[4]))
         told = (x + curve.force) * (1.0 + p[2]) - curve.force  # by a stiffness off by so much
         return np.asarray(seen - (told - told.mean()))
 
@@ -171,7 +173,7 @@ def _fit(curve: LoadingCurve) -> _Fit:
     best = min((best_from(np.array([*at, *TAILS])) for at in STARTS), key=lambda found: found.cost)
     excess = float(np.mean(deviation(best.x) ** 2) - np.mean(curve.error**2))
     misfit = max(excess, 0.0) ** 0.5 / curve.drop
-    error = np.hypot(curve.error, max(MODEL, MISSED * misfit) * curve.drop)
+    error = np.hypot(curve.error, max(MODEL, SHARED * misfit) * curve.drop)
     best = best_from(best.x)
     covariance = np.linalg.pinv(best.jac.T @ best.jac)
     gain = (covariance[0] @ best.jac.T)[: len(error)] / error

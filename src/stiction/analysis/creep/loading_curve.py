@@ -71,7 +71,7 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     rows = []
     columns = (cycles[name].values for name in ("start", "peak_time", "peak"))
     for start, top, most in zip(*columns, strict=True):
-        row = _creep_distances(record, start, top, peak / most if peak > 0.0 else 1.0, rate, levels)
+        row = _crept_forces(record, start, top, peak / most if peak > 0.0 else 1.0, rate, levels)
         if row is not None:
             rows.append(row)
     if not rows:
@@ -86,7 +86,7 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     return LoadingCurve(levels, middle, apart, np.full(LEVELS, error), peak, drop)
 
 
-def _creep_distances(
+def _crept_forces(
     record: Record, start: float, top: float, scale: float, rate: float, levels: Floats
 ) -> Floats | None:
     """Return k_x times the distance crept at each force in one cycle; None if too coarse."""

@@ -7,7 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.divergence import THEORY, fit_parameters, used_bins
+from stiction.analysis.creep.curve import Bins
+from stiction.analysis.creep.least_squares import THEORY, fit_parameters, used_bins
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 
@@ -115,8 +116,8 @@ def fit_misalignment(
     ratio = stiffness / stiffness_across
     if ratio > 0.0:
         used = _after_rest(used, drive_velocity)
-    used[-1] = used[-1] - mass * _acceleration(used)
-    begin = max(1.02 * peak, float(used[-1].max()) + 1e-3 * peak)
+    used = used._replace(force=used.force - mass * _acceleration(used))
+    begin = max(1.02 * peak, float(used.force.max()) + 1e-3 * peak)
     start = Misalignment(START, 0.0, begin, 0.0, weakening=START)
     found = _fit(used, peak, drive_velocity, 0.0, start)
     if ratio == 0.0:
@@ -126,10 +127,10 @@ def fit_misalignment(
 
 
 def _fit(
-    used: list[Floats], peak: float, drive_velocity: float, ratio: float, start: Misalignment
+    used: Bins, peak: float, drive_velocity: float, ratio: float, start: Misalignment
 ) -> Misalignment:
     """Return the best fit that is reached from a first one, with springs of a ratio k_x/k_y."""
-    _, _, velocity, error, force = used
+    velocity, error, force = used[:3]
     largest = float(force.max())
 
     def creep(force: Floats, phi: float, excess: float, weakening: float, off: float) -> Floats:
@@ -163,16 +164,15 @@ def _fit(
     )
 
 
-def _acceleration(used: list[Floats]) -> Floats:
+def _acceleration(used: Bins) -> Floats:
     """Return the acceleration in each bin (m/s^2)."""
-    begin, end, velocity = used[:3]
-    return np.asarray(np.gradient(velocity, -0.5 * (begin + end)))
+    return np.asarray(np.gradient(used.velocity, -0.5 * (used.begin + used.end)))
 
 
-def _after_rest(used: list[Floats], drive_velocity: float) -> list[Floats]:
+def _after_rest(used: Bins, drive_velocity: float) -> Bins:
     """Return the bins, far from slip to near, of which none rests any more: creep begins in one."""
-    begin, velocity = used[0], np.abs(used[2])
-    rests = begin[velocity < REST_SPEED * drive_velocity]
+    begin = used.begin
+    rests = begin[np.abs(used.velocity) < REST_SPEED * drive_velocity]
     if not len(rests):
         return used
     later = begin < rests.min()
@@ -182,7 +182,7 @@ def _after_rest(used: list[Floats], drive_velocity: float) -> list[Floats]:
             f"not determined: the mass creeps in only {later.sum()} bins of the curve, and rests "
             "before"
         )
-    return [column[later] for column in used]
+    return used.some(later)
 
 
 def creep_velocity(share: Floats, phi: float, weakening: float, ratio: float = 0.0) -> Floats:
@@ -195,7 +195,7 @@ def creep_velocity(share: Floats, phi: float, weakening: float, ratio: float = 0
                  /(sin^2(theta) + r cos^2(theta))], X' = |s| cos(theta - phi).
 
     With r = 0 this is Eq. (7), |s| = V sin(phi)/sin(theta). Friction is F_0/(1 + weakening |s|/V),
-    as in `creep_distance`; near theta = 0, which only a trial of the fit reaches, sines are kept
+    as in `crept_force`; near theta = 0, which only a trial of the fit reaches, sines are kept
     from zero.
     """
     theta = np.arccos(np.clip(share, -1.0, 1.0))

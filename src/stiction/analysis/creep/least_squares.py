@@ -1,0 +1,73 @@
+"""Fits of a theory to a mean creep curve by least squares."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from warnings import catch_warnings, simplefilter
+
+import numpy as np
+
+from stiction.analysis.creep.curve import CURVES, Bins
+from stiction.arrays import Floats, xr
+from stiction.errors import ResultError
+from stiction.text.units import in_words
+
+THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
+
+
+def used_bins(curve: xr.Dataset, low: float, high: float) -> Bins:
+    """Return the bins of a curve in a stretch (s to slip); their errors include the theory's."""
+    bins = Bins(*(curve[name].values for name in CURVES))
+    inside = (bins.end >= low) & (bins.begin <= high) & np.isfinite(bins.velocity)
+    if inside.sum() < 5:
+        raise ResultError(
+            f"{inside.sum()} bins of the creep curve lie between {in_words(low, 's')} and "
+            f"{in_words(high, 's')} before slip and 5 are needed; widen the stretch, or make "
+            "narrower bins (width)"
+        )
+    error = np.hypot(np.nan_to_num(bins.error), THEORY * np.abs(bins.velocity))
+    return bins._replace(error=error).some(inside)
+
+
+def fit_parameters(
+    model: Callable[..., Floats],
+    at: Floats,
+    values: Floats,
+    errors: Floats,
+    start: tuple[float, ...],
+    bounds: tuple[tuple[float, ...], tuple[float, ...]],
+    sizes: tuple[float, ...],
+) -> tuple[list[float], list[float]]:
+    """Return parameters and standard errors, which are scaled up if the misfit exceeds them.
+
+    Parameters are varied in units of their `sizes`: the optimiser's steps have no unit.
+
+    Raises
+    ------
+    ResultError
+        If the fit does not converge.
+    """
+    from scipy.optimize import OptimizeWarning, curve_fit
+
+    def scaled(at: Floats, *shares: float) -> Floats:
+        return model(at, *np.multiply(shares, sizes))
+
+    try:
+        with catch_warnings():
+            simplefilter("ignore", OptimizeWarning)  # then the standard errors are infinite
+            found, covariance = curve_fit(  # type: ignore[no-untyped-call]
+                scaled,
+                at,
+                values,
+                np.divide(start, sizes),
+                sigma=errors,
+                absolute_sigma=True,
+                bounds=np.divide(bounds, sizes),
+                max_nfev=2000,
+            )
+    except RuntimeError:
+        raise ResultError("the creep curve does not have the shape that is fitted") from None
+    missed = (values - scaled(at, *found)) / errors
+    excess = max(1.0, float(np.sum(missed**2)) / (len(values) - len(found)))
+    spread = np.sqrt(np.diag(covariance) * excess)
+    return (found * sizes).tolist(), (spread * sizes).tolist()
