@@ -475,7 +475,7 @@ def record_of(run: Trajectory) -> Record:
     x, y, way, along = cell.x, cell.y, cell.way, cell.velocity
     share = _share(x, y, slider)
     stiffness = slider.along_drive(x * slider.k_x, y * slider.k_y) / share if share else 0.0
-    stiffer = "v_y" if slider.k_y >= slider.k_x else "v_x"
+    stiffer = ("v_x", "v_y")[slider.stiffer_axis]
     names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", stiffer)
     columns = np.stack([samples[name] for name in names])
     time, f_x, f_y, X, slip_speed, load, rate = columns[:, np.isfinite(columns).all(axis=0)]

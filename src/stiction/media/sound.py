@@ -180,8 +180,7 @@ def rate_at(
 def audible_speed(description: Description, axis: str = "y") -> float:
     """Return 1, or the power of ten that makes the natural frequency of an axis audible."""
     slow, fast = description.slider.natural_frequencies
-    stiff_y = description.slider.k_y >= description.slider.k_x
-    pitch = fast if (axis == "y") == stiff_y else slow
+    pitch = fast if axis == "xy"[description.slider.stiffer_axis] else slow
     low, high = HEARD
     if pitch > high:
         return float(10.0 ** floor(log10(high / pitch)))

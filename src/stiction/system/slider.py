@@ -305,6 +305,11 @@ class Slider(Apparatus):
         return sqrt(low) / (2 * pi), sqrt(high) / (2 * pi)
 
     @property
+    def stiffer_axis(self) -> int:
+        """Axis of the stiffer spring: 0 for x, 1 for y."""
+        return 1 if self.k_y >= self.k_x else 0
+
+    @property
     def natural_frequency_x(self) -> float:
         """Natural frequency of the mass on the spring along x, in Hz."""
         return sqrt(self.k_x / self.masses[0]) / (2 * pi)

@@ -20,7 +20,7 @@ ORDERED = -0.9  # rank correlation of size and number: each smaller than the las
 MANY, LEFT = 8, 1 / 3
 FEW_SWINGS, LEFT_BEFORE_QUIET = 3, 1 / 2  # counted from the largest, if it is quiet for long after
 QUIET = 3.0
-TWO, LEFT_OF_TWO = 2, 2 / 3  # of only two swings, if it is quiet for long after
+LEFT_OF_TWO = 2 / 3  # of only two swings, if it is quiet for long after
 # Fewer swings, of any number from three, die out if each is smaller than the last by about the same
 # factor: the largest and the smallest factor differ by less. Of irregular vibrations 3 in 100 have
 # three such swings, 7 in 1000 four, 2 in 1000 five.
@@ -50,10 +50,10 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
         Time from the last of them until the drive or the load changes, or the record ends.
     """
     size = np.asarray(drop, dtype=np.float64)
-    quiet = len(size) > 0 and rest > QUIET * float(np.max(period))
+    quiet = is_over(np.asarray(period), rest)
     if quiet and rest > float(np.sum(period)):
         size = size[int(np.argmax(size)) :]
-    if quiet and len(size) == TWO:
+    if quiet and len(size) == 2:
         return bool(size[-1] < LEFT_OF_TWO * size[0])
     enough, left = (FEW_SWINGS, LEFT_BEFORE_QUIET) if quiet else (MANY, LEFT)
     if len(size) < enough:

@@ -7,7 +7,7 @@ import numpy as np
 from stiction.analysis.motion.course import BEGINS_UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.rest import STICKING, rest_share
-from stiction.analysis.motion.vibration import COUPLED, OWN_PERIODS, irregularity
+from stiction.analysis.motion.vibration import COUPLED, OWN_PERIODS, is_irregular
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
@@ -54,7 +54,7 @@ def is_beside(line: Line, table: CycleTable, record: Record) -> bool:
         return False
     if of_mains(line.frequency) or _sticks(table):
         return True
-    return not _is_own(line, record) and irregularity(period, drop) <= 0.5
+    return not _is_own(line, record) and not is_irregular(period, drop)
 
 
 def _is_elsewhere(line: Line, table: CycleTable, record: Record) -> bool:

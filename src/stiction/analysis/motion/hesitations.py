@@ -25,6 +25,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.vibration import FAR_ABOVE, RARE
 from stiction.analysis.signals.reversals import smallest_legs
 from stiction.arrays import TINY, Floats, Indices
 
@@ -42,8 +43,6 @@ ALIKE = 0.23
 # Legs, two cycles, over which a slow motion goes on and before which it went on, and by how much at
 # least, in swings: no hesitating cycle moves by so much to the same side twice
 AWAY, GOES_ON = 4, 0.5
-# Falls far above all others: times the largest of these, and one in so many falls at most
-FAR_ABOVE, RARE = 3.0, 20
 # A loading leads to them if the peaks rise by so much of their heights in all, as estimated from so
 # many equal parts for each of them, by the median part
 LOADED, PIECES = 0.25, 6
@@ -112,8 +111,8 @@ def take_out(values: Floats) -> Hesitations:
 def largest_leg(values: Floats) -> float:
     """Return the size beyond which no leg says what is typical; infinity if all of them do.
 
-    There is one if a few falls, or rises, are far above all others, unless a loading leads to
-    these falls.
+    There is one if a few falls, or rises, are far above all others, `FAR_ABOVE` times the largest
+    of these, unless a loading leads to these falls.
 
     Parameters
     ----------

@@ -23,6 +23,7 @@ OWN_PERIODS = 1.2  # times that period: up to there a vibration is that of the m
 # Rayleigh's distribution have, 0.7 to 1.5 where records are short; a measured vibration of one size
 # has 0.57.
 REGULAR, EVEN = 0.25, 0.75
+LIKELY = 0.5  # likelihood above which swings are irregular
 FAR_ABOVE, RARE = 3.0, 20  # times the median, and one in so many: such swings are other events
 SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of either
 # That span of irregular vibrations, and of harmonic ones, measured among them, whose swings differ
@@ -51,7 +52,7 @@ class FastOscillation(NamedTuple):
     @classmethod
     def at_end(cls, slider: Slider, rate: Floats) -> FastOscillation:
         """Return that of a run by its last rates (m/s) along the stiffer axis, of many periods."""
-        drive = abs(nominal_velocity(slider.motion) * slider.direction[stiffer_axis(slider)])
+        drive = abs(nominal_velocity(slider.motion) * slider.direction[slider.stiffer_axis])
         across = 0.5 * float(np.ptp(rate))
         amplitude = across / drive if drive > 0.0 else 0.0
         return cls(amplitude, min(slider.k_x, slider.k_y) * across)
@@ -65,15 +66,15 @@ class FastOscillation(NamedTuple):
         return self.amplitude > LEAST_OSCILLATION and pi * drop / period <= self.rate
 
 
-def stiffer_axis(slider: Slider) -> int:
-    """Return the axis of the stiffer spring: 0 for x, 1 for y."""
-    return 1 if slider.k_y >= slider.k_x else 0
-
-
 def drop_spread(drop: Floats) -> float:
     """Return the span of the drops over their median, a tenth left out at each end."""
     low, middle, high = np.percentile(drop, (10.0, 50.0, 90.0))
     return float((high - low) / middle)
+
+
+def is_irregular(period: Floats, drop: Floats) -> bool:
+    """Return whether swings are irregular rather than harmonic."""
+    return irregularity(period, drop) > LIKELY
 
 
 def irregularity(period: Floats, drop: Floats) -> float:

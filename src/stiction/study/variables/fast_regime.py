@@ -17,7 +17,7 @@ from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.course import PER_QUARTER, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
-from stiction.analysis.motion.vibration import FastOscillation, irregularity
+from stiction.analysis.motion.vibration import FastOscillation, is_irregular
 from stiction.arrays import Floats
 from stiction.study.variables.features import PARTS, Features
 
@@ -151,12 +151,8 @@ def by_shape(cycles: SwingShapes, own: float, still: Shares, sticks: Shares) -> 
     if kind in (kinds.TRANSITIONAL, kinds.HARMONIC):
         known = (float(np.median(share(cycles))) for share in (still, sticks))
         kind = kinds.shape(rise, *known)
-    return kinds.IRREGULAR if kind == kinds.HARMONIC and irregular(cycles) else kind
-
-
-def irregular(cycles: SwingShapes) -> bool:
-    """Return whether vibrations are irregular, by the rule of `stiction.analysis.motion.regime`."""
-    return irregularity(cycles.period, cycles.drop) > 0.5
+    irregular = kind == kinds.HARMONIC and is_irregular(cycles.period, cycles.drop)
+    return kinds.IRREGULAR if irregular else kind
 
 
 def by_course(found: Features, duration: float, drive: float, stops: bool) -> str:

@@ -17,7 +17,7 @@ from stiction.analysis.motion.rest import (
     still_shares,
     stops_with_drive,
 )
-from stiction.analysis.motion.vibration import FAST_PERIODS, FastOscillation, stiffer_axis
+from stiction.analysis.motion.vibration import FAST_PERIODS, FastOscillation
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
@@ -193,7 +193,7 @@ class ObservedRun:
     def fast_oscillation(self) -> FastOscillation:
         """The final fast oscillation."""
         slider = self.description.slider
-        rate = self.solution.samples[self.fine :, 2 + stiffer_axis(slider)]
+        rate = self.solution.samples[self.fine :, 2 + slider.stiffer_axis]
         return FastOscillation.at_end(slider, rate)
 
     @cached_property

@@ -94,7 +94,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if per_cycle < FEWEST_PER_CYCLE:
         needed = ENOUGH / per_cycle * record.sample_rate
         return Regime(UNDETERMINED, 0.0, {"samples_per_cycle": per_cycle, "rate_needed": needed})
-    if found.dying or _is_over(record, found):
+    if found.dying or _has_stopped(record, found):
         drop = found.table["drop"]
         sure = (len(drop) + 1) / (len(drop) + 3)
         name = "over" if found.over and drop[-1] > BELOW * drop.max() else "swings"
@@ -169,7 +169,7 @@ def _fast_oscillation(record: Record) -> FastOscillation | None:
     return FastOscillation.at_end(slider, rate[first:])
 
 
-def _is_over(record: Record, found: Swings) -> bool:
+def _has_stopped(record: Record, found: Swings) -> bool:
     """Return whether swings have ended for good: mass and drive are known to rest."""
     drop = found.table["drop"]
     still = record.drive_velocity is None and record.drive_travel is None

@@ -24,7 +24,7 @@ from stiction.analysis.motion.regime.kinds import (
     shape,
 )
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
-from stiction.analysis.motion.vibration import COUPLED, drop_spread, irregularity
+from stiction.analysis.motion.vibration import COUPLED, LIKELY, drop_spread, irregularity
 from stiction.analysis.motion.wave import regular_wave
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
@@ -266,7 +266,7 @@ def _weigh(record: Record, table: CycleTable, shapes: Shapes, evidence: dict[str
     irregular = 0.0
     if kind == HARMONIC:
         irregular = irregularity(table["period"], table["drop"])
-    if irregular > 0.5:
+    if irregular > LIKELY:
         if beat := beat_frequency(record.time, record.force):
             return Regime(kind, confidence, evidence | {"beat": beat})
         return Regime(IRREGULAR, irregular * confidence, evidence, HARMONIC)
