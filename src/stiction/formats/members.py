@@ -105,7 +105,7 @@ def _differences(values: NDArray[Any], dates: bool) -> Floats:
 
 
 def _present(values: NDArray[Any]) -> NDArray[np.bool_]:
-    """Return which of some numbers are not missing: of whole ones, that is the least."""
+    """Return which numbers are not missing: the least whole number stands for a missing one."""
     if values.dtype.kind == "f":
         return np.asarray(np.isfinite(values))
     least = np.iinfo(values.dtype).min

@@ -32,7 +32,7 @@ import os, resource, sys
 import stiction as st
 from stiction.study.execution.engines import Scheduler
 from stiction.study.execution.engines import Threads
-from stiction.study.plan.layout import laid_out
+from stiction.study.plan.layout import layout_of
 import distributed, xarray, zarr
 
 study = st.Study.from_json(sys.argv[1])
@@ -261,7 +261,7 @@ def test_a_scheduler_that_does_not_answer_is_lost(monkeypatch):
     with Client(processes=False, n_workers=1, threads_per_worker=1, dashboard_address=None) as it:
         monkeypatch.setattr(it.scheduler, "ncores", silence, raising=False)
         with pytest.raises(st.StictionError, match="scheduler is lost"), engines.lost_and_told():
-            next(engines.handed_out(it, lambda task, _: task, [1, 2]))
+            next(engines.outcomes(it, lambda task, _: task, [1, 2]))
     assert asked.is_set()
 
 

@@ -9,7 +9,7 @@ import xarray as xr
 import stiction as st
 from stiction.study.execution.engines import Processes, Threads
 from stiction.study.plan.coordinates import unit, vary
-from stiction.study.plan.layout import Layout, laid_out, places
+from stiction.study.plan.layout import Layout, layout_of, places
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
 
@@ -250,7 +250,7 @@ def test_any_parameter_can_vary():
 @pytest.mark.parametrize("shape", [(1,), (7,), (1000,), (100, 100), (3, 1000), (5, 7, 11), (10, 1)])
 @pytest.mark.parametrize("seconds", [1e-4, 1e-2, 10.0])
 def test_blocks_cover_each_run_once(shape, seconds):
-    layout: Layout = laid_out({f"d{i}": n for i, n in enumerate(shape)}, seconds)
+    layout: Layout = layout_of({f"d{i}": n for i, n in enumerate(shape)}, seconds)
     counted = np.zeros(shape, int)
     for task in range(layout.tasks):
         for index in places(layout.region(task)):
@@ -260,7 +260,7 @@ def test_blocks_cover_each_run_once(shape, seconds):
 
 
 def test_a_million_runs_are_few_tasks():
-    layout = laid_out({"a": 1000, "b": 1000}, 1e-2)
+    layout = layout_of({"a": 1000, "b": 1000}, 1e-2)
     assert layout.tasks <= 4096 * 1.1
 
 

@@ -76,20 +76,20 @@ def cycle_corners(
     value, time : ndarray
         (n,) of alternating peaks and troughs, N and s.
     ends : tuple of float
-        Extremes before and after them, as for `take_out`, N.
+        Extremes before and after them, as for `remove_hesitations`, N.
     trough : bool
         Whether the first is a trough.
     """
     values = np.concatenate([ends[:1], value, ends[1:]])
-    found = take_out(level(values, time))
+    found = remove_hesitations(level(values, time))
     kept = found.kept - 1  # of which the first was before
     kept = kept[0 if len(kept) and (kept[0] % 2 == 0) == trough else 1 :]
     kept = kept[: (len(kept) - 1) // 2 * 2 + 1]
     return Hesitations(kept, found.at - 1, found.depth)
 
 
-def take_out(values: Floats) -> Hesitations:
-    """Take the hesitations out of a sequence of turning points.
+def remove_hesitations(values: Floats) -> Hesitations:
+    """Remove the hesitations from a sequence of turning points.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def largest_leg(values: Floats) -> float:
     Parameters
     ----------
     values : ndarray
-        (n,) alternating peaks and troughs, as for `take_out`.
+        (n,) alternating peaks and troughs, as for `remove_hesitations`.
     """
     change = np.diff(values[1:-1])
     few = len(change) // (2 * RARE)
@@ -153,7 +153,7 @@ def level(values: Floats, time: Floats) -> Floats:
     Parameters
     ----------
     values : ndarray
-        (n,) alternating peaks and troughs between two extremes, as for `take_out`.
+        (n,) alternating peaks and troughs between two extremes, as for `remove_hesitations`.
     time : ndarray
         (n - 2,) times of the peaks and troughs.
     """

@@ -325,7 +325,7 @@ def _transverse_frequency(record: Record) -> StatedQuantity | None:
 
 
 def first_reading(record: Record) -> Floats:
-    """Return the forces with which a record begins: some of them, to see whether they change."""
+    """Return the first readings of a record."""
     force: Floats = record.force[: max(8, len(record) // 400)]
     return force
 

@@ -10,11 +10,8 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import TINY, Complex, Floats
 
-FEWEST_CYCLES, TURNS, PER_TURN = (
-    16,
-    4.0,
-    3.0,
-)  # cycles, turns of the wave, and cycles in each, at least
+# Cycles, turns of the wave, and cycles in each, at least
+FEWEST_CYCLES, TURNS, PER_TURN = 16, 4.0, 3.0
 FINE = 8  # frequencies tried in each that a record resolves
 # Share of the variance of the cycles' middles about a line that is the wave's, how alike it is in
 # both halves of a record, and its height over the median drop. Of 4000 random walks, white middles

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.robust import inner_product, median, uniform_mean
+from stiction.analysis.signals.spectrum import spectrum
 from stiction.arrays import TINY, Complex, Floats
 
 PERIODS = 16  # of a line that a record has at least
@@ -178,18 +179,6 @@ def samples_per_period(force: Floats) -> float:
     line = float(power[_lobe(at)].sum())
     makes = power[at] > ABOVE * beside(power)[at] and line > MUCH * float(power.sum())
     return 1.0 / (at * width) if makes and at > 0 else np.inf
-
-
-def spectrum(force: Floats) -> tuple[Floats, float]:
-    """Return the power of a force under a Hann window, and the width of its samples in cycles."""
-    from scipy.fft import next_fast_len, rfft
-
-    n = len(force)
-    ramp = np.linspace(0.0, 1.0, n)
-    level = force - force[0] - (force[-1] - force[0]) * ramp
-    size = next_fast_len(n, real=True)  # type: ignore[no-untyped-call]
-    window = 0.5 - 0.5 * np.cos(2.0 * np.pi * ramp)
-    return np.abs(rfft((level - level.mean()) * window, size)) ** 2, 1.0 / size
 
 
 def beside(power: Floats) -> Floats:

@@ -56,11 +56,13 @@ def smallest_legs(legs: Counts | Floats, below: Floats | float) -> Indices:
     return np.flatnonzero(small) + 1
 
 
-def taken_out(values: Counts | Floats, below: float = np.inf) -> tuple[Indices, NDArray[Any]]:
-    """Take out reversals, the smallest of each neighbourhood first.
+def remove_reversals(
+    values: Counts | Floats, below: float = np.inf
+) -> tuple[Indices, NDArray[Any]]:
+    """Remove reversals, the smallest of each neighbourhood first.
 
     All local minima of height are removed at once. Where they get few, as in a vibration whose
-    amplitude changes slowly, the rest is taken out in one go from left to right: in any order the
+    amplitude changes slowly, the rest is removed in one go from left to right: in any order the
     same reversals go, because none of two that can go is in the way of the other.
 
     Parameters
@@ -75,7 +77,7 @@ def taken_out(values: Counts | Floats, below: float = np.inf) -> tuple[Indices, 
     points : ndarray
         Indices of the remaining samples, including both ends of the signal.
     heights : ndarray
-        Heights of the reversals taken out, in any order.
+        Heights of the removed reversals, in any order.
     """
     points, heights = extrema(values), [np.zeros(0, np.int64)]
     while len(points) > 3:
@@ -112,7 +114,7 @@ def all_heights(values: Counts) -> Counts:
 
     Every second one of these counts, because a cycle has a leg up and a leg down.
     """
-    points, heights = taken_out(values)
+    points, heights = remove_reversals(values)
     left = np.sort(np.abs(np.diff(values[points]))[1:-1])
     return np.concatenate([heights, left[::2]])
 
@@ -123,7 +125,7 @@ def standing_out(values: Counts, height: float, least: float) -> Indices:
     The first and last leg of a record may be cut: for these `least` suffices. Their outer ends are
     unknown, and left out.
     """
-    points, _ = taken_out(values, height)
+    points, _ = remove_reversals(values, height)
     legs = np.abs(np.diff(values[points]))
     large = np.flatnonzero(legs >= height)
     if len(large) == 0:

@@ -1,4 +1,4 @@
-"""Spectrograms: the frequencies of a signal over time."""
+"""Spectra, and spectrograms: the frequencies of a signal over time."""
 
 from __future__ import annotations
 
@@ -15,6 +15,17 @@ from stiction.trajectory import Trajectory
 
 BLOCK = 2**17  # samples taken at once from what can be sliced, 1 MB
 AT_ONCE = 2**18  # samples in the windows that are transformed at once, 2 MB
+
+
+def spectrum(force: Floats) -> tuple[Floats, float]:
+    """Return the power of a force under a Hann window, and the width of its samples in cycles."""
+    from scipy.fft import next_fast_len, rfft
+
+    n = len(force)
+    ramp = np.linspace(0.0, 1.0, n)
+    level = force - force[0] - (force[-1] - force[0]) * ramp
+    size = next_fast_len(n, real=True)  # type: ignore[no-untyped-call]
+    return np.abs(rfft((level - level.mean()) * np.hanning(n), size)) ** 2, 1.0 / size
 
 
 class Windows(NamedTuple):

@@ -19,8 +19,8 @@ from stiction.analysis.signals.reversals import (
     Counts,
     all_heights,
     extrema,
+    remove_reversals,
     standing_out,
-    taken_out,
 )
 from stiction.analysis.signals.robust import median, median_of_three
 from stiction.arrays import Floats, Indices
@@ -278,5 +278,5 @@ def noise_reach(counts: Counts, height: float) -> float:
     the number of samples, is then about two standard deviations. Where only a few samples turn
     back, as in a smooth signal with a ripple here and there, it is nearly nothing.
     """
-    _, heights = taken_out(counts, height)
+    _, heights = remove_reversals(counts, height)
     return 6.0 * float(heights.sum()) / max(len(counts), 1)

@@ -98,7 +98,7 @@ def _lines(table: FileTable) -> Sequence[int]:
 
 
 def _quantity(table: FileTable, names: Mapping[str, str], quantities: tuple[str, ...]) -> str:
-    """Return what is recorded: the one that is given, or the only one among the headings."""
+    """Return the recorded quantity: the one that is given, or the only one in the headings."""
     headings = {_heading(each)[0].lower() for each in table.columns}
     given = [name for name in quantities if name in names]
     found = given or [name for name in quantities if name in headings]

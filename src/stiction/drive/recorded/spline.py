@@ -87,7 +87,7 @@ class Recording(NamedTuple):
         return tuple(float(a) + b for a, b in zip(most, wave, strict=True))  # type: ignore[return-value]
 
     def bounds_at(r, rows: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-        """Return such bounds from each of some times to the next; the recording's rows are some."""
+        """Return such bounds between successive times, which include the recording's rows."""
         found = r.bounds[piece_at(r, rows[:-1])]
         wave = r.wave.bounds_between(float(rows[0]), float(rows[-1]))
         value = np.abs(found[:, :2]).max(axis=1) + wave[0]

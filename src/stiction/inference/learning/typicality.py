@@ -104,7 +104,7 @@ class Typicality(NamedTuple):
         return np.argsort(((self.beside.places - places) ** 2).sum(axis=1))[:count]
 
     def arrays(self, of: str = "") -> dict[str, Floats]:
-        """Return what `read` needs, `of` something by name, but the estimates."""
+        """Return the arrays that `read` restores by name, without the estimates."""
         found = as_arrays(**{f"expected{of}": self.expectation.expected})
         for name, cloud in zip(CLOUDS, (self.near, self.beside), strict=True):
             found |= {f"{name}{of}_{part}": getattr(cloud, part) for part in KEPT}

@@ -175,7 +175,7 @@ class Classifier(NamedTuple):
         return self.whole.probabilities(self.standard.scores(np.atleast_2d(features)))
 
     def probabilities_by_halves(self, features: Floats) -> Floats:
-        """Return the same by each half of the simulations, (2, m, k)."""
+        """Return these probabilities by each half of the simulations, (2, m, k)."""
         scores = self.standard.scores(np.atleast_2d(features))
         return np.stack([half.probabilities(scores) for half in self.halves])
 

@@ -35,7 +35,7 @@ def save(fig: Figure, path: str | Path) -> list[Path]:
     Both have the same layout, which is found once.
     """
     bare = Path(path)
-    with style(), laid_out(fig, SHEET["savefig.dpi"]):
+    with style(), fixed_layout(fig, SHEET["savefig.dpi"]):
         return [write(fig, bare.with_name(bare.name + suffix)) for suffix in (".png", ".pdf")]
 
 
@@ -56,13 +56,13 @@ def write(fig: Figure, path: str | Path) -> Path:
     """
     target = drawable(path)
     suffix = target.suffix.lower()
-    with whole(target) as part, style(), laid_out(fig, SHEET["savefig.dpi"]):
+    with whole(target) as part, style(), fixed_layout(fig, SHEET["savefig.dpi"]):
         fig.savefig(part, format=suffix[1:], **HOW[suffix])
     return target
 
 
 @contextmanager
-def laid_out(fig: Figure, dpi: float) -> Iterator[None]:
+def fixed_layout(fig: Figure, dpi: float) -> Iterator[None]:
     """Find the layout of a figure for a resolution, which stays inside the ``with`` block.
 
     Writing a file, matplotlib would draw the whole figure to find it, and draw it once more.
@@ -88,7 +88,7 @@ def drawable(path: str | Path) -> Path:
 def png(fig: Figure) -> bytes:
     """Return a figure as a PNG image for a page."""
     image = BytesIO()
-    with style(), laid_out(fig, SCREEN):
+    with style(), fixed_layout(fig, SCREEN):
         fig.savefig(image, format="png", dpi=SCREEN, **HOW[".png"])
     return image.getvalue()
 

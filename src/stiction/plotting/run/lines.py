@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
-from stiction.analysis.signals.reversals import standing_out, taken_out
+from stiction.analysis.signals.reversals import remove_reversals, standing_out
 from stiction.analysis.signals.turning_points import COUNTS, as_counts
 from stiction.arrays import TINY, Floats, Indices
 from stiction.plotting.page.style import BLACK
@@ -85,7 +85,7 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
     height = np.ptp(values[known]) if len(known) else 0.0
     if not 0.0 < least < height:
         return []
-    points, _ = taken_out(as_counts(values[known]), COUNTS * least / height)
+    points, _ = remove_reversals(as_counts(values[known]), COUNTS * least / height)
     first, *_, last = points = known[points]
     turns, found = points[1:-1], []
     for group in np.split(turns, np.flatnonzero(np.diff(time[turns]) > longest) + 1):

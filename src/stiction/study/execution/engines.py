@@ -67,14 +67,14 @@ def in_threads(
     waiting = iter(tasks)
     with ThreadPoolExecutor(count, "study") as pool:
 
-        def handed_out(more: int) -> set[Future[T]]:
+        def submit(more: int) -> set[Future[T]]:
             return {pool.submit(work, task, unwanted.is_set) for task in islice(waiting, more)}
 
         try:
-            flying = handed_out(AHEAD * count)
+            flying = submit(AHEAD * count)
             while flying:
                 done, flying = wait(flying, PATIENCE, FIRST_COMPLETED)
-                flying |= handed_out(len(done))
+                flying |= submit(len(done))
                 for future in done:
                     yield future.result()
         finally:
@@ -125,7 +125,7 @@ class Processes(NamedTuple):
                 silence_logs=logging.ERROR,  # hides the logs of cancelled tasks
             )
             with lost_and_told(), cluster, dask.Client(cluster) as client:
-                yield from handed_out(client, work, tasks)
+                yield from outcomes(client, work, tasks)
 
 
 class Scheduler(NamedTuple):
@@ -151,7 +151,7 @@ class Scheduler(NamedTuple):
                 "'dask scheduler' and workers with 'dask worker ADDRESS'"
             ) from None
         with lost_and_told(), client:
-            yield from handed_out(client, work, tasks)
+            yield from outcomes(client, work, tasks)
 
 
 def temporary_certificate() -> Any:
@@ -176,7 +176,7 @@ def import_distributed() -> ModuleType:
     return dask
 
 
-def handed_out(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
+def outcomes(client: Any, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
     """Yield the outcome of each task; few are handed out at a time per worker thread."""
     from distributed import as_completed
 

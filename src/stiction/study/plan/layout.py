@@ -64,7 +64,7 @@ class Layout(NamedTuple):
         return tuple(slice(at * b, min((at + 1) * b, n)) for at, b, n in ends)
 
 
-def laid_out(sizes: dict[str, int], seconds: float) -> Layout:
+def layout_of(sizes: dict[str, int], seconds: float) -> Layout:
     """Return the layout of a grid, given the number of runs along each dimension.
 
     `seconds` is the approximate duration of a run.

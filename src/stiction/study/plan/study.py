@@ -24,7 +24,7 @@ from stiction.study.plan.coordinates import (
     vary,
     zip_faults,
 )
-from stiction.study.plan.layout import Index, Layout, axis_faults, laid_out, run_faults
+from stiction.study.plan.layout import Index, Layout, axis_faults, layout_of, run_faults
 from stiction.study.plan.reading import axes_of, is_description, measures_of, traces_of
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observed_run import seconds_of
@@ -133,7 +133,7 @@ class Study(Described):
     def layout(self) -> Layout:
         """The grid of runs and its blocks."""
         sizes = {axis.along or path: axis.count for path, axis in self.axes.items()}
-        return laid_out(sizes, seconds_of(self.base))
+        return layout_of(sizes, seconds_of(self.base))
 
     @cached_property
     def coordinates(self) -> dict[str, Coordinate]:

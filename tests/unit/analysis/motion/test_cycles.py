@@ -14,8 +14,8 @@ import stiction as st
 from stiction.analysis.motion.cycle_columns import TIMES
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import find_friction
-from stiction.analysis.motion.hesitations import take_out
-from stiction.analysis.signals.reversals import all_heights, standing_out, taken_out
+from stiction.analysis.motion.hesitations import remove_hesitations
+from stiction.analysis.signals.reversals import all_heights, remove_reversals, standing_out
 from stiction.analysis.signals.robust import without_outliers
 from stiction.analysis.signals.turning_points import _locate, turning_points
 from stiction.arrays import xr
@@ -53,7 +53,7 @@ def saw(time: Floats, period: float = 2.0) -> Floats:
 def test_reversals_of_a_signal_are_paired_as_rainflow_pairs_them() -> None:
     # the example of ASTM E1049, Fig. 6: ranges 3, 4, 4, 6, 8, 8, 9 in halves; inner pair 4
     values = np.array([-2, 1, -3, 5, -1, 3, -4, 4, -2])
-    _, inner = taken_out(values)
+    _, inner = remove_reversals(values)
     assert inner.tolist() == [4]  # -1 to 3 lies within 5 to -4, and nothing else does
     assert sorted(all_heights(values).tolist()) == [4, 4, 8]  # of the rest 4, 8, 9, 8: each second
 
@@ -244,7 +244,7 @@ def test_what_is_a_cycle_and_what_a_hesitation(
 ) -> None:
     values = corners(*legs)
     for factor in (1.0, 1e-9):
-        found = take_out(factor * values)
+        found = remove_hesitations(factor * values)
         assert (len(found.kept), len(found.at)) == (kept, taken)
         assert np.all(np.diff(np.sign(np.diff(values[found.kept]))) != 0)
 
@@ -256,7 +256,7 @@ def test_ripple_that_only_some_can_see_changes_no_count() -> None:
     for size in fall:
         plain += [size, size]
         rippled += [size, 0.4 * size, 0.02, 0.3 * size + 0.02, 0.03, 0.3 * size + 0.03]
-    smooth, rough = (take_out(corners(*legs)) for legs in (plain, rippled))
+    smooth, rough = (remove_hesitations(corners(*legs)) for legs in (plain, rippled))
     assert len(smooth.kept) == len(rough.kept) > 110
     assert len(rough.at) == len(smooth.at) + 120
 

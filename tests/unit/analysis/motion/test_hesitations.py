@@ -58,7 +58,7 @@ def test_a_dip_of_less_than_half_of_alike_falls_is_a_hesitation():
     """Its first point and its height are told, and the falls are kept."""
     for depth, number in ((0.3, 1), (2.4, 1), (2.6, 0)):
         values = cycles(*[5.0] * 8, dip=(0, 0, 0, depth))
-        found = hesitations.take_out(values)
+        found = hesitations.remove_hesitations(values)
         assert len(found.at) == number
         assert len(found.kept) == 16 + 2 * (1 - number)
         if number:
@@ -69,7 +69,7 @@ def test_a_dip_of_less_than_half_of_alike_falls_is_a_hesitation():
 
 def test_several_hesitations_in_order():
     values = cycles(*[5.0] * 8, dip=(0, 0.2, 0, 0.1, 0, 0, 0.4))
-    found = hesitations.take_out(values)
+    found = hesitations.remove_hesitations(values)
     assert values[found.at].tolist() == [8.0] * 3
     assert found.at.tolist() == sorted(found.at)
     assert found.depth == pytest.approx([0.2, 0.1, 0.4])
@@ -78,10 +78,10 @@ def test_several_hesitations_in_order():
 def test_where_falls_have_every_size_only_a_tenth_is_a_hesitation():
     """Then a fall of a third of the largest is a cycle, unless such come with each of them."""
     drops = (5.0, 1.8, 5.0, 4.0, 2.3, 5.0, 3.0, 5.0)
-    found = hesitations.take_out(cycles(*drops))
+    found = hesitations.remove_hesitations(cycles(*drops))
     assert (len(found.at), len(found.kept)) == (0, 16)
     many = (5.0, 1.2, 1.3) * 8  # two lesser ones with each: they belong to it
-    found = hesitations.take_out(cycles(*many))
+    found = hesitations.remove_hesitations(cycles(*many))
     assert len(found.at) == 16
     assert len(found.kept) == 16
     assert OFTEN < 2
@@ -93,16 +93,16 @@ def test_reversals_that_come_with_the_falls_are_a_tenth_more_than_these(count, t
     falls = [5.0, 2.6, 5.0, 5.0, 2.6] * 4
     lesser = [[1.2] * (1 + (i < count - 20)) for i in range(20)]
     drops = [drop for fall, few in zip(falls, lesser, strict=True) for drop in (fall, *few)]
-    assert len(hesitations.take_out(cycles(*drops)).at) == taken
+    assert len(hesitations.remove_hesitations(cycles(*drops)).at) == taken
 
 
 def test_half_the_swing_divides_falls_that_differ():
     """If none lies between 40 and 60 %, their number is that of falls of half the swing."""
     drops = [5.0, 1.7, 5.0, 4.0, 1.5, 5.0, 3.1, 5.0, 3.2, 5.0]
-    found = hesitations.take_out(cycles(*drops))
+    found = hesitations.remove_hesitations(cycles(*drops))
     assert (len(found.at), len(found.kept)) == (2, 16)
     drops[1] = 2.3
-    assert len(hesitations.take_out(cycles(*drops)).at) == 0
+    assert len(hesitations.remove_hesitations(cycles(*drops)).at) == 0
 
 
 def test_falls_of_one_size():
@@ -118,14 +118,14 @@ def test_falls_of_one_size():
 def test_too_few_points_hold_no_hesitation():
     for n in range(5):
         values = np.array([0.0, 5.0, 4.9, 9.0, 1.0][:n] or [0.0])
-        assert len(hesitations.take_out(values).at) == 0
+        assert len(hesitations.remove_hesitations(values).at) == 0
 
 
 @pytest.mark.parametrize("way", [1, -1])
 def test_what_the_record_cuts_of_a_hesitation_is_left_out(way):
     """Small legs before the first large one, and after the last."""
     values = np.array([5.0, 5.2, 5.1, 10.0, *[5.0, 10.0] * 7, 4.0])[::way]
-    found = hesitations.take_out(values)
+    found = hesitations.remove_hesitations(values)
     inside = values[found.kept]
     assert set(inside.tolist()) == {5.0, 10.0}
     assert len(inside) == 15
@@ -135,7 +135,7 @@ def test_what_the_record_cuts_of_a_hesitation_is_left_out(way):
 def test_what_the_record_cuts_of_a_hesitation_is_left_out_even_if_its_first_leg_is_less(way):
     """It may be larger than the piece before it, of which the beginning is not known."""
     values = np.array([5.15, 5.2, 5.1, 10.0, *[5.0, 10.0] * 7, 4.0])[::way]
-    assert set(values[hesitations.take_out(values).kept].tolist()) == {5.0, 5.1, 10.0}
+    assert set(values[hesitations.remove_hesitations(values).kept].tolist()) == {5.0, 5.1, 10.0}
     # unless a leg before is more than a tenth of the swing, of the largest falls the same
     values = np.array([10.0, 10.05, 9.95, 10.5, 4.5, *[9.5, 4.5] * 7, 8.0])[::way]
     assert 10.05 in values[hesitations._below(values, LEAST).kept]
@@ -150,7 +150,7 @@ def test_a_slow_motion_takes_no_cycles_out(steep):
     values[-1] += values[-2]
     peaks, troughs = hesitations.level(values, time)[1:-1].reshape(-1, 2).T
     assert (np.ptp(peaks), np.ptp(troughs)) == pytest.approx((0.0, 0.0), abs=1e-12)
-    assert len(hesitations.take_out(hesitations.level(values, time)).at) == 0
+    assert len(hesitations.remove_hesitations(hesitations.level(values, time)).at) == 0
 
 
 def test_cycles_beside_no_slow_motion_stay_as_they_are():

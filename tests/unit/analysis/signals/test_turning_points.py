@@ -45,7 +45,7 @@ def by_one(values, below=np.inf):
 @pytest.mark.parametrize("below", [np.inf, 30, 60])
 def test_reversals(walk, below):
     assert reversals.extrema(walk).tolist() == turns_of(walk)
-    points, heights = reversals.taken_out(walk, below)
+    points, heights = reversals.remove_reversals(walk, below)
     wanted_points, wanted = by_one(walk, below)
     assert sorted(heights.tolist()) == wanted
     assert walk[points].tolist() == walk[wanted_points].tolist()

@@ -102,7 +102,7 @@ def _building(size: Floats) -> int:
 
 
 def _below(size: Floats) -> int:
-    """Return how many swings at the beginning are small beside the others, if they are many."""
+    """Return the number of small swings at the beginning; 0 if they are few."""
     if not len(size):
         return 0
     count = int(np.argmax(size >= BELOW * median(size)))

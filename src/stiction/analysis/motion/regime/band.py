@@ -11,8 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.signals.even_grid import even_grid
-from stiction.analysis.signals.hum import spectrum
 from stiction.analysis.signals.robust import uniform_mean
+from stiction.analysis.signals.spectrum import spectrum
 from stiction.arrays import TINY, Floats
 
 PERIODS = 16  # of the vibration that a record has at least
