@@ -37,6 +37,26 @@ class Section(NamedTuple):
         return "\n".join([*lines, *(table_lines(self.table) if self.table else ())])
 
 
+class SectionReport:
+    """A report of one section, which text and notebooks show."""
+
+    @property
+    def section(self) -> Section:
+        """The report in words and as a table."""
+        raise NotImplementedError
+
+    def tables(self) -> list[Section]:
+        """Return the report as sections of sentences and tables."""
+        return [self.section]
+
+    def __str__(self) -> str:
+        """Return the section as text."""
+        return str(self.section)
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+
 def table_lines(table: Table) -> list[str]:
     """Return a table as lines of text with aligned columns."""
     rows = [table.headings, *table.rows]

@@ -23,7 +23,7 @@ from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.lists import in_list, number_text, say_left_out
-from stiction.text.sections import Section, Table
+from stiction.text.sections import Section, SectionReport, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
@@ -31,7 +31,7 @@ SURE = 2.0  # standard errors: a slope that is less is none
 
 
 @dataclass(frozen=True)
-class Healing:
+class Healing(SectionReport):
     """Peaks of friction after holds, and a straight line through them.
 
     Attributes
@@ -111,10 +111,6 @@ class Healing:
         known = f", ± {error:.1g}" if error > 0.0 else ""
         heals = f"Friction heals by {self.per_decade:.3g} per decade of hold time{known}."
         return [heals, *said]
-
-    def __str__(self) -> str:
-        """Return the section as text."""
-        return str(self.section)
 
 
 def healing(source: Trajectory | Record, program: DriveProgram | None = None) -> Healing:

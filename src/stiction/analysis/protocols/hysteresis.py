@@ -10,13 +10,13 @@ import numpy as np
 
 from stiction.analysis.protocols.friction_test import FrictionTest, friction_test, without_harmonics
 from stiction.analysis.record import Record
-from stiction.analysis.signals.reversals import taken_out
+from stiction.analysis.signals.reversals import remove_reversals
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion
 from stiction.text.lists import in_list, number_text
-from stiction.text.sections import Section, Table
+from stiction.text.sections import Section, SectionReport, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
@@ -57,7 +57,7 @@ class Loop:
 
 
 @dataclass(frozen=True)
-class Hysteresis:
+class Hysteresis(SectionReport):
     """The loops of a reversal test.
 
     Attributes
@@ -96,10 +96,6 @@ class Hysteresis:
                 "Such an area is the work on all of the way."
             )
         return Section("Hysteresis", sentences, Table(headings, rows))
-
-    def __str__(self) -> str:
-        """Return the section as text."""
-        return str(self.section)
 
 
 def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None) -> Hysteresis:
@@ -199,7 +195,7 @@ def _turns(way: _Way) -> list[_Turn]:
     if not len(time):
         return []
     least = max(way.stirs, way.noise, NO_WAY * float(np.ptp(X)))
-    points, _ = taken_out(X, least)
+    points, _ = remove_reversals(X, least)
     ways = np.flatnonzero(np.abs(np.diff(X[points])) > least)
     if not len(ways):
         return []
@@ -256,7 +252,7 @@ def _loop(test: FrictionTest, way: _Way, first: _Turn, middle: _Turn, second: _T
         _crossing(travel[part], sign * (force[part] - level))
         for part, sign in ((~turned, ahead), (turned, -ahead))
     ]
-    area = abs(float(np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(travel))))
+    area = abs(float(np.trapezoid(force, travel)))
     mean = float(load.mean())
     width, height = abs(sides[1] - sides[0]), float(np.ptp(force))
     if closed and not isnan(width):

@@ -22,13 +22,13 @@ from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
 from stiction.errors import ResultError
 from stiction.text.lists import say_left_out
-from stiction.text.sections import Section, Table
+from stiction.text.sections import Section, SectionReport, Table
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 
 @dataclass(frozen=True)
-class LoadDependence:
+class LoadDependence(SectionReport):
     """Friction at each level of the normal load, and the line through it.
 
     Attributes
@@ -67,10 +67,6 @@ class LoadDependence:
         return Section(
             "Load dependence", [said, *self.left_out], Table(("load", "friction", "ratio"), rows)
         )
-
-    def __str__(self) -> str:
-        """Return the section as text."""
-        return str(self.section)
 
 
 def load_dependence(

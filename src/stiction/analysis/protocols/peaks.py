@@ -121,7 +121,7 @@ def _highest(
     looked: Sequence[Floats],
     slides: Sequence[ConstantStretch],
 ) -> list[tuple[int, float]]:
-    """Return which of the times in each slide has the highest friction, and that."""
+    """Return the index of the highest friction in each slide, and that friction."""
     times = np.unique(np.concatenate(looked))
     force = friction(times)
     found = []

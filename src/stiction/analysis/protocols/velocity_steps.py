@@ -25,7 +25,7 @@ from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.lists import in_list, number_text, say_left_out
-from stiction.text.sections import Section, Table
+from stiction.text.sections import Section, SectionReport, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
@@ -100,7 +100,7 @@ class VelocityStep:
 
 
 @dataclass(frozen=True)
-class VelocitySteps:
+class VelocitySteps(SectionReport):
     """The jumps of a velocity-step test.
 
     Attributes
@@ -170,10 +170,6 @@ class VelocitySteps:
         way = "rises" if self.trend > 0.0 else "falls"
         by = f"{1e-3 * abs(self.trend):.2g} per mm of travel, ± {1e-3 * self.trend_error:.1g}"
         return [f"Friction {way} by {by}: the steps are freed of this trend."]
-
-    def __str__(self) -> str:
-        """Return the section as text."""
-        return str(self.section)
 
 
 HEADINGS = ("from", "to", "a - b", "±", "law", "a", "±", "b", "±", "D_c", "±")

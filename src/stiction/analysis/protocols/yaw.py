@@ -13,11 +13,11 @@ from stiction.errors import ResultError
 from stiction.linear_stability import steady_sliding
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
-from stiction.text.sections import Section, Table
+from stiction.text.sections import Section, SectionReport, Table
 
 
 @dataclass(frozen=True)
-class ApparentFriction:
+class ApparentFriction(SectionReport):
     """Forces of a yaw sweep over the normal load.
 
     Attributes
@@ -62,10 +62,6 @@ class ApparentFriction:
         ]
         headings = ("phi", "mean", "peak", "amplitude", "steady sliding")
         return Section("Apparent friction over the yaw angle", [said], Table(headings, rows))
-
-    def __str__(self) -> str:
-        """Return the section as text."""
-        return str(self.section)
 
 
 def _degrees(phi: float) -> str:
