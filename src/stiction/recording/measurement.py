@@ -75,7 +75,7 @@ class MeasuredChannel(NamedTuple):
 
 
 def read_measurements(
-    path: Path, given: Mapping[str, Any], sidecar: Path | None = None
+    path: Path, given: Mapping[str, Any], sidecar: Path | None
 ) -> list[Measurement]:
     """Return a measurement for each block of a file, or the one that is asked for.
 
@@ -85,7 +85,7 @@ def read_measurements(
         A file of any known format.
     given : mapping
         What the user says, by the names of `ReadingOptions` and of the apparatus.
-    sidecar : Path, optional
+    sidecar : Path or None
         In place of the TOML file beside the file.
 
     Raises

@@ -148,7 +148,7 @@ class Request(NamedTuple):
     beside: Path | None = None
 
 
-def request(path: Path, given: Mapping[str, Any], sidecar: Path | None = None) -> Request:
+def request(path: Path, given: Mapping[str, Any], sidecar: Path | None) -> Request:
     """Return what arguments say about a file, and a TOML file beside it where they do not.
 
     ``data.toml`` belongs to ``data.csv``, unless it describes a rig, with a table [slider].

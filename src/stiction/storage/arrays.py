@@ -11,9 +11,10 @@ from stiction.errors import ResultError
 from stiction.storage.files import prepare_folder, whole
 
 
-def write_arrays(path: Path, **arrays: np.ndarray) -> None:
+def write_arrays(path: Path | None, **arrays: np.ndarray) -> None:
     """Write arrays, whole or not at all; the folder is made where there is none.
 
+    Without a path they are not stored, as `read_arrays` returns none.
     In the user's cache, which nobody named, only if possible: what is not there is computed again.
 
     Raises
@@ -21,6 +22,8 @@ def write_arrays(path: Path, **arrays: np.ndarray) -> None:
     ResultError
         If they cannot be written to another folder.
     """
+    if path is None:
+        return
     try:
         prepare_folder(path.parent)
         with whole(path) as part, part.open("wb") as opened:

@@ -304,7 +304,7 @@ def _peak_excess(values: Floats, step: int) -> float:
     return float(max(meet))
 
 
-def _over(forces: Floats, reduced: Floats, load: float, rounding: float = 0.0) -> Measured:
+def _over(forces: Floats, reduced: Floats, load: float, rounding: float) -> Measured:
     """Return the friction of forces, and of those as they were under one load.
 
     Rounding (N) may be the same for all of them: no mean is better than that.

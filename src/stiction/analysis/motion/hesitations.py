@@ -195,7 +195,7 @@ def _below(values: Floats, share: float, most: float = np.inf) -> Hesitations:
     )
 
 
-def _is_divided(values: Floats, most: float = np.inf) -> bool:
+def _is_divided(values: Floats, most: float) -> bool:
     """Return whether falls and reversals lie on either side of half the swing, none about it."""
     few, many = (len(_below(values, share, most).kept) for share in ABOUT_HALF)
     return few == many > 2 * FEW_FALLS
@@ -240,7 +240,7 @@ def _weighted_median(rows: Floats) -> Floats:
     return np.asarray(ordered[np.arange(len(rows)), middle])
 
 
-def _whole(values: Floats, points: Indices, share: float, most: float = np.inf) -> Indices:
+def _whole(values: Floats, points: Indices, share: float, most: float) -> Indices:
     """Leave out the ends and cut hesitations: small legs before a large one."""
     inner = points[1:-1]
     for _ in range(2):

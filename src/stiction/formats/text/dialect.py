@@ -95,7 +95,7 @@ class Dialect(NamedTuple):
             or DATE.fullmatch(cell) is not None
         )
 
-    def has_samples(self, line: str, labels: bool = False) -> bool:
+    def has_samples(self, line: str, labels: bool) -> bool:
         """Return whether all cells of a line are values, words beside them allowed if `labels`."""
         cells = self.cells(line)
         if not any(self.is_number(cell) or CLOCK.fullmatch(cell) for cell in cells):

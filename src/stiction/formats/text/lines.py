@@ -6,7 +6,6 @@ import codecs
 import gzip
 import re
 import zlib
-from math import inf
 from pathlib import Path
 
 from stiction.errors import ResultError
@@ -27,7 +26,7 @@ MARKS = {  # byte-order marks, the longer first
 }
 
 
-def lines_of(path: Path, largest: float = inf) -> list[str]:
+def lines_of(path: Path, largest: float) -> list[str]:
     """Return the lines of a file of text of `largest` bytes at most, perhaps packed by gzip.
 
     Raises

@@ -102,8 +102,7 @@ def learn_or_read(
             expectation = Expectation.of(summary.scores, truth, summary.middle)
             progress(0.9)
             stored = ranks(summary, truth), Typicality.of(expectation)
-        if beside is not None:
-            write_arrays(beside, ranks=stored[0], **stored[1].arrays())
+        write_arrays(beside, ranks=stored[0], **stored[1].arrays())
     return Learned(summary, truth, *stored)
 
 
@@ -117,17 +116,16 @@ def read(path: Path | None, summary: FeatureSummary) -> tuple[Floats, Typicality
 
 
 def learn_or_read_summary(
-    features: Floats, truth: Floats, path: Path | None, progress: Progress = silent
+    features: Floats, truth: Floats, path: Path | None, progress: Progress
 ) -> FeatureSummary:
     """Learn what features say, or read it from a file."""
     stored = read_summary(path, features)
     if stored is not None:
         return stored
     found = learn(features, truth, progress)
-    if path is not None:
-        write_arrays(
-            path, **as_arrays(standard=found.standard, middle=found.middle, spread=found.spread)
-        )
+    write_arrays(
+        path, **as_arrays(standard=found.standard, middle=found.middle, spread=found.spread)
+    )
     return found
 
 

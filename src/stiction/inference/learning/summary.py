@@ -199,7 +199,7 @@ def regression(
 
 
 def adapt_metrics(
-    first: Regression, scores: Floats, targets: Floats, progress: Progress = silent
+    first: Regression, scores: Floats, targets: Floats, progress: Progress
 ) -> Regression:
     """Return a regression in which each target has a metric of its own, where that is better.
 

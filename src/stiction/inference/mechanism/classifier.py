@@ -211,12 +211,11 @@ def learn_or_read(
         for rows, report in zip(halve(len(scores)), reports, strict=True)
     )
     found = Classifier(standard, whole, halves)
-    if path is not None:
-        write(path, found)
+    write(path, found)
     return found
 
 
-def write(path: Path, found: Classifier) -> None:
+def write(path: Path | None, found: Classifier) -> None:
     """Write what was learned."""
     arrays = as_arrays(standard=found.standard)
     for name, each in zip(PARTS, (found.whole, *found.halves), strict=True):

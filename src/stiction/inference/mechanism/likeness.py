@@ -90,8 +90,7 @@ def learn_or_read(
         pairs = zip(members, simulated.parameters, strict=True)
         count = len(members)
         learned = [learn(*each, part(progress, done, count)) for done, each in enumerate(pairs)]
-        if path is not None:
-            write(path, learned)
+        write(path, learned)
     return tuple(Reference(its, bends[own]) for its, own in zip(learned, places, strict=True))
 
 
@@ -101,7 +100,7 @@ def learn(scores: Floats, parameters: Floats, progress: Progress = silent) -> Ty
     return Typicality.of(Expectation.of(scores, parameters, estimates))
 
 
-def write(path: Path, learned: Sequence[Typicality]) -> None:
+def write(path: Path | None, learned: Sequence[Typicality]) -> None:
     """Write what was learned of each mechanism."""
     arrays: dict[str, Floats] = {}
     for number, its in enumerate(learned):

@@ -217,8 +217,7 @@ def learn_or_read(
     found = read(path, [test.name for test in tests])
     if found is None:
         found = [*expectations(trial, tests, scores, features, progress)]
-        if path is not None:
-            write(path, found)
+        write(path, found)
     return found
 
 
@@ -227,7 +226,7 @@ def expectations(
     tests: Sequence[Further],
     scores: Floats,
     features: Floats,
-    progress: Progress = silent,
+    progress: Progress,
 ) -> Iterator[Expected]:
     """Yield what each test leaves open, the present one first.
 

@@ -143,7 +143,7 @@ def resample(sizes: Floats, drawn: Indices) -> Floats:
     return np.stack(columns, axis=1)
 
 
-def write(path: Path, found: Sequence[Expected]) -> None:
+def write(path: Path | None, found: Sequence[Expected]) -> None:
     """Write what tests leave open."""
     columns = {name: np.array([getattr(each, name) for each in found]) for name in Expected._fields}
     write_arrays(path, **columns)

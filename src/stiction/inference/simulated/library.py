@@ -55,7 +55,7 @@ def have_cycles(rows: Floats) -> NDArray[np.bool_]:
 
 
 def simulate_all(
-    plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = silent
+    plan: Plan, count: int, folder: Path | None, *, seed: int, progress: Progress = silent
 ) -> tuple[Floats, Floats]:
     """Return normal scores (n, p) and features (n, f) of `count` simulations.
 
