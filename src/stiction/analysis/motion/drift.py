@@ -60,9 +60,8 @@ def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
 
 def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
     """Return the slope of a line, and its standard error; neighbours may deviate alike."""
-    elapsed = at - at.mean()  # of times from 1970 rounding leaves no error
-    found = line(elapsed, middle)
-    return found.slope, found.correlated_error(elapsed, middle)
+    found = line(at, middle)
+    return found.slope, found.correlated_error(at, middle)
 
 
 def shown_drift(record: Record, kind: str, cycles: xr.Dataset) -> Drift | None:

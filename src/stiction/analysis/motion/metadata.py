@@ -133,9 +133,7 @@ def _loading_rates(
     if len(places) < 2:
         if steady_change(slopes) is None:
             return [whole]
-        begin = starts[0]  # times may count from 1970, whose squares leave no digits
-        change = line(starts - begin, slopes)  # from the first sample to the last
-        low, high = np.sort(change.offset + change.slope * (record.time[[0, -1]] - begin))
+        low, high = np.sort(line(starts, slopes).at(record.time[[0, -1]]))
         passes = SLOWER * stated < high and low < FASTER * stated
         return [whole._replace(stated=nan) if passes else whole]
     at = [-inf, *(float(starts[place.start]) for place in places[1:]), inf]
@@ -263,8 +261,7 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
     """Compare the slope of the drive's displacement with the stated velocity."""
     if record.drive_position is None or len(record) < FEWEST_PER_FALL:
         return None
-    elapsed = record.time - record.time[0]  # of times from 1970 rounding leaves no error
-    way = line(elapsed, record.drive_position)
+    way = line(record.time, record.drive_position)
     found, stated = abs(way.slope), record.drive_velocity or nan
     how = "slope of the drive's displacement"
     speeds, net, reach = _speeds_of_parts(record.time, record.drive_position)
@@ -272,8 +269,8 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
         found, how = float(np.median(speeds)), "median speed of its displacement, to and fro"
         error = float(speeds.std()) / len(speeds) ** 0.5
     else:
-        left = way.deviations(elapsed, record.drive_position)
-        error = standard_error(left) / float(elapsed.std())
+        left = way.deviations(record.time, record.drive_position)
+        error = standard_error(left) / float(record.time.std())
     return StatedQuantity("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
 
 
@@ -287,11 +284,10 @@ def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float, flo
     times, positions = (np.array_split(each, parts) for each in (time, position))
     slopes, middles, left = [], [], []
     for t, x in zip(times, positions, strict=True):
-        from_middle = t - t.mean()
-        way = line(from_middle, x)
+        way = line(t, x)
         slopes.append(way.slope)
-        middles.append(float(x.mean()))
-        left.append(way.deviations(from_middle, x))
+        middles.append(way.level)
+        left.append(way.deviations(t, x))
     rest = np.concatenate(left)
     noise = float(rest.std()) * (correlation_time(rest) * parts / len(rest)) ** 0.5
     reach = float(np.ptp(middles)) - NOISE * noise

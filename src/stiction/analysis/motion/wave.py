@@ -65,8 +65,7 @@ def _strongest_frequency(at: Floats, values: Floats) -> float | None:
 
 def _without_line(at: Floats, values: Floats) -> Floats:
     """Return values less the straight line through them."""
-    elapsed = at - at[0]
-    return line(elapsed, values).deviations(elapsed, values)
+    return line(at, values).deviations(at, values)
 
 
 def _fit_sine(turned: Complex, values: Floats) -> tuple[complex, float]:

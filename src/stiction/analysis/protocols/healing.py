@@ -191,7 +191,7 @@ def _line(holds: Floats, gains: Floats, errors: Floats) -> StraightLine:
     """Return the line through resolved peaks over the decadic logarithm of the hold."""
     known = np.isfinite(errors)
     if not known.any():
-        return StraightLine(nan, nan)
+        return StraightLine(nan, nan, nan)
     return line_of_few(np.log10(holds[known]), gains[known], errors[known])
 
 

@@ -120,9 +120,9 @@ def _part(time: Floats, position: Floats, start: float, end: float, least: float
     inside = slice(*np.searchsorted(time, [start, end]))
     cut = (inside.stop - inside.start) // 10
     inside = slice(inside.start + cut, max(inside.stop - cut, inside.start + 2))
-    since, place = time[inside] - start, position[inside]
-    found = line(since, place)
-    off = part_means(found.deviations(since, place), SAGS) if len(since) else since
+    when, place = time[inside], position[inside]
+    found = line(when, place)
+    off = part_means(found.deviations(when, place), SAGS) if len(when) else when
     error = white_noise(place) * (SAGS / max(len(place), 1)) ** 0.5
     bent = len(off) == SAGS and float(np.ptp(off)) > max(least, CERTAIN * error)
     return _Part(start, end, found, bent)
@@ -175,7 +175,6 @@ def _crossing(one: _Part, two: _Part) -> float:
     by = one.line.slope - two.line.slope
     if not by:
         return 0.5 * (one.end + two.start)
-    shift = two.start - one.start
-    at = one.start + (two.line.offset - two.line.slope * shift - one.line.offset) / by
+    at = one.start + (two.line.at(one.start) - one.line.at(one.start)) / by
     low, high = one.start + 0.5 * one.duration, two.start + 0.5 * two.duration
     return min(max(float(at), low), high)

@@ -103,11 +103,9 @@ def settled_part(
             EVOLVED * float(off.max()) * left / -expm1(-TAIL * max(1.0 / gone - 1.0, 1.0 / PARTS))
         )
     x, y = travel[first:], mu[first:]
-    found = line(x, y).slope
-    off = y - y.mean() - found * (x - x.mean())
-    return SettledPart(
-        float(x.mean()), float(x[-1] - x[0]), float(y.mean()), float(found), off, tail
-    )
+    found = line(x, y)
+    off = found.deviations(x, y)
+    return SettledPart(found.centre, float(x[-1] - x[0]), found.level, found.slope, off, tail)
 
 
 def _is_bent(mu: Floats) -> bool:

@@ -130,8 +130,8 @@ def even_grid(time: Floats) -> EvenGrid | None:
     if plain.exact:
         return plain
     number = np.arange(n, dtype=np.float64)
-    step, start = line(number, time)[:2]
-    each = EvenGrid(time, start, step, n)
+    fitted = line(number, time)
+    each = EvenGrid(time, fitted.offset, fitted.slope, n)
     if np.abs(each.places - number).max() < OWN:  # a clock that jitters, or times that are rounded
         return each
     start, step = _fit_grid(time)
@@ -162,7 +162,8 @@ def _fit_grid(time: Floats) -> tuple[float, float]:
             number = np.rint(place[near])
             if number[0] == number[-1]:
                 return start, step
-            step, start = line(number, part[near])[:2]
+            fitted = line(number, part[near])
+            start, step = fitted.offset, fitted.slope
         if around >= len(time):
             return start, step
         around *= 2

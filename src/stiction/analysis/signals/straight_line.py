@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import hypot, isnan, nan, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -12,16 +12,29 @@ from stiction.arrays import Floats
 
 
 class StraightLine(NamedTuple):
-    """A straight line through points, and the standard errors of its two numbers."""
+    """A straight line through points, by its level at their centre, and standard errors.
+
+    So rounding leaves no error where points are far from 0, as times since 1970 are.
+    """
 
     slope: float
-    offset: float
+    level: float
+    centre: float
     slope_error: float = nan
     offset_error: float = nan
 
+    @property
+    def offset(self) -> float:
+        """Height at 0."""
+        return self.level - self.slope * self.centre
+
+    def at(self, x: Any) -> Any:
+        """Return the height at some places."""
+        return self.level + self.slope * (x - self.centre)
+
     def deviations(self, x: Floats, y: Floats) -> Floats:
         """Return what points deviate by from the line."""
-        return y - self.offset - self.slope * x
+        return np.asarray(y - self.at(x))
 
     def correlated_error(self, x: Floats, y: Floats) -> float:
         """Return the standard error of the slope where neighbours deviate alike.
@@ -36,13 +49,12 @@ def line(x: Floats, y: Floats) -> StraightLine:
     """Return the least-squares line; NaN where a number is unknown."""
     away = x - x.mean()
     spread = float((away**2).sum())
+    found = StraightLine(nan, float(y.mean()), float(x.mean()))
     if len(x) < 2 or spread == 0.0:
-        return StraightLine(nan, nan)
-    slope = float((away * (y - y.mean())).sum()) / spread
-    offset = float(y.mean() - slope * x.mean())
+        return found
+    found = found._replace(slope=float((away * (y - y.mean())).sum()) / spread)
     if len(x) < 3:
-        return StraightLine(slope, offset)
-    found = StraightLine(slope, offset)
+        return found
     variance = float((found.deviations(x, y) ** 2).sum()) / (len(x) - 2)
     of_offset = variance * (1.0 / len(x) + x.mean() ** 2 / spread)
     return found._replace(slope_error=sqrt(variance / spread), offset_error=sqrt(of_offset))
@@ -60,6 +72,6 @@ def line_of_few(x: Floats, y: Floats, errors: Floats) -> StraightLine:
     away = x - x.mean()
     share = away / (away @ away)
     weights = share, 1.0 / len(x) - x.mean() * share
-    by_scatter = (error_of_few(each, len(x) - 2.0) for each in found[2:])
+    by_scatter = (error_of_few(each, len(x) - 2.0) for each in found[3:])
     by_points = (float(np.linalg.norm(each * errors)) for each in weights)
-    return StraightLine(*found[:2], *map(hypot, by_scatter, by_points))
+    return StraightLine(*found[:3], *map(hypot, by_scatter, by_points))

@@ -13,7 +13,7 @@ def test_numbers_and_errors_are_those_of_the_normal_equations():
     found = line(x, y)
     (slope, offset), covariance = np.polyfit(x, y, 1, cov=True)
     assert (found.slope, found.offset) == pytest.approx((slope, offset), rel=1e-12)
-    assert found[2:] == pytest.approx(np.sqrt(np.diag(covariance)), rel=1e-10)
+    assert found[3:] == pytest.approx(np.sqrt(np.diag(covariance)), rel=1e-10)
 
 
 def test_alike_neighbours_make_the_error_larger():
