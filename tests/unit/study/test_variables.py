@@ -177,7 +177,7 @@ def test_turning_points_of_a_known_signal():
     """A sine's extrema are found to within the error of a parabola, (omega dt)^4/..., 1e-5."""
     t = np.arange(0.0, 1.0, 1.0 / 320.0)
     signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
-    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0, len(t))
+    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0, len(t), 32)
     exact = (np.pi / 2 - 0.3 + np.pi * np.arange(20)) / (2.0 * np.pi * 10.0)
     np.testing.assert_allclose(found.turn_time, exact, atol=1e-4)
     np.testing.assert_allclose(np.abs(found.turn_value), 1.0, atol=3e-4)

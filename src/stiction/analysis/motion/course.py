@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import median, part_means, part_starts
+from stiction.analysis.signals.robust import MEANS_OF_RECORD, median, part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import NORMAL_MEDIAN, Floats
 from stiction.recording.noise import white_noise
@@ -31,9 +31,9 @@ COURSE_PARTS = 4 * PER_QUARTER
 # A lone fall: its share of the record's time at most, and its height in standard deviations of the
 # noise, whose range over a million samples is 10
 BRIEF, STANDS_OUT = 1 / 16, 15.0
-# Means in which a final fall is sought, and standard deviations of one by which it stands out: the
-# largest of many exceeds the last by so much once in a thousand records, were there no loading
-FINE, SURE = 400, 6.0
+# Standard deviations of a mean by which a final fall stands out: the largest of `MEANS_OF_RECORD`
+# exceeds the last by so much once in a thousand records, were there no loading
+SURE = 6.0
 
 
 def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
@@ -114,14 +114,14 @@ def final_fall(time: Floats, force: Floats) -> tuple[float, float] | None:
 
     None if it does not stand out of the noise, or if the force has fallen as far before.
     """
-    means = part_means(without_spikes(force), FINE)
+    means = part_means(without_spikes(force), MEANS_OF_RECORD)
     size = len(force) / len(means)
     noise = max(white_noise(force, order=2) / size**0.5, resolution(force))
     below, top = np.maximum.accumulate(means) - means, int(np.argmax(means))
     height = float(below[-1])
     if height <= max(SURE * noise, float(below[: top + 1].max())):
         return None
-    return float(time[part_starts(len(force), FINE)[top]]), height
+    return float(time[part_starts(len(force), MEANS_OF_RECORD)[top]]), height
 
 
 def _largest_fall(force: Floats) -> tuple[int, int, float]:
@@ -135,7 +135,7 @@ def _largest_fall(force: Floats) -> tuple[int, int, float]:
 
 
 class Course(NamedTuple):
-    """The course of a record's force, from its medians over 32 equal parts.
+    """The course of a force, from its medians, or means, over 32 equal parts.
 
     Parameters
     ----------
@@ -150,7 +150,7 @@ class Course(NamedTuple):
     early_rate, late_rate : float
         Mean rates over the first and the last quarter, N/s.
     scatter : float
-        Standard deviation of the samples about the medians, N.
+        Standard deviation of the samples about the medians, N; NaN where the samples are not known.
     """
 
     change: float
@@ -159,7 +159,7 @@ class Course(NamedTuple):
     one_way: float
     early_rate: float
     late_rate: float
-    scatter: float
+    scatter: float = nan
 
 
 def course(time: Floats, force: Floats) -> Course:
@@ -169,6 +169,11 @@ def course(time: Floats, force: Floats) -> Course:
     f = np.array([median(part) for part in parts])
     t = np.array([part.mean() for part in np.split(time, edges)])
     scatter = np.sqrt(np.mean(np.concatenate([p - m for p, m in zip(parts, f, strict=True)]) ** 2))
+    return course_of_parts(t, f)._replace(scatter=float(scatter))
+
+
+def course_of_parts(t: Floats, f: Floats) -> Course:
+    """Return the course of a force from its values in the `COURSE_PARTS` parts, at some times."""
     ups_and_downs = float(np.abs(np.diff(f)).sum())
     return Course(
         change=float(f[-1] - f[0]),
@@ -177,5 +182,4 @@ def course(time: Floats, force: Floats) -> Course:
         one_way=abs(float(f[-1] - f[0])) / ups_and_downs if ups_and_downs else 0.0,
         early_rate=float((f[PER_QUARTER] - f[0]) / (t[PER_QUARTER] - t[0])),
         late_rate=float((f[-1] - f[-1 - PER_QUARTER]) / (t[-1] - t[-1 - PER_QUARTER])),
-        scatter=float(scatter),
     )

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.sliding import Sliding, sliding
-from stiction.analysis.motion.course import BEGINS_UNLOADED
+from stiction.analysis.motion.course import BEGINS_UNLOADED, COURSE_PARTS
 from stiction.analysis.motion.cycle_columns import CycleTable, table_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
@@ -33,7 +33,7 @@ from stiction.recording.noise import rounding_error, white_noise
 from stiction.text.quantity_text import percent
 
 LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading is not resolved
-FEWEST_SAMPLES = 32  # with fewer the kind of motion is not known, either: see `COURSE_PARTS`
+FEWEST_SAMPLES = COURSE_PARTS  # with fewer the kind of motion is not known, either
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
 # A level before the peak: its least share of the rise, how far the force goes above it, and means

@@ -8,18 +8,17 @@ one more rule holds: a motion is over, even after only two swings, if no other f
 from __future__ import annotations
 
 from collections.abc import Callable
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import built_up
-from stiction.analysis.motion.course import PER_QUARTER, dies_out, is_over
+from stiction.analysis.motion.course import course_of_parts, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.vibration import FastOscillation, is_irregular
 from stiction.arrays import Floats
-from stiction.study.variables.features import PARTS, Features
+from stiction.study.variables.features import Features
 
 KINDS = (
     kinds.UNDETERMINED,
@@ -71,7 +70,30 @@ class SwingShapes(NamedTuple):
         return SwingShapes(self.drop[which], self.period[which], self.rise_share[which], end)
 
 
-Shares = Callable[[SwingShapes], Floats]
+class Circumstances(NamedTuple):
+    """What else the kind of a run's motion depends on.
+
+    Parameters
+    ----------
+    duration, until : float
+        Of the run, s; and when drive or load change after the last swing, or else the end.
+    drive : float
+        Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
+    own : float
+        Period of the mass on the spring along x alone, s.
+    stops : bool
+        Whether drive and mass rest at the end.
+    """
+
+    duration: float
+    until: float
+    drive: float
+    own: float
+    stops: bool
+
+
+# For which share of each of some swings the mass rests or creeps, and sticks
+Shares = tuple[Callable[[SwingShapes], Floats], Callable[[SwingShapes], Floats]]
 
 
 def swings(found: Features) -> SwingShapes:
@@ -87,43 +109,18 @@ def swings(found: Features) -> SwingShapes:
 def kind_of(
     found: Features,
     cycles: SwingShapes,
-    duration: float,
-    until: float,
-    drive: float,
+    given: Circumstances,
     fast: FastOscillation,
-    own: float,
-    still: Shares,
-    sticks: Shares,
-    stops: bool,
+    shares: Shares,
 ) -> str:
-    """Return the kind of motion.
-
-    Parameters
-    ----------
-    found : Features
-        Features of the samples.
-    cycles : SwingShapes
-        The complete swings that are cycles.
-    duration, until : float
-        Of the run, s; and when drive or load change after the last swing, or else the end.
-    drive : float
-        Rate of the force while the mass sticks: stiffness times drive velocity, N/s.
-    fast : FastOscillation
-        At the end.
-    own : float
-        Period of the mass on the spring along x alone, s.
-    still, sticks : callable
-        Return for which share of each of some swings the mass rests or creeps, and sticks.
-    stops : bool
-        Whether drive and mass rest at the end.
-    """
-    lasting = cycles_among(cycles, until)
+    """Return the kind of motion from features, complete swings, and the final fast oscillation."""
+    lasting = cycles_among(cycles, given.until)
     if len(lasting.drop) >= FEWEST_CYCLES:
-        return by_shape(lasting, own, still, sticks)
-    dying = die_out(cycles, until)
-    kind = kinds.SETTLING if dying else by_course(found, duration, drive, stops)
+        return by_shape(lasting, given.own, shares)
+    dying = die_out(cycles, given.until)
+    kind = kinds.SETTLING if dying else by_course(found, given)
     last = (float(cycles.drop[-1]), float(cycles.period[-1])) if dying else ()
-    slides = kind in (kinds.SETTLING, kinds.STEADY) and not stops
+    slides = kind in (kinds.SETTLING, kinds.STEADY) and not given.stops
     return kinds.TRANSVERSE if slides and fast.goes_on(*last) else kind
 
 
@@ -141,7 +138,7 @@ def die_out(cycles: SwingShapes, until: float) -> bool:
     return dying and dies_out(drop, cycles.period, until - cycles.end)
 
 
-def by_shape(cycles: SwingShapes, own: float, still: Shares, sticks: Shares) -> str:
+def by_shape(cycles: SwingShapes, own: float, shares: Shares) -> str:
     """Return the kind of cycles from their shape, size and period, and the rest in them."""
     count = len(cycles.drop)
     rise = float(np.sort(cycles.rise_share)[count // 2])
@@ -149,28 +146,25 @@ def by_shape(cycles: SwingShapes, own: float, still: Shares, sticks: Shares) -> 
     if kinds.couples(kind, float(cycles.period.mean()), own):
         return kinds.TRANSVERSE
     if kind in (kinds.TRANSITIONAL, kinds.HARMONIC):
-        known = (float(np.median(share(cycles))) for share in (still, sticks))
+        known = (float(np.median(share(cycles))) for share in shares)
         kind = kinds.shape(rise, *known)
     irregular = kind == kinds.HARMONIC and is_irregular(cycles.period, cycles.drop)
     return kinds.IRREGULAR if irregular else kind
 
 
-def by_course(found: Features, duration: float, drive: float, stops: bool) -> str:
+def by_course(found: Features, given: Circumstances) -> str:
     """Return the kind of a force without cycles, by the rules of `analysis.motion.regime`."""
-    f = found.means.tolist()
-    span, change = max(f) - min(f), f[-1] - f[0]
-    quarter = PER_QUARTER * duration / PARTS
-    early, late = (f[PER_QUARTER] - f[0]) / quarter, (f[-1] - f[-1 - PER_QUARTER]) / quarter
-    if span > 0.0 and max(f[-PER_QUARTER:]) - min(f[-PER_QUARTER:]) <= force_course.SETTLED * span:
+    places = np.linspace(0.0, given.duration, len(found.means), endpoint=False)
+    way, drive = course_of_parts(places, found.means), given.drive
+    settled = force_course.SETTLED * way.span
+    if given.stops or (way.span > 0.0 and way.late_span <= settled):
         return kinds.SETTLING
-    if stops:
-        return kinds.SETTLING
-    course = np.array([found.first, *found.turn_value, found.last])
-    fallen = np.maximum.accumulate(course) - course
-    if fallen.max() > force_course.SETTLED * span:
+    force = np.array([found.first, *found.turn_value, found.last])
+    fallen = np.maximum.accumulate(force) - force
+    if fallen.max() > settled:
         return kinds.UNDETERMINED
-    ups_and_downs = sum(abs(b - a) for a, b in pairwise(f))
-    rising = change > 0.0 and change >= force_course.ONE_WAY * ups_and_downs
+    early, late = way.early_rate, way.late_rate
+    rising = way.change > 0.0 and way.one_way >= force_course.ONE_WAY
     if not rising or 0.0 < max(abs(early), abs(late)) < force_course.SLOW * drive:
         return kinds.STEADY
     if fallen[-1] > fallen[:-1].max():  # a slip ends the run

@@ -12,8 +12,6 @@ import numpy as np
 from stiction.solver.compilation.jit import compiled
 from stiction.study.variables.zigzag import zigzag
 
-PARTS = 32  # equal parts of the time, over which the force is averaged
-
 
 class Features(NamedTuple):
     """Features of a run's samples.
@@ -27,7 +25,7 @@ class Features(NamedTuple):
     peak_velocity : float
         Largest velocity of the mass along the drive, m/s.
     means : ndarray
-        (32,), force averaged over equal parts of the time, N.
+        (parts,), force averaged over equal parts of the time, N.
     turn_time, turn_value : ndarray
         (n,), turning points of the force (s, N), alternately peaks and troughs.
     trough : bool
@@ -86,6 +84,7 @@ def features(
     reversal: float,
     least: float,
     driven: int,
+    parts: int,
 ) -> Features:
     """Return the features of evenly spaced samples.
 
@@ -100,6 +99,8 @@ def features(
         The same as a share of the largest force: smaller ones are errors of the solver.
     driven : int
         Number of samples until the drive stops for good.
+    parts : int
+        Number of means.
     """
     n = len(time)
     low, high, fastest = force[0], force[0], velocity[0]
@@ -110,9 +111,9 @@ def features(
     for i in range(late, n):
         late_low, late_high = min(late_low, force[i]), max(late_high, force[i])
         total += force[i]
-    means = np.zeros(PARTS)
-    for part in range(PARTS):
-        begin, end = part * n // PARTS, max((part + 1) * n // PARTS, part * n // PARTS + 1)
+    means = np.zeros(parts)
+    for part in range(parts):
+        begin, end = part * n // parts, max((part + 1) * n // parts, part * n // parts + 1)
         for i in range(begin, end):
             means[part] += force[min(i, n - 1)] / (end - begin)
     end_low, end_high = force[driven - 1], force[driven - 1]

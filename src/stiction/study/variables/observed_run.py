@@ -10,6 +10,7 @@ from math import ceil, nan, pi, sqrt
 import numpy as np
 
 from stiction.analysis.creep.first_slip import first_loading
+from stiction.analysis.motion.course import COURSE_PARTS
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.motion.rest import (
     rests_throughout,
@@ -23,7 +24,13 @@ from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.simulation import sample_times, solve_coarsely
 from stiction.solver.integrate import Solution
-from stiction.study.variables.fast_regime import SwingShapes, cycles_among, kind_of, swings
+from stiction.study.variables.fast_regime import (
+    Circumstances,
+    SwingShapes,
+    cycles_among,
+    kind_of,
+    swings,
+)
 from stiction.study.variables.features import Features, even_columns, features
 from stiction.system.description import Description
 from stiction.system.slider import Slider
@@ -148,7 +155,14 @@ class ObservedRun:
         if len(self.drive) > 1 and self.drive.any():
             driven = int(np.flatnonzero(self.drive)[-1]) + 1
         found: Features = features(
-            self.time, self.force, self.rate, self.velocity, REVERSAL, least, driven
+            self.time,
+            self.force,
+            self.rate,
+            self.velocity,
+            REVERSAL,
+            least,
+            driven,
+            COURSE_PARTS,
         )
         return found
 
@@ -204,12 +218,10 @@ class ObservedRun:
         slider = self.description.slider
         drive = slider.k_x * abs(self.nominal * slider.direction[0])
         own = 1.0 / slider.natural_frequency_x
-        shares = self.rests, self.sticks
         stops = stops_with_drive(slider.motion, self.end, self.slip_speed)
-        return kind_of(
-            self.features, self.swings, self.end - self.start, self.until, drive,
-            self.fast_oscillation, own, *shares, stops,
-        )  # fmt: skip
+        given = Circumstances(self.end - self.start, self.until, drive, own, stops)
+        shares = self.rests, self.sticks
+        return kind_of(self.features, self.swings, given, self.fast_oscillation, shares)
 
     def rests(self, cycles: SwingShapes) -> Floats:
         """Return for which share of each cycle the mass rests or creeps, in one piece."""
