@@ -10,10 +10,10 @@ from benchmarks.cases.case import Case
 from stiction import theory
 from stiction.presets import Number, find
 from stiction.presets.samples import crest
-from stiction.solver.reference import twin
+from stiction.solver.reference import reference_run
 
 SAMPLE_RATE = 100e3  # so that extremes and their times are those of the solution
-TWIN = 18.5e-3  # s; eight sticks, which take the twin some seconds
+BEGINNING = 18.5e-3  # s; eight sticks, which take the reference some seconds
 
 
 def figure3(rtol: float) -> list[Number]:
@@ -42,26 +42,26 @@ def constant(rtol: float) -> list[Number]:
 
 
 @cache
-def by_twin() -> tuple[float, float, int]:
-    """Return both spring forces (N) at `TWIN` and the sticks until then, by the readable twin."""
+def by_reference() -> tuple[float, float, int]:
+    """Return both spring forces (N) at `BEGINNING` and the sticks until then, by the reference."""
     slider = st.presets.nakano_popov_2020()
-    found = twin(slider, TWIN, rtol=1e-11)
+    found = reference_run(slider, BEGINNING, rtol=1e-11)
     return slider.k_x * found.u_x[-1], slider.k_y * found.u_y[-1], len(found.sticks)
 
 
-def beside_twin(rtol: float) -> list[Number]:
+def beside_reference(rtol: float) -> list[Number]:
     """The first sticks and slips by plain Python, which shares no code with the solver."""
-    run = st.simulate(st.presets.nakano_popov_2020(), TWIN, sample_rate=0, rtol=rtol)
-    x, y, sticks = by_twin()
+    run = st.simulate(st.presets.nakano_popov_2020(), BEGINNING, sample_rate=0, rtol=rtol)
+    x, y, sticks = by_reference()
     return [
-        Number("twin", "k_x u_x(18.5 ms)", x, float(run.final["spring_x"]), 1e-8, "N"),
-        Number("twin", "k_y u_y(18.5 ms)", y, float(run.final["spring_y"]), 1e-8, "N"),
-        Number("twin", "sticks", sticks, len(run.stick_intervals), 0),
+        Number("reference", "k_x u_x(18.5 ms)", x, float(run.final["spring_x"]), 1e-8, "N"),
+        Number("reference", "k_y u_y(18.5 ms)", y, float(run.final["spring_y"]), 1e-8, "N"),
+        Number("reference", "sticks", sticks, len(run.stick_intervals), 0),
     ]
 
 
 CASES = (
     Case("Fig. 3", figure3),
-    Case("Fig. 3, beginning", beside_twin),
+    Case("Fig. 3, beginning", beside_reference),
     Case("Fig. 3, constant friction", constant),
 )

@@ -67,7 +67,7 @@ def reference() -> Reference:
 def against_twin(slider, run) -> Errors:
     """Return the largest errors of the twin over the windows."""
     import stiction as st
-    from stiction.solver.reference import twin
+    from stiction.solver.reference import reference_run
 
     worst = Errors(0.0, 0.0)
     for start in WINDOWS:
@@ -76,7 +76,7 @@ def against_twin(slider, run) -> Errors:
         names = ("u_x", "u_y", "v_x", "v_y", "time")
         initial = st.Initial(**{name: float(state[name]) for name in names})
         times = inside["time"].values
-        found = twin(slider, times[-1] - times[0], times, initial=initial, rtol=1e-11)
+        found = reference_run(slider, times[-1] - times[0], times, initial=initial, rtol=1e-11)
         theirs = spring_force(np.stack([found.u_x, found.u_y], axis=1))
         ours = spring_force(np.stack([inside["u_x"].values, inside["u_y"].values], axis=1))
         errors = largest(theirs, ours[: len(theirs)])

@@ -1,1 +1,1 @@
-"""Random planar rigs against the readable twin."""
+"""Random planar rigs against the readable reference."""

@@ -1,8 +1,8 @@
-"""``python -m benchmarks.explore.rigs``: random planar rigs against the readable twin.
+"""``python -m benchmarks.explore.rigs``: random planar rigs against the readable reference.
 
 Masses, dampers and springs in series with axes of their own, on isotropic surfaces and on a grain.
-The twin solves the equations as they are, in the axes x and y; the solver does in axes weighted by
-mass. What is held against the bound is the difference over the response, as in
+The reference solves the equations as they are, in the axes x and y; the solver does in axes
+weighted by mass. What is held against the bound is the difference over the response, as in
 `benchmarks.explore`. Deterministic in its seed; exit status 1 if a bound is broken.
 """
 
@@ -61,7 +61,7 @@ def section(seen: list[Seen]) -> tuple[Section, bool]:
     lines = [(str(a.number), a.off, a.law, a.rtol, a.response, str(a.sticks)) for a in worst]
     tables = [
         Table("Rigs", ("", "number"), count),
-        Table("Difference from the twin over response", ("share of rigs", "ratio"), rows),
+        Table("Difference from the reference over response", ("share of rigs", "ratio"), rows),
         Table("Worst rigs", headings, lines),
     ]
     note = "one rig again, with its description: --only NUMBER"

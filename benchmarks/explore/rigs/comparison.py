@@ -1,4 +1,4 @@
-"""One random rig by the solver and by the readable twin."""
+"""One random rig by the solver and by the readable reference."""
 
 from __future__ import annotations
 
@@ -11,16 +11,16 @@ import stiction as st
 from benchmarks.explore.deviation import FINER, FINEST, deviation, forces, response
 from benchmarks.explore.rigs.drawing import rig
 from stiction.solver.accuracy import tolerance
-from stiction.solver.reference import twin
+from stiction.solver.reference import reference_run
 from stiction.system.tensors import mass_tensor
 
-CLOSE = 1e-11  # local tolerance of the twin
-MOST = 1e5  # steps of the twin: it takes m/F for each metre per second of slip
+CLOSE = 1e-11  # local tolerance of the reference
+MOST = 1e5  # steps of the reference: it takes m/F for each metre per second of slip
 LEAST = 1e-10  # response that its global error could hide
 
 
 class Seen(NamedTuple):
-    """What was seen of one rig; `off` is the difference from the twin over the response.
+    """What was seen of one rig; `off` is the difference from the reference over the response.
 
     `left_out` is why it does not count, empty if it does.
     """
@@ -44,19 +44,21 @@ def look(seed: int, number: int) -> Seen:
     moved = max(response(drawn, tolerance(rtol), finer, sharp), LEAST)
     left_out, off = "" if run.status.ok else run.status.value, 0.0
     name, sticks = type(slider.law).__name__, len(run.stick_intervals)
-    if steps_of_twin(slider, duration) > MOST:
-        return Seen(number, name, rtol, moved, off, sticks, "the twin: creep takes too many steps")
+    if steps_of_reference(slider, duration) > MOST:
+        return Seen(
+            number, name, rtol, moved, off, sticks, "the reference: creep takes too many steps"
+        )
     try:
-        other = twin(slider, duration, run.data["time"].values, rtol=CLOSE)
+        other = reference_run(slider, duration, run.data["time"].values, rtol=CLOSE)
         theirs = np.stack([slider.k_x * other.u_x, slider.k_y * other.u_y])
         off = deviation(found, theirs[:, : found.shape[1]]) / moved
     except ArithmeticError as error:
-        left_out = f"the twin: {str(error).split(' at ')[0]}"
+        left_out = f"the reference: {str(error).split(' at ')[0]}"
     return Seen(number, name, rtol, moved, off, sticks, left_out)
 
 
-def steps_of_twin(slider: st.Slider, duration: float) -> float:
-    """Return about how many steps the twin takes if the mass creeps all the time."""
+def steps_of_reference(slider: st.Slider, duration: float) -> float:
+    """Return about how many steps the reference takes if the mass creeps all the time."""
     creep = abs(slider.motion.velocity) * sin(slider.misalignment) ** 2
     quickest = slider.F_0 / min(np.linalg.eigvalsh(mass_tensor(slider)))
     return duration * quickest / (3.0 * max(creep, 1e-300))

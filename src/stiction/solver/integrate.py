@@ -73,7 +73,7 @@ class Method(Protocol):
         """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
 
     def advance(
-        self, problem: Problem, state: Any, end: float, held: Accuracy, budget: int, out: Output
+        self, problem: Problem, state: Any, end: float, accuracy: Accuracy, budget: int, out: Output
     ) -> tuple[int, Any]:
         """Advance until `end` (s) or until the budget is used up; return a code and the state."""
 
@@ -81,7 +81,10 @@ class Method(Protocol):
         """Return the sample of a state between two steps."""
 
     def rates(self, problem: Problem, state: Any) -> Floats:
-        """Return the matrix of a small disturbance of a state; see `stepping.amplification`."""
+        """Return the matrix of a small disturbance; see `stepping.amplification`.
+
+        It is asked for of the state at which `advance` has just returned `ASKS`.
+        """
 
 
 def is_smooth(description: Description) -> bool:
@@ -132,14 +135,16 @@ def integrate(
 
     for stretch in stretches(slider, t, end):
         state = method.enter_segment(state, *slip_jump(slider, t))
-        held = accuracy(slider, scales, stretch, t, settings.rtol, inside)
+        tolerances = accuracy(slider, scales, stretch, t, settings.rtol, inside)
         code = RUNNING
         while code == RUNNING:
             budget = min(pause if take is None else BLOCK, max_steps - out.used)
             if budget <= 0:
                 code = TOO_MANY_STEPS
                 break
-            code, state = method.advance(stretch.problem, state, stretch.end, held, budget, out)
+            code, state = method.advance(
+                stretch.problem, state, stretch.end, tolerances, budget, out
+            )
             if code == ASKS:
                 code, state = RUNNING, knowing_growth(method, stretch, state)
             if take is not None:

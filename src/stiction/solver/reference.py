@@ -44,7 +44,7 @@ VANISHING = 1e-10  # slip speed at the start of a landing, relative to the motio
 State = tuple[np.ndarray, np.ndarray]  # elongation u (m) and slip velocity s (m/s)
 
 
-class Twin(NamedTuple):
+class ReferenceRun(NamedTuple):
     """Elongation (m) and slip velocity (m/s) at the times `t` (s), and the stick intervals.
 
     `sticks` (n, 2): start and end of each (s).
@@ -108,14 +108,14 @@ class Equations(NamedTuple):
         return all(np.array_equal(A, A[0, 0] * np.eye(2)) for A in (self.mobility, self.surface))
 
 
-def twin(
+def reference_run(
     slider: Slider,
     duration: float,
     times: np.ndarray | None = None,
     *,
     initial: Initial | None = None,
     rtol: float = 1e-10,
-) -> Twin:
+) -> ReferenceRun:
     """Integrate a slider with a steady drive and load; friction at zero slip is set-valued.
 
     Parameters
@@ -152,13 +152,13 @@ def twin(
         t = phase.end
     u_x, u_y, slip_x, slip_y = np.array(rows).reshape(-1, 4).T
     intervals = np.array(sticks).reshape(-1, 2)
-    return Twin(wanted[: len(rows)], u_x, u_y, slip_x, slip_y, intervals)
+    return ReferenceRun(wanted[: len(rows)], u_x, u_y, slip_x, slip_y, intervals)
 
 
 def equations_of(slider: Slider) -> Equations:
     """Return the equations of motion of a slider."""
     if not isinstance(slider.drive, ConstantVelocity) or slider.load is not None:
-        raise ValueError(f"the twin knows a steady drive and load only, not {slider.drive!r}")
+        raise ValueError(f"the reference knows a steady drive and load only, not {slider.drive!r}")
     drive = slider.drive.velocity * np.array(slider.direction)
     law: Any = slider.law
     surface = surface_tensor(slider)

@@ -1,4 +1,4 @@
-"""The compiled solver against its readable twin, against SciPy, and piece by piece.
+"""The compiled solver against its readable reference, against SciPy, and piece by piece.
 
 Where two solvers are compared, each runs twice, the second time with a looser tolerance. If the
 error falls in proportion to the tolerance, the change is larger than the error of the tight run,
@@ -17,7 +17,7 @@ import stiction as st
 from stiction.solver import reference
 from stiction.solver.accuracy import tolerance
 from stiction.solver.exact.pursuit import landing_slip, landing_time
-from stiction.solver.reference import twin
+from stiction.solver.reference import reference_run
 from stiction.solver.segments import stretches
 from stiction.solver.stepping.radau import (
     DEFECT_WEIGHT,
@@ -50,7 +50,7 @@ def sample_run(run):
     return np.array([run.data[name].values for name in NAMES])
 
 
-# --- compiled and twin --------------------------------------------------------------------------
+# --- compiled and reference ---------------------------------------------------------------------
 
 FASTER = PAPER.replace(drive=st.ConstantVelocity("10 mm/s"), phi="5 deg")  # short runs say enough
 SOFTER = PAPER.replace(k_y="50 kN/m", drive=st.ConstantVelocity("5 mm/s"), phi="3 deg")
@@ -97,17 +97,19 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_compiled_and_twin_agree(name):
+def test_compiled_and_reference_agree(name):
     slider, duration, initial = CASES[name]
     runs = [
         st.simulate(slider, duration, sample_rate=50 / duration, initial=initial, rtol=rtol)
         for rtol in (1e-10, 1e-9)
     ]
     times = runs[0].data["time"].values
-    twins = [twin(slider, duration, times, initial=initial, rtol=rtol) for rtol in (1e-11, 1e-9)]
+    references = [
+        reference_run(slider, duration, times, initial=initial, rtol=rtol) for rtol in (1e-11, 1e-9)
+    ]
 
     ours, loose = map(sample_run, runs)
-    theirs, rough = (np.array([getattr(run, name) for name in NAMES]) for run in twins)
+    theirs, rough = (np.array([getattr(run, name) for name in NAMES]) for run in references)
     # beside the changes: rounding, of sines and cosines above all
     rounding = 100 * EPS * np.repeat([largest(ours[:2]), largest(ours[2:])], 2)
     for k in range(len(NAMES)):
@@ -116,15 +118,15 @@ def test_compiled_and_twin_agree(name):
         assert largest(ours[k] - theirs[k]) <= changes + rounding[k]
 
     sticks = [run.stick_intervals for run in runs]
-    counts = {len(each) for each in (*sticks, *(run.sticks for run in twins))}
+    counts = {len(each) for each in (*sticks, *(run.sticks for run in references))}
     assert len(counts) == 1
     assert counts.pop() >= 1
     # the first landing, after 1e-10 s, is in closed form at either rtol; it may miss zero slip by
     # the local tolerance, at most that times V, which friction brakes away at F_0/m
     braking = tolerance(1e-10) * slider.drive.velocity * slider.mass / slider.F_0
-    changes = largest(sticks[0] - sticks[1]) + largest(twins[0].sticks - twins[1].sticks)
+    changes = largest(sticks[0] - sticks[1]) + largest(references[0].sticks - references[1].sticks)
     assert changes <= 1e-6 * duration
-    assert largest(sticks[0] - twins[0].sticks) <= changes + braking
+    assert largest(sticks[0] - references[0].sticks) <= changes + braking
 
 
 def test_the_cases_stick_and_slip_as_they_should():
@@ -140,7 +142,7 @@ def test_the_cases_stick_and_slip_as_they_should():
 def test_the_twin_starts_and_ends_where_it_is_told():
     c, s = PAPER.direction
     at_rest = st.Initial(u_x=1e-6, v_x=1e-3 * c, v_y=1e-3 * s, time=0.5)
-    run = twin(PAPER, 1e-3, initial=at_rest)
+    run = reference_run(PAPER, 1e-3, initial=at_rest)
     assert run.t.tolist() == [0.5, 0.501]
     assert run.sticks == pytest.approx(np.array([[0.5, 0.501]]), rel=EPS)
     assert run.u_x == pytest.approx([1e-6, 1e-6 + 1e-6 * c], rel=1e-12)
@@ -282,7 +284,7 @@ def test_the_twin_finds_no_take_off_where_friction_falls_at_once():
 
 def test_the_twin_refuses_a_drive_that_is_not_steady():
     with pytest.raises(ValueError, match="steady drive"):
-        twin(
+        reference_run(
             PAPER.replace(
                 drive=st.protocols.DriveProgram(along=st.protocols.Modulation(1e-3, 1.0))
             ),

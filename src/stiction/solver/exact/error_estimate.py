@@ -127,10 +127,10 @@ def error_at(
     v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t + dt))
     v_x, v_y = v_x - p_in * (e_x - w_in * e_y), v_y - p_in * (e_y + w_in * e_x)
     speed = accuracy.speed
-    held = min(size, accuracy.drive)
-    scale = min(speed + held, motion)
-    scale_x = min(speed + min(held, abs(v_x) + accuracy.free_x), motion)
-    scale_y = min(speed + min(held, abs(v_y) + accuracy.free_y), motion)
+    slip_scale = min(size, accuracy.drive)
+    scale = min(speed + slip_scale, motion)
+    scale_x = min(speed + min(slip_scale, abs(v_x) + accuracy.free_x), motion)
+    scale_y = min(speed + min(slip_scale, abs(v_y) + accuracy.free_y), motion)
     return weight * max(
         abs(error_p) / scale,
         abs(error_w) * (speed + size) / scale,

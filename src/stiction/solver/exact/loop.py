@@ -86,11 +86,11 @@ def stick(
         row = counts.sticks
         goes_on = row > 0 and sticks[row - 1, 1] == t  # a stick continued over stretches
         touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.touch
-        held = goes_on or not touch
-        k = sample_stick(problem, t, u_x, u_y, end, held, times, samples, k)
+        is_stick = goes_on or not touch
+        k = sample_stick(problem, t, u_x, u_y, end, is_stick, times, samples, k)
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
         u_x, u_y = u_x + d_x, u_y + d_y
-        if held:
+        if is_stick:
             counts = record_stick(counts, t, end, goes_on, sticks)
     a_x, a_y = holding(problem, end, u_x, u_y)
     limit = coefficient(problem.law, 0.0) * at(problem.load, end) * problem.system.per_mass

@@ -58,11 +58,17 @@ class Exact:
         return State(Motion(m.t, m.u_x, m.u_y, r, *e), memory, state.counts)
 
     def advance(
-        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+        self,
+        problem: Problem,
+        state: State,
+        end: float,
+        accuracy: Accuracy,
+        budget: int,
+        out: Output,
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
         pointed = self.point_law(problem)
-        return advance_compiled(steps, pointed, state, end, held, budget, out, self.record)
+        return advance_compiled(steps, pointed, state, end, accuracy, budget, out, self.record)
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""
@@ -118,14 +124,14 @@ def advance_compiled(
     problem: Problem,
     state: State,
     end: float,
-    held: Accuracy,
+    accuracy: Accuracy,
     budget: int,
     out: Output,
     *more: Any,
 ) -> tuple[int, State]:
     """Call a compiled loop, and make room for more sticks."""
     times, samples, sticks = out.times, out.samples, out.sticks
-    arguments = problem, state, end, held, budget, times, samples, out.filled, sticks, *more
+    arguments = problem, state, end, accuracy, budget, times, samples, out.filled, sticks, *more
     code, now, out.filled, turns = call_for(problem, function, *arguments)
     state = state_from_plain(now)
     out.used += turns

@@ -101,14 +101,14 @@ def sample_stick(
     u_x: float,
     u_y: float,
     end: float,
-    held: bool,
+    is_stick: bool,
     times: np.ndarray,
     samples: np.ndarray,
     k: int,
 ) -> int:
     """Fill the samples of an interval of zero slip from `t` on; return the next index.
 
-    It is a stick if `held`, else only a touch.
+    It is a stick if `is_stick`, else only a touch.
     """
     while k < len(times) and times[k] <= end:
         d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, times[k] - t))
@@ -119,7 +119,7 @@ def sample_stick(
         samples[k, 3] = 0.0
         samples[k, 4] = a_x * problem.system.mass
         samples[k, 5] = a_y * problem.system.mass
-        samples[k, 6] = 1.0 if held else 0.0
+        samples[k, 6] = 1.0 if is_stick else 0.0
         k += 1
     return k
 

@@ -68,20 +68,26 @@ class Automatic(Multiscale):
         return state
 
     def advance(
-        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+        self,
+        problem: Problem,
+        state: State,
+        end: float,
+        accuracy: Accuracy,
+        budget: int,
+        out: Output,
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
         if self.at is None or varies(problem):
-            return Exact.advance(self, problem, state, end, held, budget, out)
+            return Exact.advance(self, problem, state, end, accuracy, budget, out)
         if isinstance(self.at, MapTrial):
-            code, now = super().advance(problem, state, end, held, budget, out)
+            code, now = super().advance(problem, state, end, accuracy, budget, out)
             self.at = self.after_map(
                 self.at, floor(self.map_of(problem, out).balance[MAY_COST]), now
             )
             return code, now
         self.compile_map(problem)
         used, turns = out.used, min(budget, self.at.left)
-        code, now = Exact.advance(self, problem, state, end, held, turns, out)
+        code, now = Exact.advance(self, problem, state, end, accuracy, turns, out)
         self.at = self.at._replace(left=self.at.left - (out.used - used))
         if code == RUNNING and self.at.left <= 0:
             self.at = trial(self.at, now, end, self.lost) or next_leg(self.at.turns, now)

@@ -50,20 +50,26 @@ class Multiscale(Exact):
         return super().enter_segment(state, x, y)
 
     def advance(
-        self, problem: Problem, state: State, end: float, held: Accuracy, budget: int, out: Output
+        self,
+        problem: Problem,
+        state: State,
+        end: float,
+        accuracy: Accuracy,
+        budget: int,
+        out: Output,
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
         if varies(problem):  # else one map holds for all cycles
-            return super().advance(problem, state, end, held, budget, out)
+            return super().advance(problem, state, end, accuracy, budget, out)
         self.compile_map(problem)
         known = self.map_of(problem, out)
         wait = _compiled_beside.pop(kinds_of(problem), None)
         if wait is not None:
             wait()
-        fine = held._replace(
-            tolerance=STEP_SHARE * held.tolerance,
-            newton=STEP_SHARE * held.newton,
-            least=held.least / STEP_SHARE,
+        fine = accuracy._replace(
+            tolerance=STEP_SHARE * accuracy.tolerance,
+            newton=STEP_SHARE * accuracy.newton,
+            least=accuracy.least / STEP_SHARE,
             touch=0.0,  # cycles are counted from one stick to the next, however short
         )
         return advance_compiled(

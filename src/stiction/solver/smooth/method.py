@@ -41,7 +41,7 @@ class Smooth:
     def __init__(self, slider: Slider, delta: float | None, smoothing: str = "root") -> None:
         """Store the slider, and compile its law."""
         law, surface = friction_of(slider)[0], surface_of(slider)  # asked in the axes x and y
-        self.first_step = 0.0
+        self.first_step = first_step(system_of(slider))
         self.states = len(states(law))
         self.law: Any = law if delta is None else SMOOTHED[smoothing](law, surface, delta)
         self.flow = point_to_flow(self.law)
@@ -54,7 +54,7 @@ class Smooth:
         u, slip = begin(slider, initial)
         motion = SmoothMotion(initial.time, *u, *slip)
         internal = np.array(initial.internal(slider), dtype=np.float64)
-        h = self.first_step = first_step(system_of(slider))
+        h = self.first_step
         memory = SmoothMemory(h, h, 1.0, False, np.zeros((4, 2 + self.states)), NO_LIMIT)
         return SmoothState(motion, internal, memory, NOTHING)
 
@@ -71,13 +71,13 @@ class Smooth:
         problem: Problem,
         state: SmoothState,
         end: float,
-        held: Accuracy,
+        accuracy: Accuracy,
         budget: int,
         out: Output,
     ) -> tuple[int, SmoothState]:
         """Advance until `end` (s) or until the budget is used up."""
         smooth = self.point_law(problem)
-        resolved = self.step_accuracy(held)
+        resolved = self.step_accuracy(accuracy)
         times, samples = out.times, out.samples
         own = copy_of(state)
         arguments = smooth, own, end, resolved, budget, times, samples, out.filled, *self.rooms
@@ -94,7 +94,7 @@ class Smooth:
         return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
 
     def rates(self, problem: Problem, state: SmoothState) -> Floats:
-        """Return the matrix of a small disturbance; see `amplification`."""
+        """Return the matrix of a small disturbance, which the loop wrote before it asked."""
         return self.rooms[0].rates
 
     def point_law(self, problem: Problem) -> Problem:
@@ -108,13 +108,13 @@ class Smooth:
             rig = as_general(problem.system.cos_phi, problem.system.sin_phi)
         return problem._replace(law=self.flow, surface=Isotropic(), rig=rig)
 
-    def step_accuracy(self, held: Accuracy) -> Accuracy:
+    def step_accuracy(self, accuracy: Accuracy) -> Accuracy:
         """Return the tolerances of each step.
 
         Under vibration creep is far slower than the drive: then the slip speed that friction by
         itself could cause sets the scale, as without a drive.
         """
-        speed = SPEED_SHARE * held.speed if self.states else held.speed
-        if isfinite(held.longest):
-            speed = min(speed, 1e-6 * min(held.free_x, held.free_y))
-        return held._replace(speed=speed)
+        speed = SPEED_SHARE * accuracy.speed if self.states else accuracy.speed
+        if isfinite(accuracy.longest):
+            speed = min(speed, 1e-6 * min(accuracy.free_x, accuracy.free_y))
+        return accuracy._replace(speed=speed)

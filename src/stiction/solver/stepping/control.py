@@ -51,7 +51,7 @@ def step_factor(error: float, most: float) -> float:
 
 
 @inlined
-def motion_of(rate: Vector, change: Vector, held: Accuracy) -> tuple[float, float]:
+def motion_of(rate: Vector, change: Vector, accuracy: Accuracy) -> tuple[float, float]:
     """Return the motion (M42) of an elongation rate (m/s) that changes so fast (m/s^2), in m/s.
 
     It is at least the effect of rounding. The second is its square with the faster radian in place
@@ -59,9 +59,9 @@ def motion_of(rate: Vector, change: Vector, held: Accuracy) -> tuple[float, floa
     """
     (x, y), (by_x, by_y) = rate, change
     apart, b_x, b_y = x * x + y * y, by_x * by_x, by_y * by_y
-    square = b_x * held.square_x + b_y * held.square_y
-    fast = (b_x + b_y) * min(held.square_x, held.square_y)
-    return max(sqrt(apart + square), held.least), apart + fast
+    square = b_x * accuracy.square_x + b_y * accuracy.square_y
+    fast = (b_x + b_y) * min(accuracy.square_x, accuracy.square_y)
+    return max(sqrt(apart + square), accuracy.least), apart + fast
 
 
 @inlined

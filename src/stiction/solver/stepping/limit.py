@@ -49,7 +49,7 @@ def limit_there(
     apart: float,
     motion: float,
     slip: float,
-    held: Accuracy,
+    accuracy: Accuracy,
 ) -> Limit:
     """Return the limit of a step of `h`, given that of the step before.
 
@@ -62,7 +62,7 @@ def limit_there(
         return elsewhere(limit)
     if h < LATE * at.left or (at.t if at.varies else h) <= limit[1]:
         return limit
-    hidden = max(held.least, held.tolerance * min(held.speed + slip, motion))
+    hidden = max(accuracy.least, accuracy.tolerance * min(accuracy.speed + slip, motion))
     return ASKED, max(1.0, log(hidden / (sqrt(apart) + ROUNDING * slip)))
 
 
