@@ -7,7 +7,7 @@ import numpy as np
 from tests.drawn import inside
 
 import stiction as st
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.state import Motion
 
 STEADY = st.Slider(
@@ -42,8 +42,8 @@ MOTIONS = inside(5, (-3e-3, 3e-3), (-5e-5, 5e-5), (-5e-3, 5e-3), (-5e-3, 5e-3))
 
 @cache
 def problem_of(name, start=0.3):
-    """Return what the solver works on in the stretch that begins at a time (s)."""
-    return next(stretches(SLIDERS[name], start, start + 1.0)).problem
+    """Return what the solver works on in the segment that begins at a time (s)."""
+    return next(segments(SLIDERS[name], start, start + 1.0)).problem
 
 
 def motion_of(u_x, u_y, s_x, s_y, t=0.35):
@@ -92,7 +92,7 @@ class Printed:
         law, per = self.problem.law, self.problem.load.at(t) / self.m
         return law.coefficient(speed) * per, law.slope(speed) * per
 
-    def flow(self, w):
+    def friction_direction(self, w):
         """Return n_1 and tau (M12), of the ellipse in the step's axes."""
         n = self.N @ [1.0, w] / np.sqrt([1.0, w] @ self.N @ [1.0, w])
         return n[0], n[1] - w * n[0]

@@ -35,7 +35,7 @@ def law_with_state() -> Callable[[], object]:
 
 
 def program() -> Callable[[], object]:
-    """A drive in pieces, shaken across: stretches, and what is not constant in time."""
+    """A drive in pieces, shaken across: segments, and what is not constant in time."""
     pieces = [st.protocols.Constant(duration="0.2 s"), st.protocols.Reversal("0.2 s")]
     drive = st.protocols.DriveProgram(
         velocity="1 mm/s",

@@ -18,7 +18,7 @@ from stiction.arrays import Floats, Indices
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
 from stiction.solver.integrate import integrate, is_smooth
-from stiction.solver.segments import fastest_swing, stretches
+from stiction.solver.segments import fastest_swing, segments
 from stiction.trajectory import Trajectory
 
 Integrand = Callable[[Floats, Floats], Floats]
@@ -189,7 +189,7 @@ def panels(run: Trajectory, edges: Floats) -> tuple[Floats, Floats]:
     breaks = np.unique(np.concatenate([edges, own, programs]))
     breaks = breaks[(breaks >= first) & (breaks <= last)]
     starts, lengths = breaks[:-1], np.diff(breaks)
-    imposed = max((fastest_swing(s.problem) for s in stretches(slider, first, last)), default=0.0)
+    imposed = max((fastest_swing(s.problem) for s in segments(slider, first, last)), default=0.0)
     natural = 0.0 if smooth else 2.0 * pi * slider.natural_frequencies[1]
     held = np.searchsorted(run.stick_intervals[:, 0], starts, side="right")
     stuck = starts < np.append(run.stick_intervals[:, 1], -np.inf)[held - 1]

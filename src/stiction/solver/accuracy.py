@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.drive.bounds import load_bounds
 from stiction.friction import has_state
-from stiction.solver.segments import Stretch, begin, fastest_swing, speeds, system_of
+from stiction.solver.segments import Segment, begin, fastest_swing, speeds, system_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 
@@ -80,12 +80,12 @@ def scales_of(slider: Slider, initial: Initial) -> Scales:
 def accuracy(
     slider: Slider,
     scales: Scales,
-    stretch: Stretch,
+    segment: Segment,
     start: float,
     rtol: float,
     inside: float = 0.0,
 ) -> Accuracy:
-    """Return the tolerances of the steps in a stretch.
+    """Return the tolerances of the steps in a segment.
 
     Its speed (M40) is V sin(phi), at which the transverse motion slips; without misalignment V;
     without a drive a millionth of the speed that friction can give the mass on its spring, which is
@@ -95,12 +95,12 @@ def accuracy(
     rounding of forces makes in 1/g, or in a radian of the spring, is not an error; where a law has
     states, each step tells how much that is (M70c).
     """
-    along, across = speeds(slider, stretch.problem.drive, start, stretch.end)
+    along, across = speeds(slider, segment.problem.drive, start, segment.end)
     law: Any = slider.law
-    load = load_bounds(stretch.problem.load, start, stretch.end)[0]
+    load = load_bounds(segment.problem.load, start, segment.end)[0]
     mu, elastic = scales
-    surface = stretch.problem.surface
-    system = stretch.problem.system
+    surface = segment.problem.surface
+    system = segment.problem.system
     free_x = mu * load * sqrt(surface.xx / (system.mass * system.k_x))
     free_y = mu * load * sqrt(surface.yy / (system.mass * system.k_y))
     free = min(free_x, free_y)
@@ -116,7 +116,7 @@ def accuracy(
     speed = max(speed, rounding, LEAST_SPEED * elastic, LEAST_FLOAT)
     # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
     newton = min(0.2, 100.0 * sqrt(local)) * local
-    rate = fastest_swing(stretch.problem)
+    rate = fastest_swing(segment.problem)
     longest = 0.5 * pi / rate if rate > 0.0 else inf
     least = LEAST_MOTION * (along + across + free_x + free_y) / local
     drive = max(along or across or inf, least)

@@ -16,9 +16,9 @@ from stiction.solver.multiscale.automatic import Automatic
 from stiction.solver.multiscale.method import Multiscale
 from stiction.solver.problem import Problem, varies
 from stiction.solver.segments import (
-    Stretch,
+    Segment,
     rig_of,
-    stretches,
+    segments,
 )
 from stiction.solver.smooth.method import Smooth
 from stiction.solver.state import (
@@ -70,7 +70,7 @@ class Method(Protocol):
         """Return the initial state of a run."""
 
     def enter_segment(self, state: Any, x: float, y: float) -> Any:
-        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        """Return the state at the start of a segment, where the slip velocity jumps by (x, y)."""
 
     def advance(
         self, problem: Problem, state: Any, end: float, accuracy: Accuracy, budget: int, out: Output
@@ -127,15 +127,15 @@ def integrate(
     times = np.asarray(times, dtype=np.float64)
     times = times if times.flags.carray else times.copy()  # compiled code takes no other array
     out = Output(times, np.empty((len(times), method.columns)), np.empty((4096, 2)))
-    code, stretch, scales = COMPLETED, None, scales_of(slider, initial)
+    code, segment, scales = COMPLETED, None, scales_of(slider, initial)
 
     def report(t: float) -> None:
         if progress is not None:
             progress((t - initial.time) / settings.duration)
 
-    for stretch in stretches(slider, t, end):
+    for segment in segments(slider, t, end):
         state = method.enter_segment(state, *slip_jump(slider, t))
-        tolerances = accuracy(slider, scales, stretch, t, settings.rtol, inside)
+        tolerances = accuracy(slider, scales, segment, t, settings.rtol, inside)
         code = RUNNING
         while code == RUNNING:
             budget = min(pause if take is None else BLOCK, max_steps - out.used)
@@ -143,36 +143,36 @@ def integrate(
                 code = TOO_MANY_STEPS
                 break
             code, state = method.advance(
-                stretch.problem, state, stretch.end, tolerances, budget, out
+                segment.problem, state, segment.end, tolerances, budget, out
             )
             if code == ASKS:
-                code, state = RUNNING, knowing_growth(method, stretch, state)
+                code, state = RUNNING, knowing_growth(method, segment, state)
             if take is not None:
                 take(outward(slider, out.samples[: out.filled]))
                 out.times, out.filled = out.times[out.filled :], 0
             report(state.motion.t)
-        t = stretch.end
-        if code == COMPLETED and stretch.lost:
+        t = segment.end
+        if code == COMPLETED and segment.lost:
             code = CONTACT_LOST
         if code != COMPLETED:
             break
-    assert stretch is not None
+    assert segment is not None
     k, counts = out.filled, Counts(*state.counts)
     times, samples = times[:k], out.samples[:k]
     if code != COMPLETED:  # always keep the state where it stopped
         earlier = times < state.motion.t
         times = np.append(times[earlier], state.motion.t)
-        samples = np.vstack([samples[earlier], method.last_row(stretch.problem, state)])
+        samples = np.vstack([samples[earlier], method.last_row(segment.problem, state)])
     samples = outward(slider, samples)
     return Solution(code, times, samples, out.sticks[: counts.sticks].copy(), counts)
 
 
-def knowing_growth(method: Method, stretch: Stretch, state: Any) -> Any:
+def knowing_growth(method: Method, segment: Segment, state: Any) -> Any:
     """Return a state that knows the longest step that shows growth about steady sliding."""
-    left, memory = stretch.end - state.motion.t, state.memory
-    rates, enough = method.rates(stretch.problem, state), memory.limit[1]
+    left, memory = segment.end - state.motion.t, state.memory
+    rates, enough = method.rates(segment.problem, state), memory.limit[1]
     longest = longest_step(rates, memory.h, left / enough)
-    known = known_up_to(memory.h, Time(state.motion.t, left, varies(stretch.problem)))
+    known = known_up_to(memory.h, Time(state.motion.t, left, varies(segment.problem)))
     return state._replace(memory=memory._replace(limit=(longest, known)))
 
 

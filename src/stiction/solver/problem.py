@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from stiction.friction.law import Vector, static_coefficient
 from stiction.solver.compilation.jit import call_compiled, call_directly, inlined
 from stiction.solver.compilation.stand_in import called_from_both, stand_in
 from stiction.solver.rig import Aligned, General
+
+EVERYWHERE = inf  # friction is smooth at any slip speed
+F = TypeVar("F", bound=Callable[..., Any])
 
 
 class System(NamedTuple):
@@ -68,7 +71,7 @@ class Elliptic(NamedTuple):
 class Bend(NamedTuple):
     """A bound of the second derivative of a stick's margin |a|^2 - f^2, in m^2/s^6; see `stick`.
 
-    Drive and load are smooth all along the stretch.
+    Drive and load are smooth all along the segment.
     """
 
     value: float
@@ -103,7 +106,7 @@ class Bends(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """Everything that determines the motion in a stretch of time.
+    """Everything that determines the motion in a segment of time.
 
     `drive` and `load` are stretches (see `stiction.drive.signal`), `bend` says how far they are
     smooth. On a general `rig` the system and the surface are those in the solver's axes.
@@ -134,11 +137,28 @@ def call_for(problem: Problem, function: Any, *arguments: Any) -> Any:
     return call(function, kinds, *arguments)
 
 
+def by_type(function: F, kind: type | None = None, **options: Any) -> F:
+    """Make compiled code call the method of the first argument's type instead of `function`.
+
+    If a `kind` is given, only for this type; `options` are those of the method's compilation.
+    """
+    name = function.__name__
+
+    def method(*arguments: Any) -> Any:
+        found = arguments[0].instance_class
+        return getattr(found, name) if kind in (None, found) else None
+
+    stand_in(function, **options)(method)
+    return function
+
+
+@by_type
 def coefficient(law: FrictionLaw, v: float) -> float:
     """Return the friction coefficient at slip speed `v`."""
     return law.coefficient(v)
 
 
+@by_type
 def slope(law: FrictionLaw, v: float) -> float:
     """Return the derivative of the coefficient at slip speed `v`."""
     return law.slope(v)
@@ -155,16 +175,19 @@ def static(law: FrictionLaw) -> float:
     return static_coefficient(law)
 
 
+@by_type
 def force(law: StateLaw, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
     """Return the friction force (N) of a law with internal state."""
     return law.force(slip, load, state)
 
 
+@by_type
 def change(law: StateLaw, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:
     """Return the rate of change of a law's internal states."""
     return law.change(slip, load, state)
 
 
+@by_type
 def gradient(
     law: Any, slip: Vector, load: float, state: tuple[float, ...]
 ) -> tuple[tuple[float, ...], ...]:
@@ -179,138 +202,114 @@ def grain(law: StateLaw, state: tuple[float, ...]) -> float:
     return EVERYWHERE if own is None else own(state)
 
 
+@by_type
 def travel(drive: Any, t: float, dt: float) -> Vector:
     """Return the displacement (X, Y) of the drive from `t` to `t + dt`."""
     moved: Vector = drive.travel(t, dt)
     return moved
 
 
+@by_type
 def rate(drive: Any, t: float) -> Vector:
     """Return the velocity (X, Y) of the drive."""
     v: Vector = drive.rate(t)
     return v
 
 
+@by_type
 def rate_change(drive: Any, t: float) -> Vector:
     """Return the acceleration (X, Y) of the drive."""
     a: Vector = drive.rate_change(t)
     return a
 
 
+@by_type
 def rate_curve(drive: Any, t: float) -> Vector:
     """Return the rate of change of the drive's acceleration."""
     jerk: Vector = drive.rate_curve(t)
     return jerk
 
 
+@by_type
 def at(load: Any, t: float) -> float:
     """Return the normal load."""
     return float(load.at(t))
 
 
+@by_type
 def drift(load: Any, t: float) -> float:
     """Return the rate of change of the normal load."""
     return float(load.drift(t))
 
 
+@by_type
 def steady(drive: Any) -> bool:
     """Return whether the drive's velocity is constant, as known at compile time."""
     return bool(drive.steady())
 
 
+@by_type
 def constant(load: Any) -> bool:
     """Return whether the load is constant, as known at compile time."""
     return bool(load.constant())
 
 
+@by_type
 def smooth_until(bend: Bend | Bends, t: float, stop: float) -> float:
     """Return until when drive and load are smooth, at most `stop` (s)."""
     return bend.smooth_until(t, stop)
 
 
+@by_type
 def bend_after(bend: Bend | Bends, t: float) -> float:
     """Return a bound of the second derivative of the margin from time `t` until then."""
     return bend.bend_after(t)
 
 
+@by_type
 def isotropic(surface: Isotropic | Elliptic) -> bool:
     """Return whether friction is along the slip, as known at compile time."""
     return surface.isotropic()
 
 
+@by_type
 def is_aligned(rig: Aligned | General) -> bool:
     """Return whether the solver's axes are x and y, as known at compile time."""
     return rig.is_aligned()
 
 
+@by_type
 def outward(rig: Aligned | General, r: Vector) -> Vector:
     """Return a slip, or an elongation, in the axes x and y."""
     return rig.outward(r)
 
 
+@by_type
 def inward(rig: Aligned | General, force: Vector) -> Vector:
     """Return a force in the solver's axes."""
     return rig.inward(force)
 
 
+@by_type
 def metric(rig: Aligned | General) -> tuple[float, float, float]:
     """Return the tensor by which the slip speed follows from a slip in the solver's axes."""
     return rig.metric()
 
 
+@by_type
 def into_axes(rig: Aligned | General, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
     """Return a laboratory vector (X, Y) in the solver's axes."""
     return rig.into_axes(cos_phi, sin_phi, vector)
 
 
+@by_type
 def cross_damping(rig: Aligned | General) -> float:
     """Return the damping between the solver's axes, N s/m."""
     return rig.cross_damping()
 
 
-EVERYWHERE = inf  # friction is smooth at any slip speed
-
-
-def by_type(function: Callable[..., Any], kind: type | None = None, **options: Any) -> None:
-    """Make compiled code call the method of the first argument's type instead of `function`.
-
-    If a `kind` is given, only for this type; `options` are those of the method's compilation.
-    """
-    name = function.__name__
-
-    def method(*arguments: Any) -> Any:
-        found = arguments[0].instance_class
-        return getattr(found, name) if kind in (None, found) else None
-
-    stand_in(function, **options)(method)
-
-
-for _function in (
-    coefficient,
-    slope,
-    force,
-    change,
-    gradient,
-    travel,
-    rate,
-    rate_change,
-    rate_curve,
-    at,
-    drift,
-    steady,
-    constant,
-    smooth_until,
-    bend_after,
-    isotropic,
-    is_aligned,
-    outward,
-    inward,
-    metric,
-    into_axes,
-    cross_damping,
-    *LAW_METHODS,
-):
-    by_type(_function)
+for _method in LAW_METHODS:
+    by_type(_method)
 for _piece in LAW_FUNCTIONS:
     called_from_both(_piece)
 SEPARATE: Any = {"forceinline": False}  # of what is large and called from many places

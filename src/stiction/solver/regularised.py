@@ -71,12 +71,10 @@ class SmoothedByArctan(Smoothed):
 SMOOTHED: dict[str, Any] = {"root": Smoothed, "arctan": SmoothedByArctan}
 
 
+@by_type
 def slip_factor(law: Smoothed, square: float) -> tuple[float, float]:
     """Return h(q) and -h'/(q h), by which a slip s becomes friction, for q^2."""
     return law.slip_factor(square)
-
-
-by_type(slip_factor)
 
 
 @called_from_both

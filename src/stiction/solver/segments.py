@@ -1,6 +1,6 @@
-"""Division of a slider's drive and load into smooth stretches, which are integrated in turn.
+"""Division of time into segments of smooth drive and load, which are integrated in turn.
 
-Inside a stretch drive and load are smooth; between two stretches they may jump or bend. The solver
+Inside a segment drive and load are smooth; between two segments they may jump or bend. The solver
 stops exactly there, so that it never steps over such an instant.
 """
 
@@ -25,7 +25,7 @@ from stiction.system.slider import Slider
 from stiction.system.tensors import solver_axes, surface_tensor
 
 
-class Stretch(NamedTuple):
+class Segment(NamedTuple):
     """A problem to integrate until `end` (s); `lost` if the normal load vanishes there."""
 
     end: float
@@ -33,8 +33,8 @@ class Stretch(NamedTuple):
     lost: bool
 
 
-def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
-    """Yield the stretches between two times (s), the last one shorter if contact is lost."""
+def segments(slider: Slider, start: float, end: float) -> Iterator[Segment]:
+    """Yield the segments between two times (s), the last one shorter if contact is lost."""
     drives = drive_stretches(slider.motion)
     loads = load_stretches(slider.normal_load, slider.load)
     law, surface = friction_of(slider)
@@ -47,7 +47,7 @@ def stretches(slider: Slider, start: float, end: float) -> Iterator[Stretch]:
         lost = vanishes(load, t, stop)
         bend = bend_of(slider, drive, load, t, stop)
         problem = Problem(system, law, surface, drive, load, bend, rig)
-        yield Stretch(min(stop, lost), problem, lost <= stop)
+        yield Segment(min(stop, lost), problem, lost <= stop)
         if lost <= stop:
             return
         t = stop
@@ -128,7 +128,7 @@ def solver_surface(slider: Slider) -> Isotropic | Elliptic:
 
 
 def speeds(slider: Slider, drive: Any, start: float, end: float) -> tuple[float, float]:
-    """Return bounds of the drive velocity along the solver's axes in a stretch (m/s)."""
+    """Return bounds of the drive velocity along the solver's axes in a segment (m/s)."""
     return _in_axes(slider, drive_bounds(drive, start, end)[0])
 
 

@@ -21,7 +21,7 @@ ROOT = 1e-15  # of 1: of the convex equation of a take-off
 CLIMBED = 1e-16  # of t: a step towards it
 
 
-class Flow(NamedTuple):
+class FrictionDirection(NamedTuple):
     """Friction over f along e, the part that turns the slip, and their derivatives by w."""
 
     n_1: float
@@ -39,16 +39,16 @@ class Tensor(NamedTuple):
 
 
 @inlined
-def flow(problem: Problem, tensor: Tensor, w: float) -> Flow:
+def friction_direction(problem: Problem, tensor: Tensor, w: float) -> FrictionDirection:
     """Return (M12) and (M16) for slip along (1, w); `tensor` is N in the step's axes."""
     if isotropic(problem.surface):
         g = 1.0 / sqrt(1.0 + w * w)
-        return Flow(g, 0.0, -w * g * g * g, 0.0)
+        return FrictionDirection(g, 0.0, -w * g * g * g, 0.0)
     along, across = tensor.xx + tensor.xy * w, tensor.xy + tensor.yy * w
     per = 1.0 / sqrt(along + across * w)
     n_1, n_2 = along * per, across * per
     dn_1, dn_2 = (tensor.xy - n_1 * n_2) * per, (tensor.yy - n_2 * n_2) * per
-    return Flow(n_1, n_2 - w * n_1, dn_1, dn_2 - n_1 - w * dn_1)
+    return FrictionDirection(n_1, n_2 - w * n_1, dn_1, dn_2 - n_1 - w * dn_1)
 
 
 @inlined

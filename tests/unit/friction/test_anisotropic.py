@@ -14,7 +14,9 @@ from stiction.solver import surface
 from stiction.solver.problem import Elliptic, Problem
 from stiction.solver.surface import Tensor
 
-flow, friction_along, takeoff = map(plain, (surface.flow, surface.friction_along, surface.takeoff))
+friction_direction, friction_along, takeoff = map(
+    plain, (surface.friction_direction, surface.friction_along, surface.takeoff)
+)
 
 WEAKENING = st.ExponentialWeakening(0.2, 0.15, 0.01)
 
@@ -160,18 +162,18 @@ def test_slip_starts_towards_what_friction_leaves(ratio, angle, pull_angle, exce
 
 
 @pytest.mark.parametrize(("ratio", "angle", "w"), inside(60, (0.3, 3), (-3, 3), (-2, 2)))
-def test_flow_and_its_derivatives(ratio, angle, w):
+def test_friction_direction_and_its_derivatives(ratio, angle, w):
     c, s = np.cos(angle), np.sin(angle)
     turn = np.array([[c, s], [-s, c]])
     N = turn.T @ np.diag([1.0, ratio**2]) @ turn
     problem, own = problem_with(N), Tensor(N[0, 0], N[0, 1], N[1, 1])
     direction = np.array([1.0, w])
     n = N @ direction / np.sqrt(direction @ N @ direction)
-    got = flow(problem, own, w)
+    got = friction_direction(problem, own, w)
     assert got.n_1 == pytest.approx(n[0], rel=1e-12, abs=1e-12)
     assert got.tau == pytest.approx(n[1] - w * n[0], rel=1e-12, abs=1e-12)
     step = 1e-5
-    low, high = (flow(problem, own, w + d) for d in (-step, step))
+    low, high = (friction_direction(problem, own, w + d) for d in (-step, step))
     assert got.dn_1 == pytest.approx((high.n_1 - low.n_1) / (2 * step), abs=1e-7)
     assert got.dtau == pytest.approx((high.tau - low.tau) / (2 * step), abs=1e-7)
 

@@ -8,14 +8,14 @@ from tests.systems import ELLIPSE, PROGRAM, STEADY
 
 import stiction as st
 from stiction.solver.accuracy import accuracy, scales_of, steepest_weakening, tolerance
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 
 AT_REST = st.Initial(v_x=STEADY.direction[0] * 2e-3, v_y=STEADY.direction[1] * 2e-3)
 
 
 def accuracy_of(slider, initial=AT_REST, start=0.0, rtol=1e-6):
-    stretch = next(stretches(slider, start, start + 1.0))
-    return accuracy(slider, scales_of(slider, initial), stretch, start, rtol)
+    segment = next(segments(slider, start, start + 1.0))
+    return accuracy(slider, scales_of(slider, initial), segment, start, rtol)
 
 
 def weakening(slider):
@@ -75,7 +75,7 @@ def test_without_a_drive_or_friction():
 def test_an_ellipse_and_a_program():
     """v_fx takes the root of N_xx, and a step is a quarter of the fastest oscillation at most."""
     plain, found = accuracy_of(STEADY), accuracy_of(ELLIPSE)
-    n = next(stretches(ELLIPSE, 0.0, 1.0)).problem.surface
+    n = next(segments(ELLIPSE, 0.0, 1.0)).problem.surface
     assert found.free_x == pytest.approx(plain.free_x * sqrt(n.xx))
     assert found.free_y == pytest.approx(plain.free_y * sqrt(n.yy))
     assert accuracy_of(PROGRAM).longest == pytest.approx(0.5 * pi / (2 * pi * 70.0))

@@ -1,4 +1,4 @@
-"""The jump of the slip velocity with the drive, and a run from stretch to stretch."""
+"""The jump of the slip velocity with the drive, and a run from segment to segment."""
 
 import numpy as np
 import pytest
@@ -108,7 +108,7 @@ def test_a_run_that_stops_keeps_the_state_where_it_did(monkeypatch):
     assert found.samples.tolist() == [[5.0] * 7, [1.0] * 7]
 
 
-def test_each_stretch_of_a_program_follows_the_one_before(monkeypatch):
+def test_each_segment_of_a_program_follows_the_one_before(monkeypatch):
     """With tolerances and jumps of its own; none after one that fails."""
     program = [st.protocols.Constant("1 mm/s", 1.0), st.protocols.Constant("2 mm/s")]
     slider = STEADY.replace(drive=st.protocols.DriveProgram(velocity="1 mm/s", program=program))

@@ -34,7 +34,7 @@ from stiction.solver.regularised import (
     SmoothedByArctan,
     friction_and_gradient,
 )
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.smooth import loop as smooth_loop
 from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_and_slope, slip_at
 from stiction.solver.smooth.elimination import correct_states, residuals_without
@@ -107,9 +107,9 @@ class Taken(NamedTuple):
 
 def problem_of(slider, rtol=1e-6):
     """Return what the solver works on, and what a step is held to."""
-    stretch = next(stretches(slider, 0.0, 1.0))
-    held = accuracy(slider, scales_of(slider, st.Initial()), stretch, 0.0, rtol)
-    return stretch.problem, held._replace(newton=NEWTON)
+    segment = next(segments(slider, 0.0, 1.0))
+    held = accuracy(slider, scales_of(slider, st.Initial()), segment, 0.0, rtol)
+    return segment.problem, held._replace(newton=NEWTON)
 
 
 def turn(name, problem, held, state, times=()):
@@ -365,9 +365,9 @@ def test_the_printed_error_estimate_is_the_solver_s(name):
 
 def test_the_local_tolerance():
     """(M39) and (M34)."""
-    stretch = next(stretches(DAMPED, 0.0, 1.0))
+    segment = next(segments(DAMPED, 0.0, 1.0))
     for rtol in (1e-2, 1e-6, 1e-10):
-        held = accuracy(DAMPED, scales_of(DAMPED, st.Initial()), stretch, 0.0, rtol)
+        held = accuracy(DAMPED, scales_of(DAMPED, st.Initial()), segment, 0.0, rtol)
         tol = 0.8 * rtol ** (4 / 5)
         assert held.tolerance == tolerance(rtol) == pytest.approx(tol, rel=1e-14)
         assert held.newton == pytest.approx(min(0.2, 100 * sqrt(tol)) * tol, rel=1e-14)
@@ -453,7 +453,7 @@ def test_the_end_of_a_stick_under_any_drive(driven):
     )
     load = st.protocols.LoadProgram(modulation=st.protocols.Modulation("0.5 N", 70.0))
     s = DAMPED.replace(friction=st.Coulomb(0.2), drive=drive, load=load, driven=driven)
-    bound, v_d = next(stretches(s, 0.0, 1.0)).problem.bend.value, np.array(s.direction)
+    bound, v_d = next(segments(s, 0.0, 1.0)).problem.bend.value, np.array(s.direction)
     K, damping = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
 
     def margin(t):
@@ -671,7 +671,7 @@ def eliminated_and_solved(h, k, c, slope, friction, flow, right):
     for i in range(3):
         w.jacobian[i + 1] = flow[i]
         for z in range(2, n + 2):
-            w.flow[i + 1, z] = -right[z, i] / h  # all that residuals of states are, at z = z_0
+            w.changes[i + 1, z] = -right[z, i] / h  # all that residuals of states are, at z = z_0
     at = Stages(
         (0.0, 0.0, 0.0),
         (0.0, 0.0, 0.0),
@@ -733,13 +733,13 @@ def test_the_printed_residuals_of_a_smooth_step_vanish():
     """(M66) and (M67), from the last step that the solver remembers."""
     s = PAPER.replace(friction=AGEING, c_x=3.0, c_y=20.0)
     description = st.simulate(s, 0.02, sample_rate=0).description
-    stretch = next(stretches(s, 0.0, 1.0))
-    held = accuracy(s, scales_of(s, description.initial), stretch, 0.0, 1e-6)._replace(
+    segment = next(segments(s, 0.0, 1.0))
+    held = accuracy(s, scales_of(s, description.initial), segment, 0.0, 1e-6)._replace(
         newton=NEWTON
     )
     method = Smooth(s, None)
     held, state = method.step_accuracy(held), method.begin(description)
-    problem = method.point_law(stretch.problem)
+    problem = method.point_law(segment.problem)
     K, damping = np.array([s.k_x, s.k_y]), np.array([s.c_x, s.c_y])
     v = s.drive.velocity * np.array(s.direction)
     nothing = np.empty(0), np.empty((0, 8)), 0

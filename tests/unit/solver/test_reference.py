@@ -18,7 +18,7 @@ from stiction.solver import reference
 from stiction.solver.accuracy import tolerance
 from stiction.solver.exact.pursuit import landing_slip, landing_time
 from stiction.solver.reference import reference_run
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.stepping.radau import (
     DEFECT_WEIGHT,
     DERIVATIVE,
@@ -405,8 +405,8 @@ def friction_excess(slider, u, tau):
 
 def held_for(slider, u_x, u_y):
     """What the compiled solver says about a stick from t = 0 on."""
-    stretch = next(stretches(slider, 0.0, 1.0))
-    return stick_duration(stretch.problem, 0.0, u_x, u_y, stretch.end)[0]
+    segment = next(segments(slider, 0.0, 1.0))
+    return stick_duration(segment.problem, 0.0, u_x, u_y, segment.end)[0]
 
 
 @pytest.mark.parametrize("c_y", [0.0, 1e4])

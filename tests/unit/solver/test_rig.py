@@ -16,7 +16,7 @@ import stiction as st
 from stiction.analysis.slip import cell_force
 from stiction.solver.problem import damping
 from stiction.solver.rig import Aligned, General, as_general
-from stiction.solver.segments import begin, stretches
+from stiction.solver.segments import begin, segments
 from stiction.system.tensors import damping_tensor, mass_tensor, stiffness_tensor
 
 WEAKENING = st.ExponentialWeakening(0.3, 0.2, "20 mm/s")
@@ -267,7 +267,7 @@ def test_components_along_axes_and_drive_are_those_of_a_turn_by_the_misalignment
 def test_the_start_in_the_solver_s_axes(slider):
     """(M71): elongation and slip are T times what the solver sees."""
     initial = st.Initial(u_x=1e-3, u_y=-2e-4, v_x=3e-3, v_y=1e-3)
-    found, rig = begin(slider, initial), next(stretches(slider, 0.0, 1.0)).problem.rig
+    found, rig = begin(slider, initial), next(segments(slider, 0.0, 1.0)).problem.rig
     assert rig.outward(found[0]) == pytest.approx((1e-3, -2e-4))
     assert rig.outward(found[1]) == pytest.approx(initial.slip(slider))
 
@@ -275,7 +275,7 @@ def test_the_start_in_the_solver_s_axes(slider):
 @pytest.mark.parametrize("name", ["weakening", "other signs", "stages"])
 def test_the_dampers_in_the_solver_s_axes(name):
     """(M72): T^T C T, with a term from each axis to the other."""
-    problem = next(stretches(RIGS[name], 0.0, 1.0)).problem
+    problem = next(segments(RIGS[name], 0.0, 1.0)).problem
     for v in ((1.0, 0.0), (0.3, -2.0)):
         force = damping_tensor(RIGS[name]) @ problem.rig.outward(v)
         assert plain(damping)(problem, *v) == pytest.approx(problem.rig.inward(force))

@@ -16,7 +16,7 @@ from stiction.text.samples import FrozenColumn
 
 
 def test_a_steady_slider_is_one_segment():
-    (only,) = segments.stretches(STEADY, 0.2, 1.7)
+    (only,) = segments.segments(STEADY, 0.2, 1.7)
     assert (only.end, only.lost) == (1.7, False)
     s, (c, _) = only.problem.system, STEADY.direction
     assert s == System(0.25, 1e3, 4e4, 3.0, 20.0, c, STEADY.direction[1], 4.0, 1.0)
@@ -38,7 +38,7 @@ def test_segments_end_where_drive_or_load_bend():
         ]
     )
     slider = STEADY.replace(drive=drive, load=load)
-    found = list(segments.stretches(slider, 0.1, 2.0))
+    found = list(segments.segments(slider, 0.1, 2.0))
     assert [each.end for each in found] == pytest.approx([0.3, 0.4, 0.5, 0.6])
     assert [each.lost for each in found] == [False, False, False, True]
     for each in found:  # compiled for two kinds, not for four
@@ -100,8 +100,8 @@ def test_the_fastest_swing():
 def test_bounds_hold(slider):
     """Of the drive's velocity in the principal axes, of the load, and of the margin (M8)."""
     start, end = 0.3, 0.9
-    stretch = next(segments.stretches(slider, start, end))
-    problem, times = stretch.problem, np.linspace(start, end, 2001)
+    segment = next(segments.segments(slider, start, end))
+    problem, times = segment.problem, np.linspace(start, end, 2001)
     c, s = slider.direction
     v = np.array([problem.drive.rate(t) for t in times])
     found = np.array([v[:, 0] * c - v[:, 1] * s, v[:, 0] * s + v[:, 1] * c])
@@ -131,7 +131,7 @@ def test_bounds_hold(slider):
     F, F_2 = 0.2 / 0.25 * 10.5, 0.2 / 0.25 * 0.5 * omega**2
     assert problem.bend.value == pytest.approx(2 * (J[0] ** 2 + F * J[1] + F * F_2), rel=1e-9)
     weak = slider.replace(friction=st.laws.Anisotropic(st.Coulomb(0.2), 0.5, "0 deg"))
-    weaker = next(segments.stretches(weak, start, end)).problem.bend.value
+    weaker = next(segments.segments(weak, start, end)).problem.bend.value
     assert weaker == pytest.approx(2 * (4 * J[0] ** 2 + 2 * F * J[1] + F * F_2), rel=1e-9)
 
 

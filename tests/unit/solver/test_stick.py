@@ -111,7 +111,7 @@ def test_a_stick_under_a_program_is_over_where_its_margin_is_rounding():
         assert (found[0] == 0.0) == over
 
 
-def test_a_stick_under_a_program_that_outlasts_the_stretch():
+def test_a_stick_under_a_program_that_outlasts_the_segment():
     """It is then infinite; in closed form the caller looks at the end itself."""
     u, t = (0.0, 0.0), 0.35
     duration, _ = plain(stick.stick_duration)(problem_of("program"), t, *u, inf)

@@ -18,10 +18,14 @@ def test_the_tensor_and_the_flow_in_the_axes_of_a_step(name, drawn):
     tensor = plain(surface.turned_into)(problem, motion.e_x, motion.e_y)
     assert tensor == pytest.approx([printed.N[0, 0], printed.N[0, 1], printed.N[1, 1]], abs=1e-14)
     for w in (-0.7, 0.0, 0.4):
-        flow, step = plain(surface.flow)(problem, tensor, w), 1e-5
-        assert (flow.n_1, flow.tau) == pytest.approx(printed.flow(w), abs=1e-13)
-        change = np.subtract(printed.flow(w + step), printed.flow(w - step)) / (2 * step)
-        assert (flow.dn_1, flow.dtau) == pytest.approx(change, abs=1e-8)
+        direction, step = plain(surface.friction_direction)(problem, tensor, w), 1e-5
+        assert (direction.n_1, direction.tau) == pytest.approx(
+            printed.friction_direction(w), abs=1e-13
+        )
+        change = np.subtract(
+            printed.friction_direction(w + step), printed.friction_direction(w - step)
+        ) / (2 * step)
+        assert (direction.dn_1, direction.dtau) == pytest.approx(change, abs=1e-8)
 
 
 @pytest.mark.parametrize("name", ["steady", "ellipse"])

@@ -14,7 +14,7 @@ from stiction.solver.exact.slip_frame import Frame, friction, pull
 from stiction.solver.problem import Problem
 from stiction.solver.stepping.block_algebra import Factors, Triple, dot, eliminate
 from stiction.solver.stepping.radau import FIRST, SECOND, THIRD, A, C, D
-from stiction.solver.surface import Flow, flow, speed_ratio
+from stiction.solver.surface import FrictionDirection, friction_direction, speed_ratio
 
 
 class SlipStep(NamedTuple):
@@ -39,7 +39,7 @@ class Stage(NamedTuple):
     gradient: float
     per_p: float  # slip speed over p
     per_w: float  # half the derivative of its square by w
-    flow: Flow
+    direction: FrictionDirection
 
 
 @inlined
@@ -65,7 +65,7 @@ def stage(problem: Problem, frame: Frame, step: SlipStep, i: int) -> Stage:
     a_2 -= frame.c_12 * p_i + frame.c_22 * q_i
     per_p = speed_ratio(problem, frame.metric, w_i)
     per_w = frame.metric.xy + frame.metric.yy * w_i
-    n = flow(problem, frame.surface, w_i)
+    n = friction_direction(problem, frame.surface, w_i)
     f, gradient = friction(problem, frame.t + C[i] * h, p_i * per_p)
     dp = dot(D[i], (p[0] - frame.r, p[1] - frame.r, p[2] - frame.r))
     residual_p = dp - h * (a_1 - f * n.n_1) + swing.rest[i]
@@ -81,7 +81,7 @@ def jacobian_rows(
     _, h, p, w = step
     k_11, k_12, k_22 = frame.k_11, frame.k_12, frame.k_22
     c_11, c_12, c_22 = frame.c_11, frame.c_12, frame.c_22
-    p_i, w_i, a, d, n = p[i], w[i], A[i], D[i], at_i.flow
+    p_i, w_i, a, d, n = p[i], w[i], A[i], D[i], at_i.direction
     square = h * h
     turned_1, turned_2 = k_12 - w_i * k_11, k_22 - w_i * k_12
     pp = (
@@ -145,6 +145,6 @@ def by_step_size(
     h: float, w: float, s: Stage, rest: float, pp: Triple, wp: Triple
 ) -> tuple[Triple, Triple]:
     """Return the rows with the derivative by the step size (M44), (M45) as their last entry."""
-    dp = s.f * s.flow.n_1 - s.a_1 - h * s.da_1 + rest
-    dw = w * s.a_1 - s.a_2 + s.f * s.flow.tau - h * (s.da_2 - w * s.da_1)
+    dp = s.f * s.direction.n_1 - s.a_1 - h * s.da_1 + rest
+    dw = w * s.a_1 - s.a_2 + s.f * s.direction.tau - h * (s.da_2 - w * s.da_1)
     return (pp[0], pp[1], dp), (wp[0], wp[1], dw)

@@ -28,7 +28,7 @@ from stiction.solver.stepping.radau import (
     cubic_slope,
     integral,
 )
-from stiction.solver.surface import flow, speed_ratio
+from stiction.solver.surface import friction_direction, speed_ratio
 
 DIP_LOOKS = 6  # iterations at most in the search for the least slip
 
@@ -118,7 +118,7 @@ def error_at(
     f = friction(problem, frame.t + dt, p_in * speed_ratio(problem, frame.metric, w_in))[0]
     if p_in < 0.0:
         return inf
-    n = flow(problem, frame.surface, w_in)
+    n = friction_direction(problem, frame.surface, w_in)
     error_p = dp - h * (a_1 - f * n.n_1) + rest_over
     stiffness = p_in + weight * h * abs(a_1 + f * n.dtau)
     error_w = (p_in * dw - h * (a_2 - w_in * a_1 - f * n.tau)) / (stiffness + TINY)

@@ -84,7 +84,7 @@ def stick(
             ends, end = False, smooth
     if end > t:
         row = counts.sticks
-        goes_on = row > 0 and sticks[row - 1, 1] == t  # a stick continued over stretches
+        goes_on = row > 0 and sticks[row - 1, 1] == t  # a stick continued over segments
         touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.touch
         is_stick = goes_on or not touch
         k = sample_stick(problem, t, u_x, u_y, end, is_stick, times, samples, k)

@@ -44,7 +44,7 @@ class Exact:
         return start(system_of(slider), initial.time, *begin(slider, initial))
 
     def enter_segment(self, state: State, x: float, y: float) -> State:
-        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y).
+        """Return the state at the start of a segment, where the slip velocity jumps by (x, y).
 
         It drops the memory of earlier steps, which is useless after a bend.
         """

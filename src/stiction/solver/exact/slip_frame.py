@@ -30,7 +30,14 @@ from stiction.solver.problem import (
     travel,
 )
 from stiction.solver.state import Motion
-from stiction.solver.surface import Tensor, flow, metric_into, speed_ratio, tensor_into, turned_into
+from stiction.solver.surface import (
+    Tensor,
+    friction_direction,
+    metric_into,
+    speed_ratio,
+    tensor_into,
+    turned_into,
+)
 
 
 class Frame(NamedTuple):
@@ -135,7 +142,7 @@ def outset(problem: Problem, frame: Frame) -> Outset:
     per_p = speed_ratio(problem, frame.metric, 0.0)
     f, gradient = friction(problem, frame.t, frame.r * per_p)
     gradient *= per_p
-    along = flow(problem, frame.surface, 0.0)
+    along = friction_direction(problem, frame.surface, 0.0)
     return Outset(
         b_1 - frame.c_11 * frame.r,
         b_2 - frame.c_12 * frame.r,

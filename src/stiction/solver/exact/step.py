@@ -17,7 +17,7 @@ from stiction.solver.state import Memory, size_to_try
 from stiction.solver.stepping.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.stepping.limit import Limit, Time, limit_there, within_limit
 
-ROUNDING = 1e-15  # of the time: a landing so close to the end of the stretch is at its end
+ROUNDING = 1e-15  # of the time: a landing so close to the end of the segment is at its end
 DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
 
 

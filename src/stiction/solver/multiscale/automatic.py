@@ -62,7 +62,7 @@ class Automatic(Multiscale):
         self.lost = 0  # steps, by maps that did not pay
 
     def enter_segment(self, state: State, x: float, y: float) -> State:
-        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        """Return the state at the start of a segment, where the slip velocity jumps by (x, y)."""
         state = super().enter_segment(state, x, y)
         self.at = Leg(LOOK, LOOK, state)
         return state

@@ -44,7 +44,7 @@ class Multiscale(Exact):
         return super().begin(description)
 
     def enter_segment(self, state: State, x: float, y: float) -> State:
-        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        """Return the state at the start of a segment, where the slip velocity jumps by (x, y)."""
         if self.known is not None:
             self.known.last[:] = nan
         return super().enter_segment(state, x, y)

@@ -24,37 +24,43 @@ INCREMENT = 1.5e-8  # of a difference: the root of the rounding error
 State = tuple[float, ...]
 
 
-class PointedFlow(NamedTuple):
+class PointedSmoothLaw(NamedTuple):
     """A law as the smooth solver takes it: compiled functions, and its fields.
 
     Parameters
     ----------
-    flow_code, grain_code : int
-        Addresses of `flow_at` (without states, `friction_at`) and `grain_at`, compiled for this
-        law.
+    code, grain_code : int
+        Addresses of `friction_and_changes_at` (without states, `friction_at`) and `grain_at`,
+        compiled for this law.
     fields : ndarray
         Memory with the law's fields.
     unitless : ndarray of bool
         Whether the quantity in a column has no unit, for slip x, y and the internal states.
     """
 
-    flow_code: int
+    code: int
     grain_code: int
     fields: np.ndarray
     unitless: np.ndarray
 
 
-def point_to_flow(law: Any) -> PointedFlow:
+def point_to_smooth_law(law: Any) -> PointedSmoothLaw:
     """Return a law as the smooth solver takes it."""
     plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
-    own = flow_at if states(law) else friction_at
-    flow_code, grain_code, fields = code_and_fields(law, own, grain_at)
-    return PointedFlow(flow_code, grain_code, fields, plain)
+    own = friction_and_changes_at if states(law) else friction_at
+    code, grain_code, fields = code_and_fields(law, own, grain_at)
+    return PointedSmoothLaw(code, grain_code, fields, plain)
 
 
 @inlined
-def flow(
-    law: PointedFlow, slip: Vector, load: float, per_mass: float, w: Workspace, i: int, wanted: bool
+def friction_and_changes(
+    law: PointedSmoothLaw,
+    slip: Vector,
+    load: float,
+    per_mass: float,
+    w: Workspace,
+    i: int,
+    wanted: bool,
 ) -> Friction:
     """Return friction over mass and, on request, its derivatives by slip.
 
@@ -64,22 +70,22 @@ def flow(
         m/s, N, 1/kg.
     w : Workspace
         Row `i` of the values holds the internal states. Their rates of change, and the derivatives
-        of these and of friction, are written to the rows `i` of flow and jacobian.
+        of these and of friction, are written to the rows `i` of changes and jacobian.
     """
     found: Friction
     if w.size.shape[0] == 2:
-        found = call_friction(law.flow_code, law.fields, (slip[0], slip[1], load, per_mass))
+        found = call_friction(law.code, law.fields, (slip[0], slip[1], load, per_mass))
     else:
-        found = call_flow(
-            law.flow_code,
+        found = call_with_states(
+            law.code,
             law.fields,
-            (slip[0], slip[1], load, per_mass, wanted, i, w.values, w.flow, w.jacobian, w.size),
+            (slip[0], slip[1], load, per_mass, wanted, i, w.values, w.changes, w.jacobian, w.size),
         )
     return found
 
 
 @inlined
-def grain_of(law: PointedFlow, values: np.ndarray, i: int) -> float:
+def grain_of(law: PointedSmoothLaw, values: np.ndarray, i: int) -> float:
     """Return the slip speed below which friction is proportional to it, at a row's states."""
     found: float = call_grain(law.grain_code, law.fields, (values, i))
     return found
@@ -87,24 +93,24 @@ def grain_of(law: PointedFlow, values: np.ndarray, i: int) -> float:
 
 ROWS, SQUARES = types.float64[:, ::1], types.float64[:, :, ::1]
 FRICTION = (types.float64,) * 4
-FLOW = (*FRICTION, types.boolean, types.intp, ROWS, ROWS, SQUARES, types.float64[::1])
+WITH_STATES = (*FRICTION, types.boolean, types.intp, ROWS, ROWS, SQUARES, types.float64[::1])
 GRAIN = (ROWS, types.intp)
 FOUND = types.UniTuple(types.float64, 6)
 call_friction: Any = caller(FOUND, *FRICTION)
-call_flow: Any = caller(FOUND, *FLOW)
+call_with_states: Any = caller(FOUND, *WITH_STATES)
 call_grain: Any = caller(types.float64, *GRAIN)
 
 
 @entry_by_address(*FRICTION)
 def friction_at(law: Any, s_x: float, s_y: float, load: float, per_mass: float) -> Friction:
-    """Do as `flow` for the law without states at a pointer."""
+    """Do as `friction_and_changes` for the law without states at a pointer."""
     f, g, xx, xy, yx, yy = friction_and_gradient(pointee(law), (s_x, s_y), load)
     m = per_mass
     return f * m, g * m, xx * m, xy * m, yx * m, yy * m
 
 
-@entry_by_address(*FLOW)
-def flow_at(
+@entry_by_address(*WITH_STATES)
+def friction_and_changes_at(
     law: Any,
     s_x: float,
     s_y: float,
@@ -117,10 +123,10 @@ def flow_at(
     jacobian: np.ndarray,
     size: np.ndarray,
 ) -> Friction:
-    """Do as `flow` for the law with states at a pointer."""
+    """Do as `friction_and_changes` for the law with states at a pointer."""
     found: Any = pointee(law)
     slip, z = (s_x, s_y), states_in(found, values, i)
-    write_flow(found, slip, load, per_mass, z, i, to)
+    write_changes(found, slip, load, per_mass, z, i, to)
     if wanted:
         write_gradient(found, slip, load, per_mass, z, values, i, to, jacobian, size)
     m = jacobian[i]
@@ -134,7 +140,7 @@ def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     return max(grain(found, states_in(found, values, i)), FINEST)
 
 
-def write_flow(
+def write_changes(
     law: Any, slip: Vector, load: float, per_mass: float, z: State, i: int, to: np.ndarray
 ) -> None:
     """Write friction over mass and the internal states' rates of change to ``to[i]``."""
@@ -150,16 +156,16 @@ def write_gradient(
     z: State,
     values: np.ndarray,
     i: int,
-    flow: np.ndarray,
+    changes: np.ndarray,
     jacobian: np.ndarray,
     size: np.ndarray,
 ) -> None:
-    """Write the derivatives of ``flow[i]`` to ``jacobian[i]``.
+    """Write the derivatives of ``changes[i]`` to ``jacobian[i]``.
 
     They are the law's own, or forward differences.
     """
     write = own_gradient if hasattr(law, "gradient") else differences
-    write(law, slip, load, per_mass, z, values, i, flow, jacobian, size)
+    write(law, slip, load, per_mass, z, values, i, changes, jacobian, size)
 
 
 def own_gradient(
@@ -170,7 +176,7 @@ def own_gradient(
     z: State,
     values: np.ndarray,
     i: int,
-    flow: np.ndarray,
+    changes: np.ndarray,
     jacobian: np.ndarray,
     size: np.ndarray,
 ) -> None:
@@ -189,7 +195,7 @@ def differences(
     z: State,
     values: np.ndarray,
     i: int,
-    flow: np.ndarray,
+    changes: np.ndarray,
     jacobian: np.ndarray,
     size: np.ndarray,
 ) -> None:
@@ -203,9 +209,9 @@ def differences(
         at[k] = before + INCREMENT * (size[k] + abs(before))
         per = 1.0 / (at[k] - before)
         there = states_in(law, values, TRIAL)
-        write_flow(law, (at[0], at[1]), load, per_mass, there, TRIAL, flow)
+        write_changes(law, (at[0], at[1]), load, per_mass, there, TRIAL, changes)
         for j in range(len(size)):
-            jacobian[i, j, k] = (flow[TRIAL, j] - flow[i, j]) * per
+            jacobian[i, j, k] = (changes[TRIAL, j] - changes[i, j]) * per
         at[k] = before
 
 
@@ -234,8 +240,8 @@ def _states_in(law: Any, values: Any, i: Any) -> Callable[..., Any]:
     return lambda law, values, i: found(values, i)
 
 
-@stand_in(write_flow)
-def _write_flow(
+@stand_in(write_changes)
+def _write_changes(
     law: Any, slip: Any, load: Any, per_mass: Any, z: Any, i: Any, to: Any
 ) -> Callable[..., None]:
     n = _count(law)

@@ -108,8 +108,8 @@ def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Tri
     for k in range(w.size.shape[0] - 1, 1, -1):
         v = w.values
         z = v[1, k] - v[START, k], v[2, k] - v[START, k], v[3, k] - v[START, k]
-        flow = h * w.flow[1, k], h * w.flow[2, k], h * w.flow[3, k]
-        enter(w, k, less(times(D, z), flow))
+        change = h * w.changes[1, k], h * w.changes[2, k], h * w.changes[3, k]
+        enter(w, k, less(times(D, z), change))
     for k in range(w.size.shape[0] - 1, 1, -1):
         found = times(block(w, k, k), entry(w, k))
         enter(w, k, found)
@@ -156,7 +156,7 @@ def slip_without_states(
         for a in range(n):
             m[a, k] = g * w.jacobian[i, a, k] if a < 2 else -g * w.jacobian[i, a, k]
         m[k, k] += 1.0
-        r[k, 0] = w.values[i, k] - w.cubic[0, k] + weight * w.cubic[1, k] - g * w.flow[i, k]
+        r[k, 0] = w.values[i, k] - w.cubic[0, k] + weight * w.cubic[1, k] - g * w.changes[i, k]
     for k in range(n - 1, 1, -1):
         per = 1.0 / m[k, k]
         r[k, 0] *= per

@@ -111,7 +111,7 @@ def steady(w: Workspace, left: float) -> bool:
     """
     for k in range(2, w.size.shape[0]):
         forgotten = abs(w.jacobian[START, k, k]) + 1.0 / left
-        if not abs(w.flow[START, k]) < NEAR * w.size[k] * forgotten:
+        if not abs(w.changes[START, k]) < NEAR * w.size[k] * forgotten:
             return False
     return True
 

@@ -16,7 +16,7 @@ from stiction.solver.regularised import SMOOTHED
 from stiction.solver.rig import as_general
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
 from stiction.solver.smooth import loop
-from stiction.solver.smooth.dispatch import point_to_flow
+from stiction.solver.smooth.dispatch import point_to_smooth_law
 from stiction.solver.smooth.state import (
     SmoothMemory,
     SmoothMotion,
@@ -44,7 +44,7 @@ class Smooth:
         self.first_step = first_step(system_of(slider))
         self.states = len(states(law))
         self.law: Any = law if delta is None else SMOOTHED[smoothing](law, surface, delta)
-        self.flow = point_to_flow(self.law)
+        self.pointed = point_to_smooth_law(self.law)
         self.columns = COLUMNS + self.states
         self.rooms = workspace(self.states), workspace(self.states)
 
@@ -59,7 +59,7 @@ class Smooth:
         return SmoothState(motion, internal, memory, NOTHING)
 
     def enter_segment(self, state: SmoothState, x: float, y: float) -> SmoothState:
-        """Return the state at the start of a stretch, where the slip velocity jumps by (x, y)."""
+        """Return the state at the start of a segment, where the slip velocity jumps by (x, y)."""
         (t, u_x, u_y, s_x, s_y), internal, (h, h_last, ease, _, past, _), counts = state
         motion = SmoothMotion(t, u_x, u_y, s_x + x, s_y + y)
         # in a hold a step may become as long as the rest of the run
@@ -106,7 +106,7 @@ class Smooth:
         rig = problem.rig
         if is_aligned(rig):
             rig = as_general(problem.system.cos_phi, problem.system.sin_phi)
-        return problem._replace(law=self.flow, surface=Isotropic(), rig=rig)
+        return problem._replace(law=self.pointed, surface=Isotropic(), rig=rig)
 
     def step_accuracy(self, accuracy: Accuracy) -> Accuracy:
         """Return the tolerances of each step.

@@ -23,7 +23,7 @@ from stiction.solver.problem import (
 )
 from stiction.solver.regularised import Friction
 from stiction.solver.smooth.coordinate import slip_and_slope
-from stiction.solver.smooth.dispatch import flow
+from stiction.solver.smooth.dispatch import friction_and_changes
 from stiction.solver.smooth.workspace import START, Workspace
 from stiction.solver.stepping.block_algebra import Triple
 from stiction.solver.stepping.control import motion_of
@@ -141,8 +141,10 @@ def acting(
     """
     per = problem.system.per_mass
     if is_aligned(problem.rig):
-        return flow(problem.law, s, load, per, w, i, wanted)
-    f_x, f_y, xx, xy, yx, yy = flow(problem.law, outward(problem.rig, s), load, per, w, i, wanted)
+        return friction_and_changes(problem.law, s, load, per, w, i, wanted)
+    f_x, f_y, xx, xy, yx, yy = friction_and_changes(
+        problem.law, outward(problem.rig, s), load, per, w, i, wanted
+    )
     f_x, f_y = inward(problem.rig, (f_x, f_y))
     c = cross_damping(problem.rig) * per
     if wanted:

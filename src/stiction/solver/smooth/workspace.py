@@ -22,8 +22,8 @@ WANTED, UNWANTED = switch(True), switch(False)  # derivatives
 class Workspace(NamedTuple):
     """Arrays over rows and columns.
 
-    values : slip velocity (m/s) and z; flow : friction over mass (only where it is
-    needed) and dz/dt; jacobian : derivatives of the flow by values, ``[row, of, by]``; size :
+    values : slip velocity (m/s) and z; changes : friction over mass (only where it is
+    needed) and dz/dt; jacobian : derivatives of the changes by values, ``[row, of, by]``; size :
     scales of the errors of values; error : estimated error of values inside the step; past : slip
     coordinate and z of the last step; cubic : values inside the step and their derivative
     times h, ``[which, column]``; blocks, point, right : linear equations of a step and of a
@@ -32,7 +32,7 @@ class Workspace(NamedTuple):
     """
 
     values: np.ndarray
-    flow: np.ndarray
+    changes: np.ndarray
     jacobian: np.ndarray
     size: np.ndarray
     error: np.ndarray

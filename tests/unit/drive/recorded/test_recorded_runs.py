@@ -15,7 +15,7 @@ import stiction as st
 from stiction.analysis.motion.metadata import LOADING_RATE, compare_metadata
 from stiction.drive.program import nominal_velocity
 from stiction.solver.problem import Bend, Bends
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.stick import margin
 
 p = st.protocols
@@ -202,7 +202,7 @@ def test_bounds_of_the_margin_hold_between_rows(driven):
         drive=p.DriveProgram(program=[p.Recorded(time=T, velocity=SPEED)]),
         load=p.LoadProgram(program=[p.RecordedLoad(time=T[::2], load=LOAD[::2])]),
     )
-    problem = next(stretches(slider, 0.0, 0.3)).problem
+    problem = next(segments(slider, 0.0, 0.3)).problem
     assert isinstance(problem.bend, Bends)
     assert len(problem.bend.values) == 40
     e, step = np.array(slider.direction), 1e-6
@@ -220,7 +220,7 @@ def test_bounds_of_the_margin_hold_between_rows(driven):
 
 
 def test_a_drive_without_a_table_keeps_one_bound():
-    assert isinstance(next(stretches(STEADY, 0.0, 1.0)).problem.bend, Bend)
+    assert isinstance(next(segments(STEADY, 0.0, 1.0)).problem.bend, Bend)
 
 
 def test_steps_end_at_rows():

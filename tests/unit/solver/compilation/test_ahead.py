@@ -7,7 +7,7 @@ import pytest
 
 from stiction.solver.compilation import ahead, machine_code, pointer
 from stiction.solver.multiscale import method
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 
 KINDS = (numba.types.UniTuple(numba.int32, 3), numba.types.int64)  # as nothing else is compiled
 
@@ -67,7 +67,7 @@ def test_the_map_is_compiled_beside_steps_that_are_not_there(monkeypatch, slider
         lambda function, kinds: begun.append(function) or (lambda: waited.append(function)),
     )
     solver = method.Multiscale(slider, 1e-6)
-    problem = next(stretches(slider, 0.0, 1.0)).problem
+    problem = next(segments(slider, 0.0, 1.0)).problem
     for _ in range(2):
         solver.compile_map(problem)
     assert begun == ([] if steps_are_there else [method.stride])

@@ -55,7 +55,7 @@ def test_the_residuals(name, drawn, part, p, w):
     a = b - printed.k @ z - printed.c @ [p, p * w]
     speeds = p * np.sqrt(1 + w * w)
     f = np.array([printed.friction(frame.t + c * h, v)[0] for c, v in zip(C, speeds, strict=True)])
-    n_1, tau = np.array([printed.flow(each) for each in w]).T
+    n_1, tau = np.array([printed.friction_direction(each) for each in w]).T
     along = D @ (p - frame.r) + R - h * (a[0] - f * n_1)
     across = p * (D @ w) - h * (a[1] - w * a[0] - f * tau)
     found = residuals(problem, frame, o, h, p, w)

@@ -29,7 +29,7 @@ def test_the_motion_about_steady_sliding(name, drawn):
     problem, frame, _, printed, _ = begin(name, drawn, "not")
     start, e = plain(slip_frame.outset)(problem, frame), printed.axes
     f, _ = printed.friction(frame.t, frame.r)
-    n_1, tau = printed.flow(0.0)
+    n_1, tau = printed.friction_direction(0.0)
     s = e.T @ (printed.b(0.0) - printed.c @ [frame.r, 0.0] - f * np.array([n_1, tau]))
     change = printed.drive("rate", frame.t) - frame.r * e[0]
     curve = printed.drive("rate_change", frame.t) - s
@@ -71,8 +71,10 @@ def test_the_error_of_a_step(name, drawn, size, motion, accuracy, turned_by):
         s = p_in * np.array([1.0, w_in])
         a = printed.b(c * h) - printed.k @ z - printed.c @ s
         f, _ = printed.friction(frame.t + c * h, np.hypot(*s))
-        n_1, tau = printed.flow(w_in)
-        dtau = (printed.flow(w_in + 1e-6)[1] - printed.flow(w_in - 1e-6)[1]) / 2e-6
+        n_1, tau = printed.friction_direction(w_in)
+        dtau = (
+            printed.friction_direction(w_in + 1e-6)[1] - printed.friction_direction(w_in - 1e-6)[1]
+        ) / 2e-6
         off_p = p_c - h * (a[0] - f * n_1)
         off_w = p_in * w_c - h * (a[1] - w_in * a[0] - f * tau)
         off_w /= p_in + gamma * h * abs(a[0] + f * dtau)

@@ -215,7 +215,7 @@ def size_after(memory, t_stop):
 
 
 @pytest.mark.parametrize(("part", "after"), [(2.0, 2.0), (0.8, 1.6), (0.2, 0.4), (0.05, 1.0)])
-def test_the_size_after_a_step_to_the_end_of_a_stretch(part, after):
+def test_the_size_after_a_step_to_the_end_of_a_segment(part, after):
     """Twice its size, (M43); one so much shorter than the size to try says nothing of it."""
     taken, size = size_after(COLD._replace(h=1e-5), 0.35 + part * 1e-5)
     assert taken == pytest.approx(min(part, 1.0) * 1e-5, rel=1e-9)

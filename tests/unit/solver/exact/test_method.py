@@ -15,7 +15,7 @@ from stiction.solver.exact.loop import steps
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.integrate import integrate
 from stiction.solver.problem import kinds_of
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.state import NOTHING, PLANNED, Motion, State, first_step
 from stiction.system.description import Description, Settings
 
@@ -87,7 +87,7 @@ def test_the_loop_is_compiled_for_two_kinds_of_planes():
     turned = {"mass_y": 0.3, "mass_angle": "20 deg"}
     kinds = []
     for slider in (STEADY, ELLIPSE, STEADY.replace(**turned), ELLIPSE.replace(**turned)):
-        problem = next(stretches(slider, 0.0, 1.0)).problem
+        problem = next(segments(slider, 0.0, 1.0)).problem
         kinds.append(kinds_of(method.Exact(slider).point_law(problem)))
     assert kinds[0] != kinds[1] == kinds[2] == kinds[3]
 

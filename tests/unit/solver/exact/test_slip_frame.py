@@ -50,7 +50,7 @@ def test_what_acts_at_the_start(name, drawn):
     problem, frame, printed = frames_of(name, drawn)
     start = plain(slip_frame.outset)(problem, frame)
     f, slope = printed.friction(printed.t, printed.r)
-    n_1, tau = printed.flow(0.0)
+    n_1, tau = printed.friction_direction(0.0)
     a = printed.b(0.0) - printed.c @ [printed.r, 0.0]
     wanted = *a, *printed.db(0.0), f * n_1, slope * n_1, f * tau
     assert start == pytest.approx(wanted, rel=1e-11, abs=1e-12)

@@ -144,14 +144,14 @@ def test_a_landing_that_was_not_foreseen_is_found_from_the_step_beyond(name, par
     assert h == pytest.approx(found[2].h, rel=1e-3)
     assert p[2] == 0.0
     assert iterations <= found[-1] + newton.ITERATIONS  # of the step beyond
-    # not beyond the end of the stretch
+    # not beyond the end of the segment
     stop = frame.t + 0.9 * h
     done, landing, (_, h, _, _), *_ = blind(problem, frame, start, stop, memory, accuracy)
     assert (done, landing) == (True, False)
     assert h == pytest.approx(stop - frame.t, rel=1e-9)
 
 
-def test_a_landing_beyond_the_end_of_the_stretch_is_no_landing(monkeypatch):
+def test_a_landing_beyond_the_end_of_the_segment_is_no_landing(monkeypatch):
     """Found from a guess before that end: then the step ends there, and slips on."""
     problem, frame, start, *_ = slowing(1e-3)
     memory, accuracy = COLD._replace(h=1e-2), held_to(3e-2)

@@ -13,7 +13,7 @@ from stiction.solver.exact import loop
 from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale import construction, interpolant, section
 from stiction.solver.multiscale.return_map import WIDEST
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.state import NOTHING, Counts, Motion, State
 
 # the paper's, but hardly stiff across: some ten steps a cycle, a hundred cycles a second
@@ -28,7 +28,7 @@ MOST = 10_000  # turns of the loop
 def problem_of(name):
     """Return what the solver works on."""
     damped = SOFT.replace(c_x=2.0, c_y=3.0)
-    return next(stretches({"soft": SOFT, "damped": damped}[name], 0.0, 10.0)).problem
+    return next(segments({"soft": SOFT, "damped": damped}[name], 0.0, 10.0)).problem
 
 
 def taking_off(problem, theta, t=0.0):

@@ -12,7 +12,7 @@ from stiction.solver.multiscale.interpolant import POINTS, interpolate
 from stiction.solver.multiscale.return_map import Cycle
 from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
 from stiction.solver.problem import Problem
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 
 angle, elongation_held, lead, wrap_angle = map(plain, (angle, elongation_held, lead, wrap_angle))
 interpolate, remember, recall = map(plain, (interpolate, remember, recall))
@@ -252,7 +252,7 @@ def test_it_is_yes_or_no(slider):
 def test_sticks_end_on_a_closed_curve(slider, theta, driven):
     law = st.laws.Anisotropic(st.Coulomb(0.2, 0.25), 0.4, "30 deg")
     system = slider.replace(friction=law, c_x=2.0, c_y=30.0, driven=driven)
-    problem: Problem = next(stretches(system, 0.0, 1.0)).problem
+    problem: Problem = next(segments(system, 0.0, 1.0)).problem
     u_x, u_y = elongation_held(problem, theta)
     assert angle(problem, u_x, u_y) == pytest.approx(theta, abs=1e-12)
     early = lead(problem, theta)

@@ -14,7 +14,7 @@ from stiction.solver.accuracy import Accuracy
 from stiction.solver.problem import Elliptic, Isotropic
 from stiction.solver.regularised import Smoothed
 from stiction.solver.smooth import dispatch, loop
-from stiction.solver.smooth.dispatch import PointedFlow
+from stiction.solver.smooth.dispatch import PointedSmoothLaw
 from stiction.solver.smooth.state import SmoothMotion
 from stiction.solver.smooth.workspace import workspace
 from stiction.solver.stepping.radau import A, C, D
@@ -61,8 +61,8 @@ EXACT = Accuracy(1e-6, 1e-12, 1e-4, 0.1, 0.02, inf, 2e-3, 2.5e-4, 6e-6, 0.0, 0.0
 def behind(law):
     """Return a law as the solver takes it, but as plain Python."""
     unitless = [True, True, *(each.unit == "1" for each in states(law))]
-    code = plain(dispatch.flow_at if states(law) else dispatch.friction_at)
-    return PointedFlow(code, plain(dispatch.grain_at), law, np.array(unitless))
+    code = plain(dispatch.friction_and_changes_at if states(law) else dispatch.friction_at)
+    return PointedSmoothLaw(code, plain(dispatch.grain_at), law, np.array(unitless))
 
 
 @cache

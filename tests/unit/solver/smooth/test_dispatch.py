@@ -8,7 +8,7 @@ from tests.unit.solver.smooth.systems import LAWS, STATEFUL, STATELESS, behind, 
 from stiction.friction.law import states
 from stiction.solver.regularised import Smoothed
 from stiction.solver.smooth import dispatch
-from stiction.solver.smooth.dispatch import FINEST, INCREMENT, PointedFlow
+from stiction.solver.smooth.dispatch import FINEST, INCREMENT, PointedSmoothLaw
 from stiction.solver.smooth.workspace import SECOND, TRIAL, workspace
 
 LOAD, PER_MASS = 7.0, 4.0
@@ -34,7 +34,7 @@ def friction_over_mass(name, slip, z):
 def test_a_law_without_states(name, slip):
     """(M60), and its derivatives, by central differences; at zero slip they exist as well."""
     law, w = room(name)
-    found = plain(dispatch.flow)(law, slip, LOAD, PER_MASS, w, SECOND, True)
+    found = plain(dispatch.friction_and_changes)(law, slip, LOAD, PER_MASS, w, SECOND, True)
     own = LAWS[name][0]
     n, s = np.array([[own.surface.xx, own.surface.xy], [own.surface.xy, own.surface.yy]]), slip
     size = np.sqrt(s @ n @ s + own.delta**2)
@@ -57,10 +57,10 @@ def test_a_law_with_states(name, slip):
     """Friction, change, and derivatives: the law's own are exact, others forward differences."""
     law, w = room(name)
     own, z = LAWS[name]
-    found = plain(dispatch.flow)(law, slip, LOAD, PER_MASS, w, SECOND, True)
+    found = plain(dispatch.friction_and_changes)(law, slip, LOAD, PER_MASS, w, SECOND, True)
     change = own.change(slip, LOAD, z)
     assert found[:2] == pytest.approx(friction_over_mass(name, slip, z), rel=1e-14)
-    assert w.flow[SECOND] == pytest.approx([*found[:2], *change], rel=1e-14)
+    assert w.changes[SECOND] == pytest.approx([*found[:2], *change], rel=1e-14)
 
     def both(x):
         friction = friction_over_mass(name, x[:2], x[2:])
@@ -76,7 +76,7 @@ def test_a_law_with_states(name, slip):
     assert w.values[SECOND].tolist() == [0.0, 0.0, *z]
     before = w.jacobian.copy()
     w.values[SECOND, 2:] *= 1.1
-    again = plain(dispatch.flow)(law, slip, LOAD, PER_MASS, w, SECOND, False)
+    again = plain(dispatch.friction_and_changes)(law, slip, LOAD, PER_MASS, w, SECOND, False)
     assert again[:2] != found[:2]
     assert (w.jacobian == before).all()
 
@@ -85,7 +85,7 @@ def test_forward_differences():
     """By the printed increment of each column; a linear law's are exact up to rounding."""
     law, w = room("fed")
     slip, (z,) = SLIPS[0], LAWS["fed"][1]
-    plain(dispatch.flow)(law, slip, LOAD, PER_MASS, w, SECOND, True)
+    plain(dispatch.friction_and_changes)(law, slip, LOAD, PER_MASS, w, SECOND, True)
     f, (x, y) = LAWS["fed"][0].mu * LOAD * PER_MASS, slip
     # forward differences of y + x x - z by x are 2 x + step
     step = INCREMENT * (w.size[0] + abs(x))
@@ -110,8 +110,8 @@ def test_a_grain_is_no_less_than_the_finest():
 
 @pytest.mark.parametrize(("name", "unitless"), [("lugre", [False, False]), ("ageing", [True])])
 def test_which_columns_have_no_unit(name, unitless):
-    law = dispatch.point_to_flow(LAWS[name][0])
-    assert isinstance(law, PointedFlow)
+    law = dispatch.point_to_smooth_law(LAWS[name][0])
+    assert isinstance(law, PointedSmoothLaw)
     assert law.unitless.tolist() == [True, True, *unitless]
 
 

@@ -19,7 +19,7 @@ def draw_workspace(n, seed):
     """Return a workspace with random values and derivatives, and a stream of numbers."""
     numbers = iter(inside(seed + 1, *[(-1.0, 1.0)] * 600)[seed])
     w = plain(workspace)(n)
-    for array in (w.values, w.flow, w.jacobian, w.cubic):
+    for array in (w.values, w.changes, w.jacobian, w.cubic):
         array.flat[:] = [next(numbers) for _ in range(array.size)]
     for k in range(2, n + 2):  # states decay
         w.jacobian[:, k, k] = -abs(w.jacobian[:, k, k]) - 1.0
@@ -52,7 +52,9 @@ def test_a_step_of_slip_and_states(n, seed):
             whole[a, :, k] += (H if a < 2 else -H) * np.diag(j[:, a, k])
         whole[k, :, k] += D
     x, y = rest[4:6]
-    z = [D @ (w.values[1:4, k] - w.values[START, k]) - H * w.flow[1:4, k] for k in range(2, size)]
+    z = [
+        D @ (w.values[1:4, k] - w.values[START, k]) - H * w.changes[1:4, k] for k in range(2, size)
+    ]
     matrix = whole.reshape(3 * size, 3 * size)
     wanted = np.linalg.solve(matrix, np.concatenate([x, y, *z])).reshape(size, 3)
     as_tuples = [tuple(map(tuple, block.tolist())) for block in blocks]
@@ -85,7 +87,7 @@ def test_a_point_inside_a_step(n, seed):
     matrix[2:, :2] = -g * j[2:, :2] @ slope
     matrix[:2, 2:] = g * j[:2, 2:]
     matrix[2:, 2:] = np.eye(n) - g * j[2:, 2:]
-    off = w.values[INSIDE] - w.cubic[0] + weight * w.cubic[1] - g * w.flow[INSIDE]
+    off = w.values[INSIDE] - w.cubic[0] + weight * w.cubic[1] - g * w.changes[INSIDE]
     wanted = np.linalg.solve(matrix, [*slip[4:], *off[2:]])
     found = plain(elimination.slip_without_states)(g, weight, at, tuple(slip), w)
     d = np.linalg.solve(np.reshape(found[:4], (2, 2)), found[4:])
@@ -101,7 +103,7 @@ def test_a_point_inside_a_step(n, seed):
 
 def test_the_room_of_a_step():
     w = plain(workspace)(2)
-    assert w.values.shape == w.flow.shape == (6, 4)
+    assert w.values.shape == w.changes.shape == (6, 4)
     assert w.jacobian.shape == (6, 4, 4)
     assert w.past.shape == (4, 4)
     assert w.blocks.shape == (4, 4, 9)

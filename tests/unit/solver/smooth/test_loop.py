@@ -1,4 +1,4 @@
-"""The loop of smooth steps: where a step starts and ends, and whole stretches against SciPy."""
+"""The loop of smooth steps: where a step starts and ends, and whole segments against SciPy."""
 
 from math import hypot, inf
 
@@ -23,7 +23,7 @@ from tests.unit.solver.smooth.systems import (
 
 import stiction as st
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.smooth import loop, right_hand_side
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.loop import COARSEST
@@ -121,7 +121,7 @@ def test_what_states_are_held_against_is_made_anew(name):
 
 @pytest.mark.parametrize("name", LAWS)
 @pytest.mark.parametrize("drive", ["program", "spring"])
-def test_a_stretch_against_scipy(name, drive):
+def test_a_segment_against_scipy(name, drive):
     """Radau of SciPy at 1e-10, on the printed equations; with samples along the way."""
     printed, n = Equations(name, drive), len(LAWS[name][1])
 
@@ -150,7 +150,7 @@ def test_a_stretch_against_scipy(name, drive):
 
 
 @pytest.mark.parametrize("name", ["smoothed", "lugre", "ageing"])
-def test_a_stretch_in_parts_is_the_whole(name):
+def test_a_segment_in_parts_is_the_whole(name):
     """A budget of steps pauses it: to the last bit the same."""
     end = TIME + 2e-3
     code, whole, _, turns = advance(name, end)
@@ -165,7 +165,7 @@ def test_a_stretch_in_parts_is_the_whole(name):
     assert state.counts == whole.counts
     assert state.internal.tolist() == whole.internal.tolist()
     assert state.memory.past.tolist() == whole.memory.past.tolist()
-    assert not whole.memory.warm  # at the end of a stretch nothing predicts the next
+    assert not whole.memory.warm  # at the end of a segment nothing predicts the next
     if len(given):
         assert state_of(name).internal.tolist() == list(LAWS[name][1])
     assert advance(name, TIME)[0] == COMPLETED
@@ -176,11 +176,11 @@ def test_a_stretch_in_parts_is_the_whole(name):
 def test_what_it_starts_from_is_not_changed():
     slider = st.presets.nakano_popov_2020().replace(friction=LAWS["lugre"][0])
     description = st.simulate(slider, 1e-3, sample_rate=0).description
-    stretch, method = next(stretches(slider, 0.0, 1.0)), Smooth(slider, None)
+    segment, method = next(segments(slider, 0.0, 1.0)), Smooth(slider, None)
     held = EXACT._replace(newton=1e-9)
     state = method.begin(description)
     before, out = copy_of(state), Output(NO_TIMES, np.zeros((0, COLUMNS + 2)), NO_TIMES)
-    code, after = method.advance(stretch.problem, state, 1e-3, held, 1000, out)
+    code, after = method.advance(segment.problem, state, 1e-3, held, 1000, out)
     assert (code, out.used) == (COMPLETED, after.counts.steps)
     assert after.internal.tolist() != before.internal.tolist()
     assert state.internal.tolist() == before.internal.tolist()
@@ -218,7 +218,7 @@ def test_the_size_of_the_next_step(name):
     _, state, _, _ = advance(name, end, state=state_of(name, h=1e-2), budget=1)
     assert state.counts.rejected > 0
     assert state.memory.h <= state.memory.h_last
-    # a step that the end of the stretch cuts says nothing of the next
+    # a step that the end of the segment cuts says nothing of the next
     _, state, _, _ = advance(name, TIME + 1e-7)
     assert state.memory.h == 1e-5
     _, state, _, _ = advance(name, TIME + 0.9e-5)

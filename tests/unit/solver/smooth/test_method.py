@@ -11,7 +11,7 @@ import stiction as st
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import kinds_of
 from stiction.solver.regularised import Smoothed
-from stiction.solver.segments import stretches
+from stiction.solver.segments import segments
 from stiction.solver.smooth.method import SPEED_SHARE, Smooth
 from stiction.solver.state import NOTHING
 from stiction.system.description import Description, Settings
@@ -51,7 +51,7 @@ def test_the_loop_is_compiled_once_for_all_rigs_and_surfaces():
     general = AGEING.replace(mass_y="0.6 kg", mass_angle="35 deg")
     kinds = []
     for slider, delta in ((AGEING, None), (general, None), (STEADY, 1e-3), (ELLIPSE, 1e-3)):
-        problem = next(stretches(slider, 0.0, 1.0)).problem
+        problem = next(segments(slider, 0.0, 1.0)).problem
         kinds.append(kinds_of(Smooth(slider, delta).point_law(problem)))
     assert len({*kinds}) == 1
 

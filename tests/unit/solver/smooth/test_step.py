@@ -157,7 +157,7 @@ def test_a_step_to_the_next_float_can_be_refused_too(monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["smoothed", "ageing"])
-def test_a_step_ends_at_the_end_of_the_stretch_at_most(name):
+def test_a_step_ends_at_the_end_of_the_segment_at_most(name):
     _, start, _, _ = take_step(name, 1e-6, 1e-3)
     for part, wanted in ((0.4, 0.4e-6), (1.0, 1e-6), (1.6, 1e-6)):
         *_, (done, h, _, _, _) = take_step(name, 1e-6, 1e-3, start.t + part * 1e-6)
