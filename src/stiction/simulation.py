@@ -62,17 +62,10 @@ def simulate(
         run. With ``multiscale=True`` the first and last state only. Samples never influence the
         steps, and stick intervals are all recorded anyway.
     rtol : float, optional
-        Relative tolerance, 1e-13 to 1e-2; for the paper's Fig. 3 over 5 s the relative error of u_x
-        is below it. Each step is kept to a share of 0.8 rtol^0.8 (1.3e-5 at the default), relative
-        to the slip, but to no more than the drive's speed, nor than the motion about steady
-        sliding. The promise for the whole run: its forces are off by no more than 30 times what the
-        apparatus itself would do if its mass, or its normal load, were greater by that share. It
-        is tested on random systems, of which a few exceed it: see "How right it is" in the
-        documentation (docs/explanation/how-right.md). Where a run comes to unstable steady
-        sliding within rounding it leaves that, but when is up to rounding. A tenth of `rtol`
-        divides the error by ten where steps resolve the fastest oscillation, by six where that has
-        died out, and both on average only: the steps then lie elsewhere, so that a neighbouring
-        tolerance may gain nothing.
+        Relative tolerance, 1e-13 to 1e-2. Forces are off by no more than 30 times what the
+        apparatus itself would do if its mass, or its normal load, were greater by 0.8 rtol^0.8
+        (1.3e-5 at the default); a few random systems exceed that. See "How right it is" in the
+        documentation (docs/explanation/how-right.md).
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional

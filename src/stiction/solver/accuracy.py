@@ -15,10 +15,13 @@ from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 
 # Of the force, as the error of its rounding: slip that grows out of it is known no better
-ROUNDING = 1e-15
+ROUNDING_OF_FORCE = 1e-15
 LEAST_SPEED = 1e-15  # of the initial speeds: slower slip counts as zero
 LEAST_MOTION = 1e-13  # of velocities: error that any step may have, well above a float's rounding
 LEAST_FLOAT = float(np.finfo(np.float64).tiny)
+SLOW = 1e-6  # of the speed that friction can cause: the scale of slip without a drive
+# negligible Newton corrections over the tolerance: times its root, and at most
+NEWTON_SHARE, NEWTON_MOST = 100.0, 0.2
 FACTOR = 0.8  # of (M39): measured by python -m benchmarks --only calibration
 
 
@@ -105,17 +108,17 @@ def accuracy(
     free_y = mu * load * sqrt(surface.yy / (system.mass * system.k_y))
     free = min(free_x, free_y)
     square_x, square_y = system.mass / system.k_x, system.mass / system.k_y
-    speed, k = (across, system.k_y) if across > 0.0 else (along or 1e-6 * free, system.k_x)
+    speed, k = (across, system.k_y) if across > 0.0 else (along or SLOW * free, system.k_x)
     if free > 0.0:
         speed = min(speed, free)
     local, weakening, rounding = tolerance(rtol), 0.0, 0.0
     if not has_state(law):
         weakening = steepest_weakening(law, speed) * load
-        rounding = ROUNDING * free / (1.0 + weakening / sqrt(k * system.mass)) / local
+        rounding = ROUNDING_OF_FORCE * free / (1.0 + weakening / sqrt(k * system.mass)) / local
     speed = speed / (1.0 + weakening**2 / (k * system.mass))
     speed = max(speed, rounding, LEAST_SPEED * elastic, LEAST_FLOAT)
     # (M34): Newton's error must not show at a step's end, which is more accurate than its interior
-    newton = min(0.2, 100.0 * sqrt(local)) * local
+    newton = min(NEWTON_MOST, NEWTON_SHARE * sqrt(local)) * local
     rate = fastest_swing(segment.problem)
     longest = 0.5 * pi / rate if rate > 0.0 else inf
     least = LEAST_MOTION * (along + across + free_x + free_y) / local

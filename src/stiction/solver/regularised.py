@@ -15,6 +15,8 @@ from stiction.solver.problem import Elliptic, Isotropic, Problem, by_type, coeff
 # friction x and y, and their derivatives by slip: xx, xy, yx, yy
 Friction = tuple[float, float, float, float, float, float]
 
+SERIES = 1e-3  # of delta: below, two terms of a series, whose next one is of the order x^4
+
 
 class Smoothed(NamedTuple):
     """F N s/sqrt(s.N s + delta^2) (M60): a set-valued law F without its jump at zero slip.
@@ -60,7 +62,7 @@ class SmoothedByArctan(Smoothed):
     def slip_factor(law, square: float) -> tuple[float, float]:
         """Return h = (2/pi) atan(q/delta)/q and -h'/(q h), for q^2; a series where q is small."""
         x = sqrt(square) / law.delta
-        if x < 1e-3:  # the first term left out is of the order x^4
+        if x < SERIES:
             h = 2.0 / (pi * law.delta) * (1.0 - x * x / 3.0)
             return h, (2.0 / 3.0 - (4.0 / 5.0 - 2.0 / 9.0) * x * x) / (law.delta * law.delta)
         share = atan(x) / x

@@ -15,6 +15,8 @@ from stiction.solver.compilation.stand_in import called_from_both
 from stiction.solver.problem import System
 from stiction.solver.stepping.limit import NO_LIMIT, Limit, elsewhere
 
+FIRST_STEP = 0.05  # of the time in which the faster spring swings by a radian
+PLAN_LEAST, PLAN_MOST = 0.4, 1.5  # of the size that the last error allows
 STICK = 80.0  # bytes of memory per stick interval, for all tables and intermediate arrays
 # how the loop ended; it runs on, or asks how long a step about steady sliding may be
 ASKS, RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = range(-2, 5)
@@ -135,7 +137,7 @@ def state_from_plain(state: Plain) -> State:
 
 def first_step(system: System) -> float:
     """Return the size of the first step to try, s."""
-    return 0.05 / sqrt(max(system.k_x, system.k_y) / system.mass)
+    return FIRST_STEP / sqrt(max(system.k_x, system.k_y) / system.mass)
 
 
 def start(system: System, t: float, u: tuple[float, float], slip: tuple[float, float]) -> State:
@@ -199,7 +201,7 @@ def write_plan(plan: Plan, place: int, h: float) -> Plan:
 def size_to_try(memory: Memory) -> float:
     """Return the size of the next step: the plan's, unless the last step contradicts it."""
     if 0 < memory.place < PLANNED and memory.plan[memory.place] > 0.0:
-        return min(max(memory.plan[memory.place], 0.4 * memory.h), 1.5 * memory.h)
+        return min(max(memory.plan[memory.place], PLAN_LEAST * memory.h), PLAN_MOST * memory.h)
     return memory.h
 
 

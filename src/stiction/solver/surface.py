@@ -19,6 +19,7 @@ from stiction.solver.problem import Problem, is_aligned, isotropic, metric
 
 ROOT = 1e-15  # of 1: of the convex equation of a take-off
 CLIMBED = 1e-16  # of t: a step towards it
+CLIMBS = 50  # iterations
 
 
 class FrictionDirection(NamedTuple):
@@ -120,7 +121,7 @@ def takeoff(problem: Problem, a: tuple[float, float], f: float) -> tuple[float, 
         return a
     n, t = problem.surface, 0.0
     y = a
-    for _ in range(50):
+    for _ in range(CLIMBS):
         xx, xy, yy = f * f * n.xx + t, f * f * n.xy, f * f * n.yy + t
         per = 1.0 / (xx * yy - xy * xy)
         y = (yy * a[0] - xy * a[1]) * per, (xx * a[1] - xy * a[0]) * per

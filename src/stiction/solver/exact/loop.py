@@ -55,6 +55,11 @@ from stiction.solver.stepping.limit import ASKED, elsewhere
 from stiction.solver.stick import holding, holds_on, margin, stick_duration, to_spare
 from stiction.solver.surface import takeoff
 
+NOT_CUT = 0.9  # of the size to try: a shorter step was cut or refused, which is not a trend
+REMNANT = 0.1  # of the size: a step that the end of a segment cuts to less says nothing of the next
+PLAN_GROWTH = 4.0  # of the sizes in the plan, at most
+AT_REST, AT_REST_ON_ELLIPSE = 1e-13, 1e-3  # of the tolerated slip speed
+
 
 @inlined
 def stick(
@@ -151,13 +156,13 @@ def slip(
     end = t_stop if t + h >= t_stop else t + h
     plan = memory.plan
     if memory.place < PLANNED and end < t_stop:
-        plan = write_plan(plan, memory.place, h * step_factor(error, 4.0))
+        plan = write_plan(plan, memory.place, h * step_factor(error, PLAN_GROWTH))
     # Gustafsson's predictive control (M43): a growing error is expected to grow on; not after a cut
     # step, as before a landing, which it would postpone for ever
-    if r > 0.0 and memory.warm and h > 0.9 * size_to_try(memory):
+    if r > 0.0 and memory.warm and h > NOT_CUT * size_to_try(memory):
         factor = min(factor, trend(h, memory.h_last, at_ease, memory.ease))
     memory = Memory(
-        h * factor if h > 0.1 * memory.h or end < t_stop else memory.h,
+        h * factor if h > REMNANT * memory.h or end < t_stop else memory.h,
         plan,
         1 if turns_up(r, p) else memory.place + 1,
         h,
@@ -185,9 +190,9 @@ def at_rest(problem: Problem, motion: Motion, accuracy: Accuracy) -> bool:
     turning as it vanishes. There a slip that friction is about to end is cut off earlier.
     """
     tolerated = accuracy.tolerance * accuracy.speed
-    if motion.r < 1e-13 * tolerated:
+    if motion.r < AT_REST * tolerated:
         return True
-    if isotropic(problem.surface) or motion.r > 1e-3 * tolerated:
+    if isotropic(problem.surface) or motion.r > AT_REST_ON_ELLIPSE * tolerated:
         return False
     return margin(problem, motion.t, motion.u_x, motion.u_y)[0] < 0.0
 

@@ -26,6 +26,7 @@ from stiction.solver.stepping.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE
 
 FIFTH, APART = 0.2, sqrt(6.0) / 10.0  # the stages are 2/5 -+ sqrt(6)/10 and 1
 LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic is as good; above, it replaces the swing
+JUST_BELOW = 0.99  # of MOST: a step that is cut to it is superposed still
 CALM = 3.0  # of k h^2 over a drifting level: near MOST, the defect misses what is left of cos
 UNEXPLAINED = 0.5  # of the slip's change: a drift that leaves more of it is none
 STRONGEST = 0.2  # of |beta|/sqrt(k): with stronger damping it dies out within one swing
@@ -111,7 +112,7 @@ def within_reach(o: Oscillator, h: float, accuracy: Accuracy, motion: float) -> 
 
     `motion` is that about steady sliding, m/s.
     """
-    most = 0.99 * MOST if o.drift == 0.0 else CALM
+    most = JUST_BELOW * MOST if o.drift == 0.0 else CALM
     if o.k * h * h < most or not weakly_damped(o):
         return h
     size = accuracy.tolerance * min(accuracy.speed + o.level + o.x, motion)

@@ -14,12 +14,15 @@ from stiction.solver.stepping.block_algebra import Triple, inverse, times
 from stiction.solver.stepping.radau import FIRST, SECOND, THIRD, A, C, D, cubic
 from stiction.solver.stick import margin
 
+CLOSE_BY = 2.5  # step sizes: a landing so soon is looked at closely
+REMAINS = 0.1  # of the slip, at the end: the least that is guessed
+
 
 @inlined
 def time_to_landing(frame: Frame, start: Outset, o: Oscillator, h: float) -> float:
     """Return the time to zero slip, in s; accurate only if it is comparable to `h`."""
     t = landing_of_parabola(frame, start)
-    return swung_to_rest(o, t) if t < 2.5 * h else t
+    return swung_to_rest(o, t) if t < CLOSE_BY * h else t
 
 
 @inlined
@@ -86,7 +89,7 @@ def predict(
     p = (
         max(r + change * c[0], r * (1 - C[0])),
         max(r + change * c[1], r * (1 - C[1])),
-        max(r + change * c[2], 0.1 * r),
+        max(r + change * c[2], REMAINS * r),
     )
     return p, (0.0, 0.0, 0.0)
 

@@ -105,7 +105,7 @@ def on_polynomial(
     across: Triple,
     dt: float,
 ) -> tuple[float, float, float, float]:
-    """Return the same of a step of size `h` from the slip `r`, given its stages.
+    """Evaluate the dense output of a step of size `h` from the slip `r`, given its stages.
 
     `rest` is p at the stages less the oscillation that it is laid over, if it is; `turn` is w, and
     `across` p w.

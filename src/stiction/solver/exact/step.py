@@ -17,8 +17,10 @@ from stiction.solver.state import Memory, size_to_try
 from stiction.solver.stepping.control import ATTEMPTS, FAILED, RESOLUTION, step_factor
 from stiction.solver.stepping.limit import Limit, Time, limit_there, within_limit
 
-ROUNDING = 1e-15  # of the time: a landing so close to the end of the segment is at its end
+ROUNDING_OF_TIME = 1e-15  # of the time: a landing so close to the end of the segment is at its end
 DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
+# of the slip, at the first two stages: a first guess where a step turns out to land
+LANDING_FIRST, LANDING_SECOND = 0.5, 0.2
 
 
 @inlined
@@ -71,12 +73,13 @@ def step(
         converged, taken, count = solve(problem, frame, o, taken, landing, accuracy, motion)
         _, h, p, w = taken
         iterations += count
-        if converged and landing and t + h > t_stop + ROUNDING * abs(t_stop):
+        if converged and landing and t + h > t_stop + ROUNDING_OF_TIME * abs(t_stop):
             h, landing, may_land = t_stop - t, False, False
             continue
         if converged and not landing and p[2] < 0.0 and may_land:
             h *= frame.r / (frame.r - p[2])
-            p, landing, warm = (0.5 * frame.r, 0.2 * frame.r, 0.0), True, True
+            p = LANDING_FIRST * frame.r, LANDING_SECOND * frame.r, 0.0
+            landing, warm = True, True
             continue
         factor = FAILED
         if converged and min(p) >= 0.0:

@@ -98,7 +98,7 @@ class Automatic(Multiscale):
         return code, now
 
     def after_map(self, tried: MapTrial, left: int, now: State) -> Leg | MapTrial:
-        """Return what comes next: another leg if the map has cost too much."""
+        """Choose the next leg, or keep the map until it has cost too much."""
         if left >= 0:
             return tried
         self.lost += tried.stake - left

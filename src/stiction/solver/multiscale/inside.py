@@ -28,7 +28,6 @@ from stiction.solver.exact.sampling import write_slip
 from stiction.solver.multiscale.interpolant import POINTS, interpolate
 from stiction.solver.multiscale.return_map import (
     AT_EDGE,
-    COLUMNS,
     FIRST_PIECE,
     NEAR,
     NODE_COUNT,
@@ -40,13 +39,14 @@ from stiction.solver.multiscale.return_map import (
     PIECE_COUNT,
     PIECES,
     RESOLVED,
+    SLIP_COLUMNS,
     Inside,
     Returns,
 )
 from stiction.solver.problem import Problem, at, static
 from stiction.solver.surface import metric_into
 
-BLOCK = PHASES * COLUMNS
+BLOCK = PHASES * SLIP_COLUMNS
 STEEP = 2.0  # ratio of the times held at the ends of a patch that is near an edge
 NEWTON, NUDGE = 5, 1e-4  # iterations to find an edge, and difference of places for a slope
 FOLD = 6  # nodes summed side by side, for speed
@@ -160,7 +160,7 @@ def error_of_phases(inside: Inside, pieces: int) -> float:
     worst = 0.0
     for p in range(pieces + 1):
         own, end = (p - 1, 1) if p > 0 else (0, 0)
-        for c in range(COLUMNS):
+        for c in range(SLIP_COLUMNS):
             off = -inside.points[pieces * PHASES + p, c]
             for m in range(PHASES):
                 off += ENDS[end, m] * inside.points[own * PHASES + m, c]
@@ -316,12 +316,12 @@ def added_motion(inside: Inside, n: int, pieces: int) -> float:
     for p in range(pieces):
         values = inside.values[first + p]
         for m in range(PHASES):
-            for c in range(COLUMNS):
+            for c in range(SLIP_COLUMNS):
                 off = inside.points[p * PHASES + m, c]
                 for i in range(n):
-                    off -= inside.basis[i] * values[i, m * COLUMNS + c]
+                    off -= inside.basis[i] * values[i, m * SLIP_COLUMNS + c]
                 worst = max(worst, abs(off) / inside.bound[c])
-                values[n, m * COLUMNS + c] = off / product
+                values[n, m * SLIP_COLUMNS + c] = off / product
     return worst
 
 
@@ -360,11 +360,11 @@ def finish_motion(known: Returns) -> None:
             for j in range(BLOCK):
                 inside.block[j] = values[j]
             for a in range(PHASES):
-                for c in range(COLUMNS):
+                for c in range(SLIP_COLUMNS):
                     total = 0.0
                     for m in range(PHASES):
-                        total += MONOMIALS[a, m] * inside.block[m * COLUMNS + c]
-                    values[a * COLUMNS + c] = total
+                        total += MONOMIALS[a, m] * inside.block[m * SLIP_COLUMNS + c]
+                    values[a * SLIP_COLUMNS + c] = total
 
 
 @inlined
@@ -389,8 +389,8 @@ def at_angle(values: np.ndarray, nodes: int, x: float, block: np.ndarray) -> Non
 @inlined
 def cubic_of(block: np.ndarray, j: int, y: float, square: float) -> float:
     """Return the part of a polynomial that four coefficients of a column make."""
-    even = block[j] + block[j + 2 * COLUMNS] * square
-    odd = block[j + COLUMNS] + block[j + 3 * COLUMNS] * square
+    even = block[j] + block[j + 2 * SLIP_COLUMNS] * square
+    odd = block[j + SLIP_COLUMNS] + block[j + 3 * SLIP_COLUMNS] * square
     return float(even + odd * y)
 
 
@@ -398,11 +398,11 @@ def cubic_of(block: np.ndarray, j: int, y: float, square: float) -> float:
 def write_at_phase(block: np.ndarray, y: float, samples: np.ndarray, k: int) -> None:
     """Write the sample at a place in the piece whose coefficients are set."""
     square = y * y
-    for c in range(COLUMNS):
+    for c in range(SLIP_COLUMNS):
         low = cubic_of(block, c, y, square)
-        high = cubic_of(block, c + 4 * COLUMNS, y, square)
+        high = cubic_of(block, c + 4 * SLIP_COLUMNS, y, square)
         samples[k, c] = low + high * (square * square)
-    samples[k, COLUMNS] = 0.0
+    samples[k, SLIP_COLUMNS] = 0.0
 
 
 @inlined

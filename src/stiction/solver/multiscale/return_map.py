@@ -31,7 +31,7 @@ FAR = 2.0  # a cycle so many times longer than those before is beyond an edge
 PHASES = 8  # Chebyshev points of a piece of a slip
 PIECES = 16  # of a slip at most
 ROOMS = 256  # for pieces of all patches
-COLUMNS = 6  # of a sample in slip: all but whether it sticks
+SLIP_COLUMNS = 6  # of a sample in slip: all but whether it sticks
 STEPS = 4096  # kept of one cycle, and of all that are remembered
 # places in the arrays of `Returns` and `Inside`
 PATCHES_MADE, EDGES_MET, CYCLES_PAST, NODES_VAIN, CYCLES_SOLVED = range(5)  # sizes
@@ -136,16 +136,16 @@ def empty_map(rtol: float, steps: Any, samples: bool = False) -> Returns:
         CLOSING * rtol,
         record_of(kept),
         Inside(
-            np.empty((rooms, NODES, PHASES * COLUMNS)),
+            np.empty((rooms, NODES, PHASES * SLIP_COLUMNS)),
             np.zeros((PATCHES, 4), dtype=np.int64),
             np.empty((PATCHES, 2)),
             np.empty((kept, WIDTH)),
             np.zeros((PAST + 1, 2), dtype=np.int64),
             np.ones(1, dtype=np.int64),
-            np.empty((PIECES * PHASES + PIECES + 1, COLUMNS + 1)),
-            np.empty(COLUMNS),
+            np.empty((PIECES * PHASES + PIECES + 1, SLIP_COLUMNS + 1)),
+            np.empty(SLIP_COLUMNS),
             np.empty(NODES),
-            np.empty(PHASES * COLUMNS),
+            np.empty(PHASES * SLIP_COLUMNS),
             np.empty(1),
         ),
         steps,

@@ -19,7 +19,7 @@ OUTER = (1 / 10, 1 / 28, 1 / 54, 1 / 88, 1 / 130)
 LARGEST = 700.0  # sinh of more overflows
 ROUNDS = 30
 GENTLE = 0.1  # rise that is not damped
-NEARLY = 1e-3  # change of q: the damped one need not be known better
+ROUGHLY = 1e-3  # change of q: the damped one need not be known better
 
 
 @inlined
@@ -104,6 +104,6 @@ def damped_rise(q: float, rise: float, share: float) -> float:
         value = share * (sinh_y - sinh_q) + (1.0 - share) * (y - q) - rise
         change = value / (share * cosh_y + 1.0 - share)
         y -= change
-        if abs(change) < NEARLY:
+        if abs(change) < ROUGHLY:
             break
     return max(y, q)

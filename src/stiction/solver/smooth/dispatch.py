@@ -18,7 +18,7 @@ from stiction.solver.problem import change, force, gradient, grain
 from stiction.solver.regularised import Friction, friction_and_gradient
 from stiction.solver.smooth.workspace import TRIAL, Workspace
 
-FINEST = 1e-300  # m/s
+FINEST_GRAIN = 1e-300  # m/s
 INCREMENT = 1.5e-8  # of a difference: the root of the rounding error
 
 State = tuple[float, ...]
@@ -137,7 +137,7 @@ def friction_and_changes_at(
 def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     """Do as `grain_of` for the law at a pointer."""
     found: Any = pointee(law)
-    return max(grain(found, states_in(found, values, i)), FINEST)
+    return max(grain(found, states_in(found, values, i)), FINEST_GRAIN)
 
 
 def write_changes(

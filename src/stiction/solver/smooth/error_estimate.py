@@ -13,7 +13,7 @@ from typing import NamedTuple
 from numpy.polynomial import Polynomial
 
 from stiction.friction.law import Vector
-from stiction.solver.accuracy import ROUNDING, Accuracy
+from stiction.solver.accuracy import ROUNDING_OF_FORCE, Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import coordinate, slip_at
@@ -41,8 +41,10 @@ BALANCE_ITERATIONS = 20
 COARSE = 0.1  # relative correction: the error needs one digit
 # how the error goes inside a step, 1 in magnitude at c_1, where it is largest
 _PI = Polynomial.fromroots(C).integ()
-LARGEST = float(abs(_PI(C[0])))  # integral of the cubic less the quadratic, over the factor of c^3
-ERROR = tuple(float(x) for x in (_PI / LARGEST).coef[1:])
+LARGEST_INTEGRAL = float(
+    abs(_PI(C[0]))
+)  # integral of the cubic less the quadratic, over the factor of c^3
+ERROR = tuple(float(x) for x in (_PI / LARGEST_INTEGRAL).coef[1:])
 
 
 class Within(NamedTuple):
@@ -167,7 +169,7 @@ def balance(
             slower = at.s_xx * d_x + at.s_xy * d_y, at.s_xy * d_x + at.s_yy * d_y
             by_x = abs(at.s_xx * yy - at.s_xy * yx) + abs(at.s_xy * yy - at.s_yy * yx)
             by_y = abs(at.s_xy * xx - at.s_xx * xy) + abs(at.s_yy * xx - at.s_xy * xy)
-            rounding = ROUNDING * abs(g * per) * (by_x * abs(a_x) + by_y * abs(a_y))
+            rounding = ROUNDING_OF_FORCE * abs(g * per) * (by_x * abs(a_x) + by_y * abs(a_y))
             return Balanced(True, slip_at(eps, q_x, q_y), slower, rounding)
         at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
     return Balanced(False, (at.s_x, at.s_y), (0.0, 0.0), 0.0)
@@ -182,7 +184,7 @@ def distance_error(w: Workspace) -> tuple[float, float]:
     v = w.values
     x = leading_factor((v[START, 0], v[1, 0], v[2, 0], v[3, 0]))
     y = leading_factor((v[START, 1], v[1, 1], v[2, 1], v[3, 1]))
-    return LARGEST * x, LARGEST * y
+    return LARGEST_INTEGRAL * x, LARGEST_INTEGRAL * y
 
 
 @inlined

@@ -43,7 +43,14 @@ from stiction.solver.state import (
 from stiction.solver.stepping.amplification import grows, write_rates
 from stiction.solver.stepping.block_algebra import dot
 from stiction.solver.stepping.control import CALMEST, GROWTH, ease, step_factor, trend
-from stiction.solver.stepping.limit import ASKED, NEAR, Time, known_up_to, limit_there, within_limit
+from stiction.solver.stepping.limit import (
+    ASKED,
+    NEAR_STEADY,
+    Time,
+    known_up_to,
+    limit_there,
+    within_limit,
+)
 from stiction.solver.stepping.radau import A
 
 EAGER = 0.1  # of the growth that the error allows: the first size tried knows nothing of friction
@@ -111,7 +118,7 @@ def steady(w: Workspace, left: float) -> bool:
     """
     for k in range(2, w.size.shape[0]):
         forgotten = abs(w.jacobian[START, k, k]) + 1.0 / left
-        if not abs(w.changes[START, k]) < NEAR * w.size[k] * forgotten:
+        if not abs(w.changes[START, k]) < NEAR_STEADY * w.size[k] * forgotten:
             return False
     return True
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.friction import states
-from stiction.solver.accuracy import Accuracy
+from stiction.solver.accuracy import SLOW, Accuracy
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.problem import Isotropic, Problem, at, call_for, force, is_aligned
 from stiction.solver.regularised import SMOOTHED
@@ -116,5 +116,5 @@ class Smooth:
         """
         speed = SPEED_SHARE * accuracy.speed if self.states else accuracy.speed
         if isfinite(accuracy.longest):
-            speed = min(speed, 1e-6 * min(accuracy.free_x, accuracy.free_y))
+            speed = min(speed, SLOW * min(accuracy.free_x, accuracy.free_y))
         return accuracy._replace(speed=speed)

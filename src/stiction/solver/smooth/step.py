@@ -20,7 +20,7 @@ from stiction.solver.stepping.radau import C, cubic
 
 HELD = 2.0  # of delta: slower slip follows the force
 LANDINGS = 3  # tries to end a step where slip turns back
-NEAR = 0.1  # of the speed at either end: slip that turns back passes rest as closely as that
+NEAR_REST = 0.1  # of the speed at either end: slip that turns back passes rest as closely as that
 HALVINGS = 40  # until that place in the step is known
 STUBBORN, SHORTENED = 0.5, 0.2  # an error not less than so much of the last one; size over size
 
@@ -108,7 +108,7 @@ def turn_back(w: Workspace, accuracy: Accuracy) -> float:
         else:
             high = middle
     x, y = cubic((x0, x1, x2, x3), high), cubic((y0, y1, y2, y3), high)
-    return high if sqrt(x * x + y * y) < NEAR * max(before, after) else 1.0
+    return high if sqrt(x * x + y * y) < NEAR_REST * max(before, after) else 1.0
 
 
 @inlined

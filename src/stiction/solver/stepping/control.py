@@ -16,6 +16,9 @@ ATTEMPTS = 100  # of a step before it fails; 0.4^100 is below the resolution of 
 # of the time, far below a float's resolution: motion goes on within a thin boundary layer
 RESOLUTION = 1e-30
 GROWTH = 2.0  # of step sizes, at most
+SAFETY = 0.9  # of the size at which the next error would be the tolerance
+LEAST_FACTOR = 0.2  # of step sizes, at least
+LEAST_ERROR = 1e-10  # of the tolerance: added, so that an ease is finite
 FAILED = 0.3  # of the size, where a step was not solved
 CONTRACTS = 0.1  # of a correction to the last one: the Jacobian is kept
 CALMEST = 3.0  # of eases that are kept: a smaller error than that begins no trend
@@ -41,13 +44,13 @@ def diverging(iteration: int, growth: float) -> bool:
 @inlined
 def ease(error: float) -> float:
     """Return the power -1/4 of the local error over its tolerance, which falls with h^4."""
-    return 1.0 / sqrt(sqrt(error + 1e-10))
+    return 1.0 / sqrt(sqrt(error + LEAST_ERROR))
 
 
 @inlined
 def step_factor(error: float, most: float) -> float:
     """Return the factor for the step size, `most` at most, from the error over tolerance (M43)."""
-    return min(most, max(0.2, 0.9 * ease(error)))
+    return min(most, max(LEAST_FACTOR, SAFETY * ease(error)))
 
 
 @inlined
@@ -70,4 +73,4 @@ def trend(h: float, h_last: float, at_ease: float, before: float) -> float:
 
     Given the sizes of the step and the last one (s), then the eases of their errors.
     """
-    return max(0.2, 0.9 * h / h_last * at_ease * at_ease / before)
+    return max(LEAST_FACTOR, SAFETY * h / h_last * at_ease * at_ease / before)

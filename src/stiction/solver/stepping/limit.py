@@ -20,8 +20,8 @@ Limit = tuple[float, float]
 NO_LIMIT: Limit = (inf, -inf)
 NEVER_ASKED: Limit = (inf, inf)  # of what lands again at a known time
 ASKED = -1.0  # in place of the longest step of a limit
-NEAR = 0.01  # of the slip speed: at most so far from steady sliding
-ROUNDING = 1e-16  # of the slip speed: it is no closer to steady sliding
+NEAR_STEADY = 0.01  # of the slip speed: at most so far from steady sliding
+ROUNDING_OF_SLIP = 1e-16  # of the slip speed: it is no closer to steady sliding
 LATE = 1e-6  # of the time left: the size of steps from which the modes are asked for
 AGAIN = 1e3  # of that at which they were: steady sliding is then known better
 SOON = 0.02  # of the time left, where drive or load vary: the modes are others then
@@ -57,13 +57,13 @@ def limit_there(
     spring, `slip` the slip speed. Where the modes are asked for, the second number is by how many
     factors of e a disturbance must grow until errors no longer hide it.
     """
-    near = NEAR * slip
+    near = NEAR_STEADY * slip
     if limit[1] == inf or not apart <= near * near:
         return elsewhere(limit)
     if h < LATE * at.left or (at.t if at.varies else h) <= limit[1]:
         return limit
     hidden = max(accuracy.least, accuracy.tolerance * min(accuracy.speed + slip, motion))
-    return ASKED, max(1.0, log(hidden / (sqrt(apart) + ROUNDING * slip)))
+    return ASKED, max(1.0, log(hidden / (sqrt(apart) + ROUNDING_OF_SLIP * slip)))
 
 
 @called_from_both

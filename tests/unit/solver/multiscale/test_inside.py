@@ -12,14 +12,14 @@ from tests.unit.solver.multiscale.test_construction import EXACT, problem_of, ta
 
 from stiction.solver.multiscale import construction, inside, interpolant, replay
 from stiction.solver.multiscale.interpolant import POINTS
-from stiction.solver.multiscale.return_map import COLUMNS, NEAR, PAST, PHASES, Stick
+from stiction.solver.multiscale.return_map import NEAR, PAST, PHASES, SLIP_COLUMNS, Stick
 
 PROBLEM = problem_of("soft")
 
 
 def motion(x, phase):
     """Return a made-up motion: smooth in the angle and in the phase, another in each column."""
-    c = np.arange(1.0, COLUMNS + 1)
+    c = np.arange(1.0, SLIP_COLUMNS + 1)
     row = np.cos(c + 0.7 * x * phase) + 0.2 * np.exp(0.4 * x) * np.sin(2.0 * phase + c)
     return np.append(row, 0.0)  # no stick
 
@@ -214,7 +214,7 @@ def test_the_edge_is_where_the_polynomial_vanishes_not_the_line_through_its_ends
 
 
 @pytest.mark.parametrize("p", range(3))
-@pytest.mark.parametrize("c", [0, COLUMNS - 1])
+@pytest.mark.parametrize("c", [0, SLIP_COLUMNS - 1])
 def test_the_error_of_pieces_at_their_ends(p, c):
     """What a piece's polynomial misses there, over the bound of its column."""
     known, pieces = empty(), 2

@@ -8,7 +8,7 @@ from tests.unit.solver.smooth.systems import LAWS, STATEFUL, STATELESS, behind, 
 from stiction.friction.law import states
 from stiction.solver.regularised import Smoothed
 from stiction.solver.smooth import dispatch
-from stiction.solver.smooth.dispatch import FINEST, INCREMENT, PointedSmoothLaw
+from stiction.solver.smooth.dispatch import FINEST_GRAIN, INCREMENT, PointedSmoothLaw
 from stiction.solver.smooth.workspace import SECOND, TRIAL, workspace
 
 LOAD, PER_MASS = 7.0, 4.0
@@ -103,7 +103,7 @@ def test_a_grain_is_no_less_than_the_finest():
     psi = own.mu_star + own.b * z[0]
     assert grain(law, w.values, SECOND) == pytest.approx(2 * own.V_star * np.exp(-psi / own.a))
     w.values[SECOND, 2] = 1e6
-    assert grain(law, w.values, SECOND) == FINEST
+    assert grain(law, w.values, SECOND) == FINEST_GRAIN
     law, w = room("fed")
     assert grain(law, w.values, SECOND) == np.inf
 

@@ -19,7 +19,7 @@ from tests.unit.solver.smooth.systems import (
     begun,
 )
 
-from stiction.solver.accuracy import ROUNDING
+from stiction.solver.accuracy import ROUNDING_OF_FORCE
 from stiction.solver.smooth import error_estimate, newton
 from stiction.solver.smooth.workspace import INSIDE, START, workspace
 from stiction.solver.stepping.radau import DEFECT_WEIGHT, INTERIOR
@@ -148,7 +148,7 @@ def test_the_slip_that_rounding_makes(name, h):
         )
         slip = balance(problem, longer, *of, p, w, 1e-20, NONE).slip
         moved.append(hypot(slip[0] - known.slip[0], slip[1] - known.slip[1]))
-    assert 0.3 < max(moved) / (known.rounding * share / ROUNDING) < 1.01
+    assert 0.3 < max(moved) / (known.rounding * share / ROUNDING_OF_FORCE) < 1.01
 
 
 def test_the_error_of_the_distance_slid():
