@@ -5,6 +5,8 @@ simulated records with that many readings in place of one, each with noise (in s
 and rounded (to this share of the friction force at rest), goes the way of a measured one: noise and
 rounding are estimated, readings averaged. It is held against a library of simulations under the
 conditions found so: coverage, ranks, and how many are called unlike the rig's, 5 % as stated.
+``--hum 0.01`` adds a line of 50 Hz, which wanders, and its third harmonic; ``--spikes 5`` that many
+wild readings.
 """
 
 from __future__ import annotations
@@ -12,12 +14,15 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 import stiction as st
 from benchmarks.accuracy.fits import RIGS, compare, report, rig_of
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.signals.hum import without_bands
 from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.features import features
 from stiction.inference.learning.calibration import learn_or_read
@@ -25,8 +30,10 @@ from stiction.inference.observation import (
     Conditions,
     Noise,
     block_means,
+    grid_of,
     observe,
     readings_to_simulate,
+    without_lines,
 )
 from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import Library, build
@@ -37,19 +44,48 @@ from stiction.study.execution.cores import Cores
 
 Floats = NDArray[np.float64]
 
+# Hz; the phase of the mains wanders by so many turns within this time (s), 0.02 Hz at most, and
+# they have a third harmonic of this share
+MAINS, WANDER, PERIOD, THIRD = 50.0, 0.1, 30.0, 0.3
+
+
+class Disturbance(NamedTuple):
+    """What is added to the readings: hum of this amplitude (N), and so many of this size (N)."""
+
+    hum: float
+    spikes: int
+    spike: float
+
+    def of(self, step: float, size: int, random: np.random.Generator) -> Floats:
+        """Return its readings, a step (s) apart."""
+        time = step * np.arange(size)
+        turns = MAINS * time + WANDER * np.sin(2.0 * np.pi * time / PERIOD + random.uniform(0, 6))
+        first, third = random.uniform(0.0, 2.0 * np.pi, 2)
+        found: Floats = np.sin(2.0 * np.pi * turns + first)
+        found += THIRD * np.sin(6.0 * np.pi * turns + third)
+        found *= self.hum
+        found[random.choice(size, self.spikes, replace=False)] += self.spike
+        return found
+
 
 def read(
-    of: Plan, digit: float, seed: int, number: int, _: Callable[[], bool]
+    of: Plan, digit: float, added: Disturbance, seed: int, number: int, _: Callable[[], bool]
 ) -> tuple[Floats, Floats] | None:
     """Return the scores of a simulated record, and its readings."""
     scores, made = draw(of, number, seed)
     record = next(made)
-    return None if record is None else (scores, digitise(record.channels["force"], digit))
+    if record is None:
+        return None
+    force = record.channels["force"]
+    more = added.of(of.conditions[0].step, len(force), np.random.default_rng([seed, number, 1]))
+    return scores, digitise(force + more, digit)
 
 
-def features_of(force: Floats, rig: Rig, conditions: Conditions, block: int) -> Floats | None:
+def features_of(record: st.Record, rig: Rig, conditions: Conditions, block: int) -> Floats | None:
     """Return the features of readings as a fit takes them; None with too few cycles."""
-    means = block_means(force, block)
+    force = without_lines(record, grid_of(record, "it"), swings(record))["force"].values
+    bands = conditions.noise["force"].stop_bands
+    means = without_bands(block_means(force, block), conditions.step, bands)
     found = slip_cycles(means, conditions.noise["force"].error)
     if len(found.peak) < conditions.cycles:
         return None
@@ -64,6 +100,8 @@ def main() -> None:
     parser.add_argument("--block", type=int, default=4, help="readings in place of one of 200")
     parser.add_argument("--digit", type=float, default=0.01, help="over the friction force")
     parser.add_argument("--noise", type=float, default=0.3, help="digits; of a hundredth if none")
+    parser.add_argument("--hum", type=float, default=0.0, help="over the friction force")
+    parser.add_argument("--spikes", type=int, default=0, help="in a record, of half of it")
     parser.add_argument("--records", type=int, default=330)
     parser.add_argument("--simulations", type=int, default=1500)
     parser.add_argument("--seed", type=int, default=77)
@@ -73,17 +111,20 @@ def main() -> None:
     digit, noise = options.digit * friction, options.noise * (options.digit or 0.01) * friction
     filters = usual.noise["force"].filters
     its = {"force": Noise(noise, filters=filters)}
+    added = Disturbance(options.hum * friction, options.spikes, 0.5 * friction)
     fine = usual._replace(noise=its, step=usual.step / options.block)
     of = plan(rig.slider, rig.priors, [fine])
-    work = partial(read, of, digit, options.seed)
+    work = partial(read, of, digit, added, options.seed)
     made = [each for each in Cores().results(work, range(options.records)) if each is not None]
-    first = made[0][1]
-    time = fine.step * np.arange(len(first))
-    velocity = abs(rig.slider.motion.rate(0.0)[0])
+    velocity = rig.slider.drive_speed
     filtered = {"filter": filters[0].cut, "filter_order": filters[0].order} if filters else {}
     cell = {"force": st.Sensor(**filtered)}
-    record = st.Record(time=time, force=first, drive_velocity=velocity, sensors=cell)
-    seen = observe(record, rig.slider).conditions
+
+    def record(force: Floats) -> st.Record:
+        time = fine.step * np.arange(len(force))
+        return st.Record(time=time, force=force, drive_velocity=velocity, sensors=cell)
+
+    seen = observe(record(made[0][1]), rig.slider).conditions
     block = readings_to_simulate(options.block, seen.noise)
     conditions = usual._replace(noise=seen.noise, block=block)
     print(f"{options.rig}: {seen.noise}")
@@ -91,7 +132,7 @@ def main() -> None:
     rows = [
         (scores, its)
         for scores, force in made
-        if (its := features_of(force, rig, conditions, options.block)) is not None
+        if (its := features_of(record(force), rig, conditions, options.block)) is not None
     ]
     scores, found = (np.array(each) for each in zip(*rows, strict=True))
     unseen = Library(known.plan, scores, found, len(rows))

@@ -10,10 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
-from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.cycles import Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
-from stiction.analysis.signals.even_grid import MOST_MISSING, even_grid
+from stiction.analysis.signals.even_grid import MOST_MISSING, EvenGrid, even_grid
+from stiction.analysis.signals.hum import Band, lines_like, without_bands
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
@@ -40,6 +41,7 @@ MOST_READINGS = 256  # of which a simulated sample is the mean, where each of th
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
+DIGITS_OF_BAND = 3  # the mains keep theirs
 DIGITS = 4  # of sampling interval and quantisation: those of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
@@ -62,6 +64,8 @@ class Noise(NamedTuple):
         Uncertainty of its zero's drift, in its unit over s.
     quantisation : float
         Step between its readings, where noise does not hide it; 0 where that is part of the noise.
+    stop_bands : tuple of Band
+        Left out of record and simulations alike, because a line, as of the mains, lay there.
     """
 
     level: float
@@ -70,6 +74,7 @@ class Noise(NamedTuple):
     filters: tuple[LowPass, ...] = ()
     drift: float = 0.0
     quantisation: float = 0.0
+    stop_bands: tuple[Band, ...] = ()
 
     @property
     def error(self) -> float:
@@ -196,20 +201,24 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         If it has too few cycles, or its samples leave too large gaps; or where its force goes back
         and forth.
     """
-    step, channels = even_channels(record, name)
+    grid = grid_of(record, name)
     refuse_far(record, slider, name)
     seen = swings(record)
     regime = regime_of(record, seen)
     refuse_other_motion(record, regime, name)
     refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
-    noise = {each: noise_of(record, each, values) for each, values in channels.items()}
-    found = slip_cycles(channels["force"], noise["force"].error)
+    step, lineless = float(f"{grid.step:.{DIGITS}g}"), without_lines(record, grid, seen)
+    noise = {each: noise_of(record, each, *its) for each, its in lineless.items()}
+    found = slip_cycles(lineless["force"].values, noise["force"].error)
     refuse_few(name, len(found.peak))
-    refuse_other_sign(name, channels["force"], found)
+    refuse_other_sign(name, lineless["force"].values, found)
     cycle = near(float(np.mean(found.after - found.before)) * step)
     block = max(round(cycle / step / PER_CYCLE), 1)
-    thin = {each: block_means(values, block) for each, values in channels.items()}
-    thin_noise = {each: noise_of_means(its, block) for each, its in noise.items()}
+    thin_noise = {each: noise_of_means(its, block, step) for each, its in noise.items()}
+    thin = {
+        each: without_bands(block_means(values, block), step * block, thin_noise[each].stop_bands)
+        for each, (values, _) in lineless.items()
+    }
     found = slip_cycles(thin["force"], thin_noise["force"].error)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = Cycles(*(each[:number] for each in found))
@@ -226,8 +235,8 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     return Observation(conditions, its, thin["force"], found, changes)
 
 
-def even_channels(record: Record, name: str) -> tuple[float, dict[str, Floats]]:
-    """Return the time between samples of an even grid, and the channels of a record on it."""
+def grid_of(record: Record, name: str) -> EvenGrid:
+    """Return the even grid of a record's times."""
     grid = even_grid(record.time)
     if grid is None or not grid.serves:
         raise ResultError(
@@ -235,9 +244,29 @@ def even_channels(record: Record, name: str) -> tuple[float, dict[str, Floats]]:
             f"uneven clock and gaps in {percent(MOST_MISSING)} of the time; fit a part without "
             "gaps (--begin, --end)"
         )
-    measured = {each: getattr(record, each, None) for each in USED}
-    channels = {each: grid.on(values) for each, values in measured.items() if values is not None}
-    return float(f"{grid.step:.{DIGITS}g}"), channels
+    return grid
+
+
+class Lineless(NamedTuple):
+    """A channel on an even grid, less its lines, and the bands (Hz) in which these lay."""
+
+    values: Floats
+    bands: tuple[Band, ...]
+
+
+def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lineless]:
+    """Return the channels of a record without lines, as of the mains; the force as its swings."""
+    found = {}
+    for name in USED:
+        values, lines = getattr(record, name, None), list(seen.lines)
+        if values is None:
+            continue
+        if name != "force":
+            lines = lines_like(lines, grid, values)
+        less = seen.force if name == "force" else values - sum(line.values for line in lines)
+        bands = tuple(band for line in lines for band in line.bands)
+        found[name] = Lineless(grid.on(less), bands)
+    return found
 
 
 def sign_seen(conditions: Iterable[Conditions]) -> bool:
@@ -269,21 +298,22 @@ def record_from(source: Source) -> Record:
     return as_record(read_source(source) if isinstance(source, str | Path) else source)
 
 
-def noise_of(record: Record, channel: str, values: Floats) -> Noise:
+def noise_of(record: Record, channel: str, values: Floats, bands: tuple[Band, ...] = ()) -> Noise:
     """Return the noise of a channel, as its sensor states it or as its samples show it.
 
-    `values` are its samples on an even grid, between which they are interpolated.
+    `values` are its samples on an even grid, between which they are interpolated, less lines in
+    some bands: rounding is noise where a line was rounded, too.
     """
     sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
     stated = (0.0, 0.0) if sensor is None else (sensor.noise, sensor.quantisation)
     step = stated[1] or lattice(getattr(record, channel))
     level = stated[0] or resolved_noise(values, step)
-    if level > DITHER * step:
+    if bands or level > DITHER * step:
         level, step = hypot(level, ROUNDING_SPREAD * step), 0.0
     if sensor is None:
-        return Noise(level, quantisation=step)
+        return Noise(level, quantisation=step, stop_bands=bands)
     errors = sensor.gain_uncertainty, sensor.zero_uncertainty
-    return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty, step)
+    return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty, step, bands)
 
 
 def readings_to_simulate(block: int, noise: Mapping[str, Noise]) -> int:
@@ -292,10 +322,21 @@ def readings_to_simulate(block: int, noise: Mapping[str, Noise]) -> int:
     return min(block, MOST_READINGS if rounded else MOST_PLACES)
 
 
-def noise_of_means(noise: Noise, block: int) -> Noise:
-    """Return the noise of means of blocks, rounded so that many records share it."""
-    step = float(f"{noise.quantisation:.{DIGITS}g}")
-    return noise._replace(level=round_up(noise.level / block**0.5), quantisation=step)
+def noise_of_means(noise: Noise, block: int, step: float) -> Noise:
+    """Return the noise of means of blocks of samples, rounded so that many records share it.
+
+    Of bands that means cannot resolve, so little is left that they need not be left out.
+    """
+    fastest = 0.5 / (step * block)
+    return noise._replace(
+        level=round_up(noise.level / block**0.5),
+        quantisation=float(f"{noise.quantisation:.{DIGITS}g}"),
+        stop_bands=tuple(
+            Band(*(float(f"{end:.{DIGITS_OF_BAND}g}") for end in band))
+            for band in noise.stop_bands
+            if band.high < fastest
+        ),
+    )
 
 
 def block_means(values: Floats, block: int) -> Floats:

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from scipy.special import ndtr
 
+from stiction.analysis.signals.hum import Band
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
 from stiction.inference.disagreement import Disagreement, disagreement
@@ -195,6 +196,11 @@ class Fit:
         if "phi" in self.plan.priors and self.plan.slider.cell_angle is None:
             sentences.append(ALONG_X)
         sentences.append(f"Compared with {self.simulations} simulated records.")
+        if self.stop_bands:
+            bands = ", ".join(f"{band.low:g} to {band.high:g} Hz" for band in self.stop_bands)
+            sentences.append(
+                f"Left out of records and simulations alike, for lines such as mains hum: {bands}."
+            )
         sentences.append(
             "Experimental: the coverage is how many of such 95 % intervals hold the truth of "
             "simulated records left out, which says nothing of what the simulations leave out."
@@ -270,6 +276,12 @@ class Fit:
         """Whether only the peaks have a trend, as under a drifting zero, and no drift is stated."""
         stated = any(each.noise["force"].drift for each in self.plan.conditions)
         return not stated and self.trend.peaks < TREND <= self.trend.drops
+
+    @property
+    def stop_bands(self) -> list[Band]:
+        """The bands that are left out of records and simulations."""
+        noises = (noise for each in self.plan.conditions for noise in each.noise.values())
+        return sorted({band for noise in noises for band in noise.stop_bands})
 
     @property
     def sign_unseen(self) -> bool:

@@ -5,10 +5,14 @@ import pytest
 from scipy.signal import lfilter
 
 import stiction as st
+from stiction.analysis.signals.hum import without_bands
 from stiction.errors import ResultError
 from stiction.inference.cycles import slip_cycles
-from stiction.inference.observation import observe
+from stiction.inference.observation import Conditions, Noise, block_means, observe
+from stiction.inference.priors import Uniform
 from stiction.inference.simulated.jitter import SPARE, Jitter, first_loading, move
+from stiction.inference.simulated.plan import plan
+from stiction.inference.simulated.synthetic import draw
 from stiction.recording.noise import white_noise
 
 
@@ -78,3 +82,70 @@ def test_few_samples_of_a_cycle_are_not_taken_for_noise(per_cycle):
     assert expected > 24
     assert abs(len(observe(record, slider_of(0.9)).cycles.peak) - 24) <= 4
     assert abs(len(slip_cycles(saw, white_noise(saw)).peak) - expected) <= 1
+
+
+STEP, DROP = 2e-3, 1.0  # s, N
+STROKE = DROP * np.r_[np.linspace(1.4, 2.4, 485), np.linspace(2.4, 1.4, 16)[1:]]
+
+
+def sawtooth(**more) -> st.Record:
+    """Return a record of 24 cycles, as they scatter, with noise; and with more."""
+    random = np.random.default_rng(8)
+    force = np.concatenate([STROKE * (1.0 + 0.01 * random.standard_normal()) for _ in range(24)])
+    force += 2e-3 * random.standard_normal(len(force))
+    time, channels = STEP * np.arange(len(force)), {"force": force}
+    channels["position"] = 1e-3 * (np.arange(len(force)) // len(STROKE)) + 1e-7 * force
+    given = {name: values + more.get(name, 0.0) for name, values in channels.items()}
+    return st.Record(time=time, drive_velocity=1e-4, **given)
+
+
+def hum(size: int) -> np.ndarray:
+    """Return that of mains which wander by 0.02 Hz, with a third harmonic, of amplitude 1."""
+    time = STEP * np.arange(size)
+    turns = 2.0 * np.pi * (50.0 * time + 0.1 * np.sin(2.0 * np.pi * time / 30.0))
+    return np.sin(turns + 0.7) + 0.3 * np.sin(3.0 * turns + 2.0)
+
+
+@pytest.mark.parametrize("amplitude", [0.01, 0.05, 0.3])
+def test_hum_makes_no_difference_to_a_fit(amplitude):
+    """Of 147 records with hum of 0.5 % of friction 94 % were "unlike", and mu_0 held in 46 %."""
+    quiet, slider = sawtooth(), slider_of(0.6)
+    line = hum(len(quiet))
+    found = observe(sawtooth(force=amplitude * line, position=1e-4 * line), slider)
+    conditions = found.conditions
+    assert len(conditions.noise["force"].stop_bands) == 1  # means pass no third harmonic
+    for noise in conditions.noise.values():
+        assert any(48 < low < 49.95 and 50.05 < high < 52 for low, high in noise.stop_bands)
+    means = block_means(quiet.force, round(conditions.step / STEP))
+    bands = conditions.noise["force"].stop_bands
+    expected = without_bands(means, conditions.step, bands)
+    error = conditions.noise["force"].error
+    assert error < 3e-3
+    assert np.abs(found.force - expected)[200:-200].max() < 0.5 * error
+    assert np.std(found.force - expected) < 0.3 * error
+
+
+def test_wild_samples_make_no_difference_to_a_fit():
+    """Of 146 records with a single one, of half of friction, 53 % were "unlike"."""
+    quiet, slider = sawtooth(), slider_of(0.6)
+    spikes = np.zeros(len(quiet))
+    spikes[[700, 3000, 7401]] = 0.5, -0.5, 1.0
+    found, expected = observe(sawtooth(force=spikes), slider), observe(quiet, slider)
+    assert found.conditions == expected.conditions
+    assert np.abs(found.force - expected.force).max() < 6e-3  # three deviations of a reading
+
+
+def test_simulations_leave_out_the_same_bands():
+    slider, bands = slider_of(0.6), ((18.0, 19.0),)
+    cycle = 0.6 * slider.F_0 / (slider.k_x * slider.drive_speed)
+    noise = {"force": Noise(0.01, stop_bands=bands), "force_across": Noise(0.01)}
+    conditions = Conditions(1e-4, 10.0, 0.0, 0.02, 6, cycle, noise)
+    its = plan(slider, {"phi": Uniform(0.01, 0.02), "jitter": Uniform(0.01, 0.02)}, [conditions])
+    record = next(draw(its, 0, 1)[1])
+    for name, left in (("force", 0.02), ("force_across", np.inf)):
+        values = record.channels[name]
+        power = np.abs(np.fft.rfft(values - np.linspace(values[0], values[-1], len(values))))
+        frequency = np.fft.rfftfreq(len(values), conditions.step)
+        inside = (frequency > 18.0) & (frequency < 19.0)
+        assert power[inside].max() < left * np.median(power)
+    assert power[inside].max() > 0.1 * np.median(power)

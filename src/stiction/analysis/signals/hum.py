@@ -8,6 +8,7 @@ decide whether it is the motion or a disturbance (`stiction.analysis.motion.cycl
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -34,8 +35,18 @@ TRIED = 20  # of the strongest
 MOST_LINES = 4  # that are returned: cycles are sought again without each of them
 BLOCK = 5  # periods in each mean of amplitude and phase
 LONGEST_PART = 250  # periods over which amplitude and phase are taken for constant
+# Half the width of the band in which a line takes what is not its own, times these periods: the
+# window over them passes two of their frequency.
+PASSED = 2.5
 
 MAINS, MAINS_VARIES = (50.0, 60.0, 100.0, 120.0), 0.004  # Hz; a grid keeps its frequency to 0.4 %
+
+
+class Band(NamedTuple):
+    """A band of frequencies, Hz."""
+
+    low: float
+    high: float
 
 
 class Line(NamedTuple):
@@ -49,11 +60,14 @@ class Line(NamedTuple):
         From crest to trough, N.
     values : ndarray
         (n,) its contribution to the force, N.
+    bands : tuple of Band
+        In which it and its harmonics lie, with what they take of the motion.
     """
 
     frequency: float
     height: float
     values: Floats
+    bands: tuple[Band, ...] = ()
 
 
 def narrow_lines(grid: EvenGrid | None, force: Floats) -> list[Line]:
@@ -73,6 +87,38 @@ def narrow_lines(grid: EvenGrid | None, force: Floats) -> list[Line]:
     floor = beside(power)
     found = _peaks(power, floor, ALONE)
     return [_measure_line(force, grid, power, floor, width, at) for at in found]
+
+
+def lines_like(lines: Sequence[Line], grid: EvenGrid, values: Floats) -> list[Line]:
+    """Return the narrow lines of another channel that are of the mains or are those of a force."""
+    return [
+        line
+        for line in narrow_lines(grid, values)
+        if of_mains(line.frequency)
+        or any(abs(line.frequency / each.frequency - 1.0) < MAINS_VARIES for each in lines)
+    ]
+
+
+def without_bands(values: Floats, step: float, bands: Sequence[Band]) -> Floats:
+    """Return equally spaced values, a step (s) apart, without some bands of frequencies.
+
+    Whatever is subtracted within them makes no difference.
+
+    >>> time = np.arange(0.0, 10.0, 0.01)
+    >>> saw = time % 1.0
+    >>> hum = saw + 0.3 * np.sin(2.0 * np.pi * 20.0 * time)
+    >>> left, right = (without_bands(each, 0.01, [Band(19.5, 20.5)]) for each in (saw, hum))
+    >>> float(np.abs(right - left).max()) < 0.01
+    True
+    """
+    if not bands:
+        return values
+    ramp = np.linspace(values[0], values[-1], len(values))
+    powers = np.fft.rfft(values - ramp)
+    frequencies = np.fft.rfftfreq(len(values), step)
+    for low, high in bands:
+        powers[(frequencies >= low) & (frequencies <= high)] = 0.0
+    return np.asarray(np.fft.irfft(powers, len(values)) + ramp)
 
 
 def peak_frequencies(grid: EvenGrid | None, force: Floats) -> list[float]:
@@ -110,6 +156,7 @@ def _measure_line(
         turn *= phase / np.maximum(np.abs(phase), TINY)
     values = np.zeros(len(grid.time))
     turned = np.unwrap(np.angle(turn))
+    half, bands = PASSED * cycles / min(LONGEST_PART, cycles * grid.size), []
     for k in range(1, HARMONICS + 1):
         at = round(k * cycles / width)
         if at >= len(power) - LOBE:
@@ -125,8 +172,9 @@ def _measure_line(
             if not grid.exact:  # on the grid it is smaller
                 harmonic *= _gain(left - values, harmonic)
             values += harmonic
+            bands.append(Band((k * cycles - half) / grid.step, (k * cycles + half) / grid.step))
     height = float(np.subtract(*np.percentile(values, (99.0, 1.0))))
-    return Line(cycles / grid.step, height, values)
+    return Line(cycles / grid.step, height, values, tuple(bands))
 
 
 def _gain(force: Floats, line: Floats) -> float:

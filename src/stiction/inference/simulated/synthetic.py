@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.record import cell_axis
+from stiction.analysis.signals.hum import without_bands
 from stiction.arrays import Floats
 from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.observation import MOST_PLACES, Conditions, block_means
@@ -94,7 +95,8 @@ def measure(
         more = ceil(conditions.block / places) if noise.quantisation else 1
         readings, block = refine(values_of, more), places * more
         readings = readings + noise.level * block**0.5 * random.standard_normal(len(readings))
-        found[name] = block_means(digitise(readings, noise.quantisation), block)
+        means = block_means(digitise(readings, noise.quantisation), block)
+        found[name] = without_bands(means, conditions.step, noise.stop_bands)
     return found
 
 
