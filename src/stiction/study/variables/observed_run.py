@@ -155,14 +155,7 @@ class ObservedRun:
         if len(self.drive) > 1 and self.drive.any():
             driven = int(np.flatnonzero(self.drive)[-1]) + 1
         found: Features = features(
-            self.time,
-            self.force,
-            self.rate,
-            self.velocity,
-            REVERSAL,
-            least,
-            driven,
-            COURSE_PARTS,
+            self.time, self.force, self.rate, self.velocity, REVERSAL, least, driven, COURSE_PARTS
         )
         return found
 

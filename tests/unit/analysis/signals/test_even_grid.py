@@ -152,4 +152,5 @@ def test_the_grid_is_the_line_of_least_squares_through_the_times(step, jitter):
     number = np.arange(40_000.0)
     time = np.sort(step * (number + jitter * np.sin(number**2))) + 7.0
     slope, start = np.polyfit(number, time, 1)
-    assert line(number, time)[:2] == pytest.approx((slope, start), rel=1e-12)
+    found = line(number, time)
+    assert (found.slope, found.offset) == pytest.approx((slope, start), rel=1e-12)

@@ -16,6 +16,15 @@ def test_numbers_and_errors_are_those_of_the_normal_equations():
     assert found[3:] == pytest.approx(np.sqrt(np.diag(covariance)), rel=1e-10)
 
 
+def test_a_line_over_times_since_1970_is_that_over_times_from_0():
+    x = np.arange(0.0, 100.0, 1.0 / 1024.0)  # of which sums with 2^30 have no rounding
+    y = 3.0 + 0.2 * x + np.random.default_rng(1).standard_normal(len(x))
+    near, far = line(x, y), line(x + 2.0**30, y)
+    assert (far.slope, far.slope_error) == pytest.approx((near.slope, near.slope_error), rel=1e-12)
+    assert far.deviations(x + 2.0**30, y) == pytest.approx(near.deviations(x, y), abs=1e-12)
+    assert far.at(2.0**30) == pytest.approx(near.offset, abs=1e-12)
+
+
 def test_alike_neighbours_make_the_error_larger():
     """Each value stands ten times in a row: as many values tell the line as are different."""
     values = np.random.default_rng(7).standard_normal(400)
