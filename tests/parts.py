@@ -21,4 +21,4 @@ def creep_of(run: st.Trajectory) -> CreepFound:
     record = as_record(run)
     found = swings(record)
     its = assess_run(run, record, found, regime_of(record, found))
-    return find_creep(run, record, its.sticking, None)
+    return find_creep(run, record, its.sticking.as_dataset(), None)

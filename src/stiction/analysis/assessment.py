@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import NamedTuple
+
+import numpy as np
 
 from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.changes.levels import levels
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
@@ -16,7 +18,7 @@ from stiction.analysis.motion.doubts.warnings import (
 )
 from stiction.analysis.motion.doubts.zero import why_no_friction
 from stiction.analysis.motion.drift import error_of_zero, shown_drift
-from stiction.analysis.motion.friction import Friction, find_friction, without_loading
+from stiction.analysis.motion.friction import Friction, friction_of, without_loading
 from stiction.analysis.motion.metadata import (
     LOADING_RATE,
     StatedQuantity,
@@ -26,7 +28,6 @@ from stiction.analysis.motion.metadata import (
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.analysis.record import Record
-from stiction.arrays import xr
 from stiction.trajectory import Trajectory
 
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
@@ -40,9 +41,9 @@ class Assessment(NamedTuple):
 
     Parameters
     ----------
-    cycles : Dataset
+    cycles : CycleTable
         A row for each cycle; columns that mean nothing for its motion are blank.
-    usual, sticking : Dataset
+    usual, sticking : CycleTable
         Those of its cycles that belong together, and those that creep before they slip.
     friction : Friction
         Friction at the break-away, static and kinetic.
@@ -54,9 +55,9 @@ class Assessment(NamedTuple):
         The reason for each column that is blank.
     """
 
-    cycles: xr.Dataset
-    usual: xr.Dataset
-    sticking: xr.Dataset
+    cycles: CycleTable
+    usual: CycleTable
+    sticking: CycleTable
     friction: Friction
     stated: tuple[StatedQuantity, ...]
     warnings: tuple[str, ...]
@@ -65,13 +66,13 @@ class Assessment(NamedTuple):
 
 def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a run, whose parameters are exact."""
-    cycles, turns = found.cycles, imposed_reversal(run, regime)
+    cycles, turns = found.lasting, imposed_reversal(run, regime)
     friction = _friction(record, found, cycles, regime, turns)
     missing = _meaningless(record, cycles, regime)
-    if turns and cycles.sizes["cycle"]:
+    if turns and len(cycles):
         missing |= {"mu_kinetic": turns}
-    told = _blank(cycles, missing)
-    sticking = cycles if regime.loads else cycles.isel(cycle=slice(0))
+    told = cycles.blank(missing)
+    sticking = cycles if regime.loads else cycles.part(slice(0))
     return Assessment(
         told, told, sticking, friction, (), warnings_of_run(run, record, cycles), missing
     )
@@ -79,9 +80,9 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
 
 def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a record, whose stated parameters may contradict its force."""
-    cycles, turns = found.cycles, imposed_reversal(None, regime)
-    none, apart = cycles.isel(cycle=slice(0)), cycles_apart(cycles)
-    friction = _friction(record, found, cycles.isel(cycle=~apart), regime, turns)
+    cycles, turns = found.lasting, imposed_reversal(None, regime)
+    none, apart = cycles.part(slice(0)), cycles_apart(cycles)
+    friction = _friction(record, found, cycles.part(~apart), regime, turns)
     drift = shown_drift(record, regime.kind, cycles)
     stated = compare_metadata(record, regime.kind, cycles, drift)
     alike = none if turns else cycles  # those of two strokes are none
@@ -94,24 +95,18 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         friction = friction.without_static(unreal).without_kinetic(unreal)
     other = other_velocity(stated, cycles)
     if other.any() and record.position is None:
-        given = {name: cycles[name].where(~other) for name in ("stiffness", *BY_STIFFNESS)}
-        cycles = cycles.assign(given)
-    sticking = cycles.isel(cycle=~(other | apart)) if regime.loads else none
+        cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
+    sticking = cycles.part(~(other | apart)) if regime.loads else none
     missing = _meaningless(record, cycles, regime, stated)
-    if (turns or unreal) and cycles.sizes["cycle"]:
+    if (turns or unreal) and len(cycles):
         names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
         missing |= dict.fromkeys(names, turns or unreal)
-    told = _blank(cycles, missing)
-    return Assessment(told, told.isel(cycle=~apart), sticking, friction, stated, doubts, missing)
-
-
-def _blank(cycles: xr.Dataset, names: Iterable[str]) -> xr.Dataset:
-    """Return cycles of which some columns are NaN."""
-    return cycles.assign({name: cycles[name].where(False) for name in names})
+    told = cycles.blank(missing)
+    return Assessment(told, told.part(~apart), sticking, friction, stated, doubts, missing)
 
 
 def _friction(
-    record: Record, found: Swings, usual: xr.Dataset, regime: Regime, turns: str
+    record: Record, found: Swings, usual: CycleTable, regime: Regime, turns: str
 ) -> Friction:
     """Find the friction without hum and ringing.
 
@@ -123,8 +118,8 @@ def _friction(
     if "levels" in regime.evidence:
         first = clean.before(levels(clean)[0].end)
         several = "the force stays at several levels, each with its own: see the parts"
-        return find_friction(first, regime, usual).without_kinetic(several)
-    friction = find_friction(clean, regime, usual)
+        return friction_of(first, regime, usual).without_kinetic(several)
+    friction = friction_of(clean, regime, usual)
     if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)
     return friction.without_kinetic(turns) if turns else friction
@@ -148,12 +143,12 @@ def imposed_reversal(run: Trajectory | None, regime: Regime) -> str:
 
 def _meaningless(
     record: Record,
-    cycles: xr.Dataset,
+    cycles: CycleTable,
     regime: Regime,
     stated: tuple[StatedQuantity, ...] = (),
 ) -> dict[str, str]:
     """Return the columns that are meaningless for a motion, or as things are stated, and why."""
-    if not cycles.sizes["cycle"]:
+    if not len(cycles):
         return {}
     if not regime.loads:
         names: tuple[str, ...] = OF_STICKING
@@ -164,7 +159,8 @@ def _meaningless(
     rates = [each for each in stated if each.quantity == LOADING_RATE]
     if any(each.agrees is False for each in rates) and record.position is None:
         return dict.fromkeys(BY_STIFFNESS, "stiffness or drive velocity contradict the force")
-    if not float(cycles["creep_distance"].median()) < 0.0:
+    known = cycles["creep_distance"][~np.isnan(cycles["creep_distance"])]
+    if not len(known) or not np.median(known) < 0.0:
         return {}
     if any(each.agrees for each in rates):
         agreeing = "the force rises as fast as the stated stiffness and drive velocity allow"

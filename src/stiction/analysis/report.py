@@ -185,13 +185,14 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     missing: dict[str, str] = {}
     oscillation = attempt(missing, "oscillation", lambda: _oscillation(record, run, found.cycles))
     its = assess_run(run, record, found, regime) if run else assess_record(record, found, regime)
-    width = _free_of_hum(oscillation, its.sticking) if run is None else None
-    creep = find_creep(source, record, its.sticking, width)
+    sticking = its.sticking.as_dataset()
+    width = _free_of_hum(oscillation, sticking) if run is None else None
+    creep = find_creep(source, record, sticking, width)
     phases = None
     if run is not None and oscillation is not None and creep.curves is not None:
-        phases = oscillation_by_phase(oscillation, run, _phases(run, creep.curves, its.sticking))
+        phases = oscillation_by_phase(oscillation, run, _phases(run, creep.curves, sticking))
     analysis = Analysis(
-        source, record, regime, its.cycles, summary(its.usual),
+        source, record, regime, its.cycles.as_dataset(), summary(its.usual.as_dataset()),
         creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
         missing | its.missing | creep.missing, its.friction,
         its.warnings + subtracted_lines(found.lines, found.ringing), {"metadata": its.stated},

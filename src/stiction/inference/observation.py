@@ -231,7 +231,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
     until = float(record.time[0]) + step * block * float(found.after[-1] + 1)
-    changes = changes_within(seen.cycles, regime, until)
+    changes = changes_within(seen.lasting, regime, until)
     return Observation(conditions, its, thin["force"], found, changes)
 
 

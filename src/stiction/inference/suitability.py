@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.analysis.assessment import imposed_reversal
 from stiction.analysis.motion.changes.strokes import strokes
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
     doubt_loading,
@@ -17,7 +18,7 @@ from stiction.analysis.motion.doubts.cycles import (
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.record import Record
-from stiction.arrays import Floats, xr
+from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.cycles import LEAST_CYCLES, Cycles
 from stiction.system.slider import Slider
@@ -79,12 +80,12 @@ def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
         )
 
 
-def changes_within(cycles: xr.Dataset, regime: Regime, until: float) -> tuple[str, ...]:
+def changes_within(cycles: CycleTable, regime: Regime, until: float) -> tuple[str, ...]:
     """Return what an analysis says of cycles that differ until a time, s, as sentences.
 
     Simulated records have one velocity and one load, so that such a record is like none of them.
     """
-    used = cycles.isel(cycle=cycles["trough_time"].values <= until)
+    used = cycles.part(cycles["trough_time"] <= until)
     return (
         *_name_other_motion(regime, until),
         *doubt_mean_period(used),

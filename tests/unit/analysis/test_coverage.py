@@ -6,6 +6,7 @@ from scipy.signal import lfilter
 from tests.parts import assess
 
 import stiction as st
+from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.drift import find_drift
 
 MOST = 0.15  # beyond two errors, of some 40 cases: 5 % and three standard deviations
@@ -83,7 +84,7 @@ def test_the_drift_of_a_force(share):
     for _ in range(40):
         force = 2.0 + 1e-3 * TIME + 0.02 * alike(random, len(TIME), share)
         record = st.Record(time=TIME, force=force, normal_load=W)
-        drift = find_drift(record, st.analysis.find_cycles(record))
+        drift = find_drift(record, swings(record).lasting)
         if np.isfinite(drift.error):
             found.append((drift.rate, drift.error))
     assert len(found) > 30

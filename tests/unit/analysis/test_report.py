@@ -55,7 +55,7 @@ def test_what_other_tests_ask_for_one_finding_is_what_an_analysis_finds(run, fou
     assert part.stated
     assert repr((part.stated, part.warnings)) == repr((whole.parts["metadata"], whole.warnings))
     assert repr(part.friction) == repr(whole.friction)
-    assert part.cycles.identical(whole.cycles)
+    assert part.cycles.as_dataset().identical(whole.cycles)
 
 
 @pytest.fixture(scope="module")

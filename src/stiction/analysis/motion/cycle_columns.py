@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.peak_refinement import Vertices, fit_pieces
@@ -67,9 +68,14 @@ class CycleTable:
         """Return the number of cycles."""
         return len(self.columns["start"])
 
-    def part(self, rows: slice) -> CycleTable:
+    def part(self, rows: slice | NDArray[np.bool_]) -> CycleTable:
         """Return some of the rows."""
         return CycleTable({name: each[rows] for name, each in self.columns.items()}, self.least)
+
+    def blank(self, names: Iterable[str], rows: ArrayLike = True) -> CycleTable:
+        """Return the table with NaN in some columns, of some rows or of all."""
+        blanks = {name: np.where(rows, np.nan, self[name]) for name in names}
+        return CycleTable({**self.columns, **blanks}, self.least)
 
     def mean(self, name: str) -> float:
         """Return the mean of a column; NaN without cycles."""

@@ -7,12 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.levels import levels
-from stiction.analysis.motion.cycles import find_cycles
+from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import line
-from stiction.arrays import Floats, xr
+from stiction.arrays import Floats
 
 SURE = 4.0  # standard errors
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
@@ -36,16 +37,16 @@ class Drift(NamedTuple):
     sure: bool = False
 
 
-def find_drift(record: Record, cycles: xr.Dataset) -> Drift:
+def find_drift(record: Record, cycles: CycleTable) -> Drift:
     """Fit a line to the middles between peaks and troughs, or to a force without cycles.
 
     The standard error allows for neighbours that deviate alike.
     """
-    if cycles.sizes["cycle"] >= FEWEST_CYCLES:
-        at = 0.5 * (cycles["peak_time"].values + cycles["trough_time"].values)
-        middle = 0.5 * (cycles["peak"].values + cycles["trough"].values)
+    if len(cycles) >= FEWEST_CYCLES:
+        at = 0.5 * (cycles["peak_time"] + cycles["trough_time"])
+        middle = 0.5 * (cycles["peak"] + cycles["trough"])
         start = float(record.time[0])
-    elif not cycles.sizes["cycle"] and len(record) >= 4 * PARTS:
+    elif not len(cycles) and len(record) >= 4 * PARTS:
         half = len(record) // 2
         at, middle = (part_means(each[half:], PARTS) for each in (record.time, record.force))
         start = float(record.time[half])
@@ -64,7 +65,7 @@ def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
     return found.slope, found.correlated_error(at, middle)
 
 
-def shown_drift(record: Record, kind: str, cycles: xr.Dataset) -> Drift | None:
+def shown_drift(record: Record, kind: str, cycles: CycleTable) -> Drift | None:
     """Return the steady drift of a force; None of a motion whose force does not show one.
 
     A force that stays at several levels changes from one to the next.
@@ -72,18 +73,18 @@ def shown_drift(record: Record, kind: str, cycles: xr.Dataset) -> Drift | None:
     if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
         return None
     drift = find_drift(record, cycles)
-    if not np.isfinite(drift.error) or (not cycles.sizes["cycle"] and levels(record)):
+    if not np.isfinite(drift.error) or (not len(cycles) and levels(record)):
         return None
     return drift
 
 
-def error_of_zero(record: Record, cycles: xr.Dataset, drift: Drift | None) -> float:
+def error_of_zero(record: Record, cycles: CycleTable, drift: Drift | None) -> float:
     """Return how far a mean force without cycles is off (N) if its drift is that of the zero.
 
     The zero is right at the first sample, as `detrend` takes it; the mean is that of the second
     half. A drift may be that of friction instead: then the mean is right, at that time.
     """
-    if drift is None or not drift.sure or cycles.sizes["cycle"]:
+    if drift is None or not drift.sure or len(cycles):
         return 0.0
     first, last = float(record.time[0]), float(record.time[-1])
     return abs(drift.rate) * (0.5 * (drift.start + last) - first)
@@ -121,7 +122,7 @@ def detrend(record: Record) -> Record:
     >>> bool(np.ptp(cycles["peak"].values) < 0.001)
     True
     """
-    drift = find_drift(record, find_cycles(record))
+    drift = find_drift(record, swings(record).lasting)
     if not np.isfinite(drift.start):
         return record
     force = record.force - drift.rate * np.maximum(record.time - drift.start, 0.0)

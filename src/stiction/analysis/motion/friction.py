@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.analysis.motion.changes.sliding import Sliding, sliding
 from stiction.analysis.motion.course import BEGINS_UNLOADED, COURSE_PARTS
-from stiction.analysis.motion.cycle_columns import CycleTable, table_of
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -28,7 +28,7 @@ from stiction.analysis.signals.correlated_noise import mean_and_spread, statisti
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import MEANS_OF_RECORD, part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
-from stiction.arrays import TINY, Floats, xr
+from stiction.arrays import TINY, Floats
 from stiction.recording.noise import rounding_error, white_noise
 from stiction.text.quantity_text import percent
 
@@ -103,23 +103,8 @@ class Friction(NamedTuple):
         return Friction(None, None, None, dict.fromkeys(self._fields[:3], reason))
 
 
-def find_friction(record: Record, regime: Regime, cycles: xr.Dataset) -> Friction:
-    """Find the friction of a record.
-
-    Parameters
-    ----------
-    record : Record
-        The force.
-    regime : Regime
-        The kind of motion, from `stiction.analysis.classify`.
-    cycles : Dataset
-        From `stiction.analysis.find_cycles`.
-    """
-    return friction_of(record, regime, table_of(cycles))
-
-
 def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
-    """Return the friction of a record with known cycles: see `find_friction`."""
+    """Return the friction of a record with a known kind of motion, and known cycles."""
     if len(record) < FEWEST_SAMPLES:
         few = f"of the {FEWEST_SAMPLES} samples that are needed the record has {len(record)}"
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))

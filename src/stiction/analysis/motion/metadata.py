@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import parts_of, steady_change
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
@@ -22,7 +23,7 @@ from stiction.analysis.signals.correlated_noise import (
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import largest_magnitude, trimmed_mean
 from stiction.analysis.signals.straight_line import line
-from stiction.arrays import TINY, Floats, xr
+from stiction.arrays import TINY, Floats
 from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
 
@@ -83,7 +84,7 @@ class StatedQuantity(NamedTuple):
 
 
 def compare_metadata(
-    record: Record, kind: str, cycles: xr.Dataset, drift: Drift | None
+    record: Record, kind: str, cycles: CycleTable, drift: Drift | None
 ) -> tuple[StatedQuantity, ...]:
     """Return all that a record shows of its apparatus, beside what is stated.
 
@@ -93,8 +94,8 @@ def compare_metadata(
         With what is stated.
     kind : str
         The kind of motion.
-    cycles : Dataset
-        From `stiction.analysis.find_cycles`.
+    cycles : CycleTable
+        The cycles of the record.
     drift : Drift or None
         Of the force, if it shows one.
     """
@@ -111,7 +112,7 @@ def compare_metadata(
 
 
 def _loading_rates(
-    record: Record, kind: str, cycles: xr.Dataset, drift: Drift | None
+    record: Record, kind: str, cycles: CycleTable, drift: Drift | None
 ) -> list[StatedQuantity]:
     """Compare the rate of loading while the mass sticks with stiffness times drive velocity.
 
@@ -121,7 +122,7 @@ def _loading_rates(
     """
     if kind not in (STICK_SLIP, TRANSITIONAL):
         return []
-    slopes, starts = cycles["stick_slope"].values, cycles["start"].values
+    slopes, starts = cycles["stick_slope"], cycles["start"]
     stated = (record.stiffness or nan) * (record.drive_velocity or nan)
     # a drift of the load cell seems to load the spring; one of friction does not
     off = 0.0 if drift is None else abs(drift.rate)
@@ -129,7 +130,7 @@ def _loading_rates(
     whole = StatedQuantity(
         LOADING_RATE, "N/s", found, hypot(error, off), stated, SLOWER, FASTER, BY_RISE
     )
-    places = parts_of(cycles["period"].values)
+    places = parts_of(cycles["period"])
     if len(places) < 2:
         if steady_change(slopes) is None:
             return [whole]
@@ -168,7 +169,7 @@ def _typical(values: Floats) -> tuple[float, float]:
     return float(np.median(values)), _error(values)
 
 
-def other_velocity(stated: Sequence[StatedQuantity], cycles: xr.Dataset) -> NDArray[np.bool_]:
+def other_velocity(stated: Sequence[StatedQuantity], cycles: CycleTable) -> NDArray[np.bool_]:
     """Return which cycles are loaded at another rate than the stated one.
 
     None are, if no cycles are loaded at the stated rate. All are, if the rate goes on changing.
@@ -176,16 +177,16 @@ def other_velocity(stated: Sequence[StatedQuantity], cycles: xr.Dataset) -> NDAr
     rates, start = [each for each in stated if each.quantity == LOADING_RATE], cycles["start"]
     found = np.zeros(len(start), bool)
     if len(rates) == 1:
-        changes = steady_change(cycles["stick_slope"].values) is not None
+        changes = steady_change(cycles["stick_slope"]) is not None
         return found | (changes and rates[0].agrees is None)
     if any(each.agrees for each in rates):
         for each in rates:
             if not each.agrees:
-                found |= (start.values >= each.begin) & (start.values < each.end)
+                found |= (start >= each.begin) & (start < each.end)
     return found
 
 
-def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> StatedQuantity | None:
+def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> StatedQuantity | None:
     """Compare k/m by the period of a swing, or the duration of a slip, with that stated.
 
     A mass on its spring swings with the period T = 2 pi (m/k)^1/2. One that rests in each cycle has
@@ -194,12 +195,12 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
     slip whose fall begins or ends far more slowly, as under rate-and-state friction or in a
     dashpot, does not last as mass and stiffness have it.
     """
-    if not cycles.sizes["cycle"] or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
+    if not len(cycles) or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
-    falls = cycles["trough_time"].values - cycles["peak_time"].values
+    falls = cycles["trough_time"] - cycles["peak_time"]
     if float(np.median(falls)) * record.sample_rate < FEWEST_PER_FALL or flat_ends(record.force):
         return None  # where peaks are cut off, a fall seems to begin too early
-    periods, how = cycles["period"].values, BY_SLIPS
+    periods, how = cycles["period"], BY_SLIPS
     rests = float(np.median(periods)) > RESTED * 2.0 * float(np.median(falls))
     swings = periods if kind == HARMONIC and not rests else 2.0 * falls
     if kind == HARMONIC:
@@ -219,13 +220,13 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: xr.Dataset) -> State
     return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, highest, how)
 
 
-def _main_part(record: Record, cycles: xr.Dataset) -> float:
+def _main_part(record: Record, cycles: CycleTable) -> float:
     """Return for which share of its time a fall is from 90 % of its height to 10 %.
 
     Half a cosine is so for 59 %.
     """
     shares = []
-    for begin, end in zip(cycles["peak_time"].values, cycles["trough_time"].values, strict=True):
+    for begin, end in zip(cycles["peak_time"], cycles["trough_time"], strict=True):
         first, last = np.searchsorted(record.time, [begin, end])
         force = record.force[first : last + 1]
         if len(force) < 2:
@@ -238,14 +239,14 @@ def _main_part(record: Record, cycles: xr.Dataset) -> float:
     return float(np.median(shares)) if shares else nan
 
 
-def _unseen_ends(record: Record, cycles: xr.Dataset) -> tuple[float, float]:
+def _unseen_ends(record: Record, cycles: CycleTable) -> tuple[float, float]:
     """Return by which factors slips may last longer, or shorter, than their falls are seen to.
 
     A force that is within noise, or a step of its converter, of a peak or a trough may have left
     it. Half a cosine begins and ends so, and the spring is loaded as slowly before and after it.
     """
     reach = REACH * white_noise(record.force) + resolution(record.force)
-    falls = cycles["trough_time"].values - cycles["peak_time"].values
+    falls = cycles["trough_time"] - cycles["peak_time"]
     share = min(reach / float(np.median(cycles["drop"])), 0.25)
     hidden = 2.0 * float(np.arccos(1.0 - 2.0 * share)) / pi  # of a slip, at both ends
     rate = max(float(np.median(cycles["stick_slope"])), TINY)
@@ -339,9 +340,9 @@ def _zero(record: Record) -> StatedQuantity | None:
     return StatedQuantity("zero", "N", read, spread, stated, nan, nan, "reading at its beginning")
 
 
-def _drift(cycles: xr.Dataset, drift: Drift | None) -> StatedQuantity | None:
+def _drift(cycles: CycleTable, drift: Drift | None) -> StatedQuantity | None:
     """Return the steady change of the force."""
     if drift is None:
         return None
-    how = "line through the middles of cycles" if cycles.sizes["cycle"] else "its second half"
+    how = "line through the middles of cycles" if len(cycles) else "its second half"
     return StatedQuantity("drift of the force", "N/s", drift.rate, drift.error, nan, nan, nan, how)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import cycles_apart, parts_of
+from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.doubts.warnings import turns_round
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -312,7 +313,7 @@ def _each_time(found: Analysis) -> str:
     if len(drop) == 1:
         return ""
     if not isinstance(found.source, Trajectory):
-        drop = drop[~cycles_apart(found.cycles)]
+        drop = drop[~cycles_apart(table_of(found.cycles))]
     if drop.std() < ALIKE * drop.mean():
         return " each time"
     low, high = (in_words(float(end), "N") for end in (drop.min(), drop.max()))

@@ -13,7 +13,7 @@ from tests.measured import bare, read_measured
 import stiction as st
 from stiction.analysis.motion.cycle_columns import TIMES
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.friction import find_friction
+from stiction.analysis.motion.friction import friction_of
 from stiction.analysis.motion.hesitations import remove_hesitations
 from stiction.analysis.signals.reversals import all_heights, remove_reversals, standing_out
 from stiction.analysis.signals.robust import without_outliers
@@ -430,7 +430,7 @@ def test_irregular_vibration_beside_slow_motion_is_no_steady_sliding() -> None:
     noise = random.normal(size=len(time)) / 65.0
     record = st.Record(time=time, force=20.0 + height * np.sin(2 * pi * phase) + slow + noise)
     regime = st.analysis.classify(record)
-    sliding = find_friction(record, regime, st.analysis.find_cycles(record)).kinetic
+    sliding = friction_of(record, regime, swings(record).lasting).kinetic
     assert sliding is not None
     assert sliding.force == pytest.approx(20.0, abs=0.5)  # about which it vibrates
     assert regime.kind == "irregular vibration"

@@ -8,7 +8,8 @@ from tests.drawn import inside
 from tests.parts import assess
 
 import stiction as st
-from stiction.analysis.motion.friction import find_friction
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.friction import friction_of
 from stiction.presets.preset import on_a_line
 from stiction.result.table import fastest_slip
 from stiction.text.sections import as_text
@@ -172,7 +173,7 @@ def test_one_sample_of_sliding_has_a_mean_and_no_error() -> None:
     force = np.append(np.minimum(time[:-1], 6.9 - time[:-1]), 2.0)
     record = st.Record(time=time, force=force)
     steady = st.analysis.Regime("steady sliding", 1.0, {})
-    kinetic = find_friction(record, steady, st.analysis.find_cycles(record)).kinetic
+    kinetic = friction_of(record, steady, swings(record).lasting).kinetic
     assert kinetic.force == 2.0
     assert np.isnan([kinetic.error, kinetic.spread]).all()
 

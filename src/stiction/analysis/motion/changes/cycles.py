@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.motion.course import ORDERED, order
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.signals.robust import median
-from stiction.arrays import TINY, Floats, xr
+from stiction.arrays import TINY, Floats
 from stiction.recording.noise import white_noise
 
 FEW_CYCLES = 4  # in each part
@@ -121,12 +122,12 @@ def steady_change(rate: Floats) -> tuple[float, float] | None:
     return (first, last) if abs(np.log(last / first)) > CHANGED else None
 
 
-def cycles_apart(cycles: xr.Dataset) -> NDArray[np.bool_]:
+def cycles_apart(cycles: CycleTable) -> NDArray[np.bool_]:
     """Return which cycles are far longer or deeper than all others: a pause, a knock, a slip.
 
     None are where the period changes: then each part has its own.
     """
-    period, drop = cycles["period"].values, cycles["drop"].values
+    period, drop = cycles["period"], cycles["drop"]
     if len(period) < FEWEST_CYCLES or len(parts_of(period)) > 1:
         return np.zeros(len(period), bool)
     return stand_apart(period) | stand_apart(drop)

@@ -61,9 +61,7 @@ def ringing_of(time: Floats, peak: Floats, drop: Floats) -> Ringing | None:
 
 def beside(table: CycleTable, ringing: Ringing) -> CycleTable:
     """Return the cycles of a table that a ringing does not touch."""
-    aside = (table["trough_time"] < ringing.begin) | (table["start"] > ringing.end)
-    columns = {name: each[aside] for name, each in table.columns.items()}
-    return CycleTable(columns, table.least)
+    return table.part((table["trough_time"] < ringing.begin) | (table["start"] > ringing.end))
 
 
 def without_ringing(time: Floats, force: Floats, ringing: Ringing) -> Floats:

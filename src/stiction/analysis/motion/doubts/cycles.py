@@ -13,11 +13,11 @@ from stiction.analysis.motion.changes.cycles import (
     steady_change,
 )
 from stiction.analysis.motion.course import QUIET
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import uniform_mean
-from stiction.arrays import xr
 from stiction.recording.noise import white_noise
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -29,9 +29,9 @@ OFF, LOUD, MANY = 0.03, 0.03, 8
 NAMED = 3  # cycles apart; more are counted
 
 
-def doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
+def doubt_mean_period(cycles: CycleTable) -> Iterator[str]:
     """Doubt one mean over cycles of which parts have a period of their own."""
-    period, start = cycles["period"].values, cycles["start"].values
+    period, start = cycles["period"], cycles["start"]
     parts = parts_of(period)
     if len(parts) < 2:
         return
@@ -47,10 +47,10 @@ def doubt_mean_period(cycles: xr.Dataset) -> Iterator[str]:
     )
 
 
-def doubt_loading(cycles: xr.Dataset) -> Iterator[str]:
+def doubt_loading(cycles: CycleTable) -> Iterator[str]:
     """Name a rate of loading that goes on changing."""
-    ends = steady_change(cycles["stick_slope"].values)
-    if ends is None or len(parts_of(cycles["period"].values)) > 1:
+    ends = steady_change(cycles["stick_slope"])
+    if ends is None or len(parts_of(cycles["period"])) > 1:
         return
     first, last = (in_words(end, "N/s") for end in ends)
     yield (
@@ -59,12 +59,12 @@ def doubt_loading(cycles: xr.Dataset) -> Iterator[str]:
     )
 
 
-def doubt_cycles_apart(cycles: xr.Dataset) -> Iterator[str]:
+def doubt_cycles_apart(cycles: CycleTable) -> Iterator[str]:
     """Name cycles far longer or deeper than the others, which the means leave out."""
     if not cycles_apart(cycles).any():
         return
-    period, drop = cycles["period"].values, cycles["drop"].values
-    starts, peaks = cycles["start"].values, cycles["peak_time"].values
+    period, drop = cycles["period"], cycles["drop"]
+    starts, peaks = cycles["start"], cycles["peak_time"]
     deep = stand_apart(drop)
     for at in np.flatnonzero(deep)[:NAMED]:
         yield (
@@ -90,9 +90,9 @@ def doubt_cycles_apart(cycles: xr.Dataset) -> Iterator[str]:
         )
 
 
-def doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
+def doubt_quiet(record: Record, friction: Friction, cycles: CycleTable) -> Iterator[str]:
     """Name long parts of a record without cycles, before the first or after the last of them."""
-    if not cycles.sizes["cycle"]:
+    if not len(cycles):
         return
     least = max(QUIET * float(cycles["period"].max()), QUIET_SHARE * record.duration)
     first, last = float(cycles["start"][0]), float(cycles["trough_time"][-1])
@@ -109,19 +109,19 @@ def doubt_quiet(record: Record, friction: Friction, cycles: xr.Dataset) -> Itera
         )
 
 
-def doubt_drops_in_noise(record: Record, kind: str, cycles: xr.Dataset) -> Iterator[str]:
+def doubt_drops_in_noise(record: Record, kind: str, cycles: CycleTable) -> Iterator[str]:
     """Doubt the drops of a vibration in noise: an extreme of noise is not its mean.
 
     Noise raises peaks, and the averages that it requires lower them. A sine has the variance of an
     eighth of its squared drop; white noise adds its own to that.
     """
-    if kind != HARMONIC or cycles.sizes["cycle"] < MANY:
+    if kind != HARMONIC or len(cycles) < MANY:
         return
     noise, drop = white_noise(record.force), float(cycles["drop"].mean())
     first, last = np.searchsorted(
         record.time, [float(cycles["start"][0]), float(cycles["trough_time"][-1])]
     )
-    force, length = record.force[first:last], round((last - first) / cycles.sizes["cycle"])
+    force, length = record.force[first:last], round((last - first) / len(cycles))
     variance = float((force - uniform_mean(force, length)).var()) - noise**2
     sine = (8.0 * max(variance, 0.0)) ** 0.5
     if noise > LOUD * drop and sine > 0.0 and abs(drop / sine - 1.0) > OFF:

@@ -7,10 +7,10 @@ from math import inf
 
 import numpy as np
 
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.metadata import FEWEST_PER_FALL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
-from stiction.arrays import xr
 from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -87,13 +87,13 @@ def _samples(count: int) -> str:
     return f"{count} samples have" if count > 1 else "One sample has"
 
 
-def _usual_fall(cycles: xr.Dataset) -> float:
+def _usual_fall(cycles: CycleTable) -> float:
     """Return how long a fall of the force takes, s; infinite without cycles."""
-    falls = cycles["trough_time"].values - cycles["peak_time"].values
+    falls = cycles["trough_time"] - cycles["peak_time"]
     return float(np.median(falls)) if len(falls) else inf
 
 
-def doubt_few_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+def doubt_few_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt falls of the force of few samples, and the slip speeds that they give."""
     fall = _usual_fall(cycles)
     samples = fall * record.sample_rate
@@ -106,22 +106,22 @@ def doubt_few_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
     )
 
 
-def doubt_slips_between_samples(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+def doubt_slips_between_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt the samples of a run if slips are faster between them than at them."""
-    unseen = int(np.count_nonzero(np.isnan(cycles["peak_slip_speed"].values)))
+    unseen = int(np.count_nonzero(np.isnan(cycles["peak_slip_speed"])))
     if record.position is None or not unseen:
         return
     least = mean_speeds(record.time, record.position)
     yield (
-        f"In {unseen} of {cycles.sizes['cycle']} slips the largest slip speed lies between two "
+        f"In {unseen} of {len(cycles)} slips the largest slip speed lies between two "
         f"samples, and is {in_words(float(least.max()), 'm/s')} at least: run a slip by itself, "
         "from initial=run.state(time) at a time before it, with more samples a second."
     )
 
 
-def _slow_slips(record: Record, cycles: xr.Dataset, samples: float) -> str:
+def _slow_slips(record: Record, cycles: CycleTable, samples: float) -> str:
     """Return by how much slip speeds are too low that come from so many samples a fall."""
-    if record.slip_speed is not None or not np.isfinite(cycles["peak_slip_speed"].values).any():
+    if record.slip_speed is not None or not np.isfinite(cycles["peak_slip_speed"]).any():
         return ""
     if samples < SEEN_SAMPLES[0]:
         return ", and the largest slip speeds are lower bounds: they may be many times as high"
@@ -132,7 +132,7 @@ def _slow_slips(record: Record, cycles: xr.Dataset, samples: float) -> str:
     )
 
 
-def doubt_filter(record: Record, cycles: xr.Dataset) -> Iterator[str]:
+def doubt_filter(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt falls of the force that are quicker than what a stated filter passes."""
     sensor, fall = (record.sensors or {}).get("force"), _usual_fall(cycles)
     if sensor is not None and fall * sensor.cut_off < SHARP:

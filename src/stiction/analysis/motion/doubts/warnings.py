@@ -8,6 +8,7 @@ from math import log10, pi
 import numpy as np
 
 from stiction.analysis.motion.changes.ringing import Ringing
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
     doubt_drops_in_noise,
@@ -34,7 +35,6 @@ from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.hum import Line, of_mains
-from stiction.arrays import xr
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -63,7 +63,7 @@ QUICKER = 2.0  # times k/m: so quick a vibration may be that of both springs
 def warnings(
     record: Record,
     kind: str,
-    cycles: xr.Dataset,
+    cycles: CycleTable,
     friction: Friction,
     stated: Sequence[StatedQuantity],
     drift: Drift | None,
@@ -127,7 +127,7 @@ def _doubt_load(record: Record) -> Iterator[str]:
         )
 
 
-def warnings_of_run(run: Trajectory, record: Record, cycles: xr.Dataset) -> tuple[str, ...]:
+def warnings_of_run(run: Trajectory, record: Record, cycles: CycleTable) -> tuple[str, ...]:
     """Return warnings about the samples of a run; its parameters are exact."""
     return (
         *_unsteady(run),
@@ -168,12 +168,12 @@ def _varies(run: Trajectory, columns: tuple[str, ...]) -> bool:
     return any(bool(np.ptp(run.samples[name]) > 0.0) for name in columns)
 
 
-def _mains(kind: str, cycles: xr.Dataset) -> Iterator[str]:
+def _mains(kind: str, cycles: CycleTable) -> Iterator[str]:
     """Doubt a vibration at the mains frequency: nothing distinguishes it from hum."""
     if kind != HARMONIC:
         return
     lasts = float(cycles["trough_time"][-1] - cycles["start"][0])
-    frequency = cycles.sizes["cycle"] / lasts
+    frequency = len(cycles) / lasts
     if of_mains(frequency):
         yield (
             f"The force swings at {in_words(frequency, 'Hz')}, as the mains do. Record it with the "
@@ -195,7 +195,7 @@ def _doubt_clipping(record: Record) -> Iterator[str]:
         )
 
 
-def _implausible_friction(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
+def _implausible_friction(record: Record, friction: Friction, cycles: CycleTable) -> Iterator[str]:
     known = [each for each in friction[:3] if each is not None]
     mu = max((abs(each.coefficient) for each in known), default=np.nan)
     if TINY_MU <= mu <= LARGEST_MU or not np.isfinite(mu):

@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import AT_REST, first_reading
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import largest_magnitude
-from stiction.arrays import xr
 from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
 
@@ -25,16 +25,16 @@ CONSTANT = 0.5  # of the average rate of that loading: a spring that is loaded a
 SURE = 3.0  # standard errors of the difference of two parts
 
 
-def is_about_zero(friction: Friction, cycles: xr.Dataset) -> bool:
+def is_about_zero(friction: Friction, cycles: CycleTable) -> bool:
     """Return whether the mean friction is nearly nothing beside the swings, or the scatter."""
     mean = friction.kinetic
     if mean is None:
         return False
-    swing = 0.5 * float(cycles["drop"].median()) if cycles.sizes["cycle"] else mean.spread
+    swing = 0.5 * cycles.median("drop") if len(cycles) else mean.spread
     return abs(mean.force) < ABOUT_ZERO * swing
 
 
-def why_no_friction(friction: Friction, cycles: xr.Dataset) -> str:
+def why_no_friction(friction: Friction, cycles: CycleTable) -> str:
     """Return why no force of a record is a friction, by its mean; empty if it may be one."""
     if friction.kinetic is None:
         return ""
@@ -43,7 +43,7 @@ def why_no_friction(friction: Friction, cycles: xr.Dataset) -> str:
     return "the mean force is against the drive" if friction.kinetic.force < 0.0 else ""
 
 
-def doubt_zero(record: Record, friction: Friction, cycles: xr.Dataset) -> Iterator[str]:
+def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterator[str]:
     """Doubt the zero if a record begins unloaded, or reaches impossible values."""
     largest = largest_magnitude(record.force)
     if friction.kinetic is not None and is_about_zero(friction, cycles):
