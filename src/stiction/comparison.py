@@ -22,7 +22,7 @@ from stiction.names import draw
 from stiction.simulation import MOST_STEPS, automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
-from stiction.text.sections import Section, Table, as_html, as_text
+from stiction.text.sections import Report, Section, Table
 from stiction.text.toml import read_toml
 from stiction.text.validation import unknown_name
 from stiction.trajectory import Trajectory
@@ -38,7 +38,7 @@ MEMORY = 200.0  # memory lengths in a slip length: 10 µm in the 2 mm of Nakano 
 EXAMPLE = """'{law = "coulomb", mu_0 = 0.15}'"""
 
 
-class Comparison(dict[str, Trajectory]):
+class Comparison(Report, dict[str, Trajectory]):
     """Runs of one apparatus under several friction laws, by the law's name.
 
     The description's own law is the first.
@@ -56,13 +56,6 @@ class Comparison(dict[str, Trajectory]):
     def __repr__(self) -> str:
         """Name the laws."""
         return f"<Comparison of {', '.join(self)}>"
-
-    def __str__(self) -> str:
-        """Return the report as text."""
-        return as_text(self.tables())
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables())
 
     @property
     def ok(self) -> bool:

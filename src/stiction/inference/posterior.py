@@ -27,7 +27,7 @@ from stiction.storage.files import NETCDF, placeable, whole
 from stiction.system.parameter import unit
 from stiction.text.paths import last_part, short_names
 from stiction.text.quantity_text import percent
-from stiction.text.sections import Section, Table, as_html
+from stiction.text.sections import Report, Section, Table
 from stiction.text.units import in_words
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
@@ -82,7 +82,7 @@ class Estimate(NamedTuple):
 
 
 @dataclass(frozen=True, repr=False)
-class Fit:
+class Fit(Report):
     """What records say about a rig's parameters.
 
     Parameters
@@ -287,9 +287,6 @@ class Fit:
     def sign_unseen(self) -> bool:
         """Whether no channel shows the sign of phi."""
         return not sign_seen(self.plan.conditions)
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables())
 
     def plot(self, axes: Any = None) -> Any:
         """Draw prior against posterior; see `stiction.plotting.plot_posterior`."""

@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from stiction.formats.channels import CHANNELS
-from stiction.text.sections import Section, Table, as_html, as_text
+from stiction.text.sections import Report, Section, Table
 from stiction.text.units import in_words
 
 
@@ -24,7 +24,7 @@ class Use:
 
 
 @dataclass(frozen=True, repr=False)
-class Origin:
+class Origin(Report):
     """Where a record comes from.
 
     Parameters
@@ -60,13 +60,6 @@ class Origin:
         """Return one line."""
         part = f", block {self.block} of {self.blocks}" if self.blocks > 1 else ""
         return f"<Origin {self.file}{part}, {self.samples} samples>"
-
-    def __str__(self) -> str:
-        """Return the guess as plain text."""
-        return as_text(self.tables())
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables())
 
     def tables(self) -> list[Section]:
         """Return the guess as a section: sentences, and a row for each column."""

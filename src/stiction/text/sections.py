@@ -37,8 +37,23 @@ class Section(NamedTuple):
         return "\n".join([*lines, *(table_lines(self.table) if self.table else ())])
 
 
-class SectionReport:
-    """A report of one section, which text and notebooks show."""
+class Report:
+    """A report of sections, which text and notebooks show."""
+
+    def tables(self) -> list[Section]:
+        """Return the sections of sentences and tables."""
+        raise NotImplementedError
+
+    def __str__(self) -> str:
+        """Return the report as text."""
+        return as_text(self.tables())
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
+
+
+class SectionReport(Report):
+    """A report of one section."""
 
     @property
     def section(self) -> Section:
@@ -46,15 +61,8 @@ class SectionReport:
         raise NotImplementedError
 
     def tables(self) -> list[Section]:
-        """Return the report as sections of sentences and tables."""
+        """Return the section, as reports of several do."""
         return [self.section]
-
-    def __str__(self) -> str:
-        """Return the section as text."""
-        return str(self.section)
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables())
 
 
 def table_lines(table: Table) -> list[str]:

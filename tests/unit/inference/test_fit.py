@@ -122,7 +122,8 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     assert not any(each.startswith("friction.mu") for each in part.sentences)
     assert {row[1] for row in part.table.rows if row[0].startswith("mu")} == {"beyond its prior"}
     assert "mu_0" not in repr(wrong)
-    assert "in doubt" in repr(wrong)
+    assert "in doubt, see print(fit)" in repr(wrong)
+    assert wrong.doubts[0] in str(wrong)
     assert "in doubt" not in repr(found)
     unlike = replace(found, farther=0.02, explanation="It paused.").tables()[0].sentences
     assert unlike[0].startswith("The records are not like those of the rig as described")

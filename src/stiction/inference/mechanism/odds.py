@@ -17,7 +17,7 @@ from stiction.inference.posterior import RARE, STATE_DRIFT
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.names import draw
 from stiction.text.quantity_text import percent
-from stiction.text.sections import Section, Table, as_html
+from stiction.text.sections import Report, Section, Table
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
 BY_HALF = 0.6  # by each half of the simulations: a claim is not a matter of their draw
@@ -36,7 +36,7 @@ CHANNEL = "force_across"  # without which the shape of the friction limit is not
 
 
 @dataclass(frozen=True, repr=False)
-class Odds:
+class Odds(Report):
     """The odds of mechanisms, and what they rest on.
 
     Parameters
@@ -226,9 +226,6 @@ class Odds:
         pairs = zip(self.names, self.probabilities, strict=True)
         said = ", ".join(f"{name} {near_one(p)}" for name, p in pairs)
         return f"<Odds: {self.decision}; {said}>"
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables())
 
     def plot(self, axes: Any = None) -> Any:
         """Draw odds, confusion and loading; see `stiction.plotting.plot_mechanism`."""

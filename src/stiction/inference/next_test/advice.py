@@ -16,12 +16,12 @@ from stiction.inference.simulated.plan import Plan
 from stiction.names import draw
 from stiction.text.paths import short_names
 from stiction.text.quantity_text import percent
-from stiction.text.sections import Section, Table, as_html
+from stiction.text.sections import Report, Section, Table
 from stiction.text.units import in_words
 
 
 @dataclass(frozen=True, repr=False)
-class Advice:
+class Advice(Report):
     """What further tests are expected to tell about the parameters of a rig.
 
     Parameters
@@ -170,9 +170,6 @@ class Advice:
         (again,) = (test for test in self.tests if test.test == AGAIN)
         others = (test for test in self.ranked if test is not again)
         return [test.test for test in others if test.ratio[i] >= again.low[i]]
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables())
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the expected width from each test; see `stiction.plotting.plot_design`."""
