@@ -59,6 +59,6 @@ def code_cache(slider: st.Slider, tmp_path: Path) -> Path:
     full = machine_code.folder()
     place = tmp_path / "cache" / full.name
     place.mkdir(parents=True, mode=0o700)
-    for kept in full.glob("stiction.solver.exact.loop.steps-*"):
+    for kept in full.glob("stiction.solver.exact.loop.advance-*"):
         shutil.copy(kept, place)
     return tmp_path / "cache"

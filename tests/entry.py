@@ -8,7 +8,7 @@ import numba
 from numba.extending import _Intrinsic
 
 from stiction.solver.compilation import pointer
-from stiction.solver.exact.loop import steps
+from stiction.solver.exact.loop import advance
 from stiction.solver.multiscale.return_map import empty_map
 
 
@@ -50,4 +50,4 @@ def call(function, first, others):
 
 def map_of(rtol, samples=False):
     """Return an empty map, of cycles in steps of plain Python."""
-    return empty_map(rtol, plain(steps), samples)
+    return empty_map(rtol, plain(advance), samples)

@@ -345,9 +345,33 @@ def varies(problem: Problem) -> bool:
 
 
 @inlined
-def in_principal_axes(problem: Problem, vector: tuple[float, float]) -> tuple[float, float]:
+def in_solver_axes(problem: Problem, vector: Vector) -> Vector:
     """Return a laboratory vector (X, Y) in the solver's axes."""
     return into_axes(problem.rig, problem.system.cos_phi, problem.system.sin_phi, vector)
+
+
+@inlined
+def drive_travel(problem: Problem, t: float, dt: float) -> Vector:
+    """Return the displacement (m) of the drive from `t` to `t + dt`, in the solver's axes."""
+    return in_solver_axes(problem, travel(problem.drive, t, dt))
+
+
+@inlined
+def drive_rate(problem: Problem, t: float) -> Vector:
+    """Return the velocity (m/s) of the drive, in the solver's axes."""
+    return in_solver_axes(problem, rate(problem.drive, t))
+
+
+@inlined
+def drive_rate_change(problem: Problem, t: float) -> Vector:
+    """Return the acceleration (m/s^2) of the drive, in the solver's axes."""
+    return in_solver_axes(problem, rate_change(problem.drive, t))
+
+
+@inlined
+def drive_rate_curve(problem: Problem, t: float) -> Vector:
+    """Return the rate of change of the drive's acceleration (m/s^3), in the solver's axes."""
+    return in_solver_axes(problem, rate_curve(problem.drive, t))
 
 
 @inlined

@@ -12,14 +12,13 @@ from stiction.solver.problem import (
     constant,
     damping,
     drift,
-    in_principal_axes,
-    rate,
-    rate_change,
-    rate_curve,
+    drive_rate,
+    drive_rate_change,
+    drive_rate_curve,
+    drive_travel,
     smooth_until,
     static,
     steady,
-    travel,
 )
 from stiction.solver.stepping.radau import C
 from stiction.solver.surface import held_product
@@ -36,8 +35,8 @@ def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, 
     Eq. (1) with du/dt = v_d: (K u + C v_d)/m + dv_d/dt, the last only for a driven plate.
     """
     system = problem.system
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
-    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
+    v_x, v_y = drive_rate(problem, t)
+    g_x, g_y = drive_rate_change(problem, t)
     c_x, c_y = damping(problem, v_x, v_y)
     return (
         (system.k_x * u_x + c_x) * system.per_mass + system.inertia * g_x,
@@ -49,9 +48,9 @@ def holding(problem: Problem, t: float, u_x: float, u_y: float) -> tuple[float, 
 def holding_change(problem: Problem, t: float) -> tuple[float, float]:
     """Return the rate of change of the value of `holding`, in m/s^3."""
     system = problem.system
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
-    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
-    j_x, j_y = in_principal_axes(problem, rate_curve(problem.drive, t))
+    v_x, v_y = drive_rate(problem, t)
+    g_x, g_y = drive_rate_change(problem, t)
+    j_x, j_y = drive_rate_curve(problem, t)
     c_x, c_y = damping(problem, g_x, g_y)
     return (
         (system.k_x * v_x + c_x) * system.per_mass + system.inertia * j_x,
@@ -117,7 +116,7 @@ def stick_duration(
         else:
             gone += x
             now = t + gone
-        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, gone))
+        d_x, d_y = drive_travel(problem, t, gone)
         excess, change, square = margin(problem, now, u_x + d_x, u_y + d_y)
     return gone, False
 

@@ -24,7 +24,7 @@ import stiction as st
 import stiction.solver
 from stiction.solver.accuracy import accuracy, scales_of, tolerance
 from stiction.solver.compilation.jit import call_compiled
-from stiction.solver.exact.loop import steps
+from stiction.solver.exact.loop import advance
 from stiction.solver.exact.method import Exact
 from stiction.solver.exact.pursuit import slip_before_landing
 from stiction.solver.exact.record import record_of
@@ -119,7 +119,7 @@ def turn(name, problem, held, state, times=()):
     state = state._replace(counts=state.counts._replace(sticks=0, stuck=0.0))
     problem = Exact(SLIDERS[name]).point_law(problem)
     arguments = problem, state, 1e9, held, 1, times, samples, 0, sticks, record_of(0)
-    _, after, _, _ = call_compiled(steps, kinds_of(problem), *arguments)
+    _, after, _, _ = call_compiled(advance, kinds_of(problem), *arguments)
     return state_from_plain(after), samples
 
 

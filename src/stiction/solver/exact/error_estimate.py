@@ -15,7 +15,7 @@ from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep, products
 from stiction.solver.exact.oscillation import MOST, Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, friction, pull
-from stiction.solver.problem import Problem, in_principal_axes, rate, rate_change
+from stiction.solver.problem import Problem, drive_rate, drive_rate_change
 from stiction.solver.stepping.block_algebra import Triple, less
 from stiction.solver.stepping.control import motion_of
 from stiction.solver.stepping.radau import (
@@ -43,8 +43,8 @@ def moving(
     a radian of each spring; see `motion_of`.
     """
     r, e_x, e_y = frame.r, frame.e_x, frame.e_y
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t))
-    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, frame.t))
+    v_x, v_y = drive_rate(problem, frame.t)
+    g_x, g_y = drive_rate_change(problem, frame.t)
     s_1, s_2 = start.a_1 - start.f, start.a_2 - start.turn
     x, y = v_x - r * e_x, v_y - r * e_y
     by_x, by_y = g_x - s_1 * e_x + s_2 * e_y, g_y - s_1 * e_y - s_2 * e_x
@@ -124,7 +124,7 @@ def error_at(
     error_w = (p_in * dw - h * (a_2 - w_in * a_1 - f * n.tau)) / (stiffness + TINY)
     error_q = w_in * error_p + p_in * error_w
     e_x, e_y, size = frame.e_x, frame.e_y, p_in * stretch
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, frame.t + dt))
+    v_x, v_y = drive_rate(problem, frame.t + dt)
     v_x, v_y = v_x - p_in * (e_x - w_in * e_y), v_y - p_in * (e_y + w_in * e_x)
     speed = accuracy.speed
     slip_scale = min(size, accuracy.drive)

@@ -24,11 +24,10 @@ from stiction.solver.problem import (
     Problem,
     at,
     coefficient,
-    in_principal_axes,
+    drive_rate,
+    drive_travel,
     isotropic,
-    rate,
     smooth_until,
-    travel,
 )
 from stiction.solver.state import (
     ASKS,
@@ -83,7 +82,7 @@ def stick(
     end = t_stop if t + duration >= t_stop else t + duration
     ends = ends and end < t_stop
     if ends:
-        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
+        d_x, d_y = drive_travel(problem, t, end - t)
         smooth = smooth_until(problem.bend, end, t_stop)
         if holds_on(problem, end, u_x + d_x, u_y + d_y, smooth):
             ends, end = False, smooth
@@ -93,7 +92,7 @@ def stick(
         touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.touch
         is_stick = goes_on or not touch
         k = sample_stick(problem, t, u_x, u_y, end, is_stick, times, samples, k)
-        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, end - t))
+        d_x, d_y = drive_travel(problem, t, end - t)
         u_x, u_y = u_x + d_x, u_y + d_y
         if is_stick:
             counts = record_stick(counts, t, end, goes_on, sticks)
@@ -102,7 +101,7 @@ def stick(
     a_x, a_y = takeoff(problem, (a_x, a_y), limit)
     a = sqrt(a_x * a_x + a_y * a_y)
     if a == 0.0:  # no force yet, as at a start without friction: slip follows da/dt
-        v_x, v_y = in_principal_axes(problem, rate(problem.drive, end))
+        v_x, v_y = drive_rate(problem, end)
         a_x, a_y = problem.system.k_x * v_x, problem.system.k_y * v_y
         a = sqrt(a_x * a_x + a_y * a_y)
     e_x, e_y = (a_x / a, a_y / a) if a > 0.0 else (motion.e_x, motion.e_y)
@@ -215,7 +214,7 @@ def beyond_floats(start: Outset, motion: Motion, accuracy: Accuracy) -> Motion:
 
 
 @inlined
-def advance(
+def take_steps(
     problem: Problem,
     state: State,
     t_end: float,
@@ -296,7 +295,7 @@ def advance(
 
 
 @compiled
-def steps(
+def advance(
     problem: Problem,
     state: State,
     t_end: float,
@@ -308,8 +307,8 @@ def steps(
     sticks: np.ndarray,
     record: StepRecord,
 ) -> tuple[int, Plain, int, int]:
-    """Advance, and return the state as plain tuples for Python."""
-    code, state, k, turns = advance(
+    """Do as `take_steps`, and return the state as plain tuples for Python."""
+    code, state, k, turns = take_steps(
         problem, state, t_end, accuracy, budget, times, samples, k, sticks, record
     )
     return code, plain(state), k, turns

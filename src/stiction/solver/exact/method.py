@@ -10,7 +10,7 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled
-from stiction.solver.exact.loop import steps
+from stiction.solver.exact.loop import advance
 from stiction.solver.exact.record import record_of
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.exact.slip_frame import friction
@@ -68,7 +68,7 @@ class Exact:
     ) -> tuple[int, State]:
         """Advance until `end` (s) or until the budget is used up."""
         pointed = self.point_law(problem)
-        return advance_compiled(steps, pointed, state, end, accuracy, budget, out, self.record)
+        return advance_compiled(advance, pointed, state, end, accuracy, budget, out, self.record)
 
     def last_row(self, problem: Problem, state: State) -> list[float]:
         """Return the sample of a state between two steps."""

@@ -23,7 +23,7 @@ from stiction.solver.exact.newton import solve
 from stiction.solver.exact.oscillation import NO_LANDING, after, oscillator, still, swing, swings
 from stiction.solver.exact.record import on_polynomial
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation, friction
-from stiction.solver.problem import Problem, in_principal_axes, travel
+from stiction.solver.problem import Problem, drive_travel
 from stiction.solver.state import Motion
 from stiction.solver.stepping.block_algebra import Triple, dot, less
 from stiction.solver.stepping.radau import A, C, cubic
@@ -111,7 +111,7 @@ def sample_stick(
     It is a stick if `is_stick`, else only a touch.
     """
     while k < len(times) and times[k] <= end:
-        d_x, d_y = in_principal_axes(problem, travel(problem.drive, t, times[k] - t))
+        d_x, d_y = drive_travel(problem, t, times[k] - t)
         a_x, a_y = holding(problem, times[k], u_x + d_x, u_y + d_y)
         samples[k, 0] = u_x + d_x
         samples[k, 1] = u_y + d_y

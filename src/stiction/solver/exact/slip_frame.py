@@ -21,7 +21,9 @@ from stiction.solver.problem import (
     at,
     coefficient_and_slope,
     cross_damping,
-    in_principal_axes,
+    drive_rate,
+    drive_travel,
+    in_solver_axes,
     is_aligned,
     rate,
     rate_change,
@@ -95,11 +97,11 @@ def frame_of(problem: Problem, motion: Motion) -> Frame:
     k_x, k_y = s.k_x * s.per_mass, s.k_y * s.per_mass
     c_x, c_y = s.c_x * s.per_mass, s.c_y * s.per_mass
     xx, xy, yy = e_x * e_x, e_x * e_y, e_y * e_y
-    X_x, X_y = in_principal_axes(problem, (1.0, 0.0))
-    Y_x, Y_y = in_principal_axes(problem, (0.0, 1.0))
+    X_x, X_y = in_solver_axes(problem, (1.0, 0.0))
+    Y_x, Y_y = in_solver_axes(problem, (0.0, 1.0))
     v_x = v_y = 0.0
     if steady(problem.drive):
-        v_x, v_y = in_principal_axes(problem, rate(problem.drive, motion.t))
+        v_x, v_y = drive_rate(problem, motion.t)
     d_x, d_y = c_x * v_x, c_y * v_y
     damping = Tensor(c_x * xx + c_y * yy, (c_y - c_x) * xy, c_y * xx + c_x * yy)
     if not is_aligned(problem.rig):
@@ -212,7 +214,7 @@ def elongation(
     problem: Problem, frame: Frame | Motion, dt: float, slid_1: float, slid_2: float
 ) -> tuple[float, float]:
     """Return the elongation after `dt`, having slid (slid_1, slid_2) in the step's axes (M30)."""
-    d_x, d_y = in_principal_axes(problem, travel(problem.drive, frame.t, dt))
+    d_x, d_y = drive_travel(problem, frame.t, dt)
     e_x, e_y = frame.e_x, frame.e_y
     return (
         frame.u_x + (d_x - (slid_1 * e_x - slid_2 * e_y)),

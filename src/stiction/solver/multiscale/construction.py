@@ -35,8 +35,8 @@ from stiction.solver.multiscale.return_map import (
     Returns,
 )
 from stiction.solver.multiscale.section import angle, elongation_held, lead, wrap_angle
-from stiction.solver.multiscale.steps import advance
-from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.multiscale.steps import take_steps
+from stiction.solver.problem import Problem, drive_rate
 from stiction.solver.state import (
     NOTHING,
     RUNNING,
@@ -93,12 +93,12 @@ def solve_cycle(
     """
     fine, early = finer(accuracy), lead(problem, theta)
     u_x, u_y = elongation_held(problem, theta)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    v_x, v_y = drive_rate(problem, 0.0)
     motion = Motion(0.0, u_x - v_x * early, u_y - v_y * early, 0.0, 1.0, 0.0)
     state = State(motion, with_limit(at_takeoff(memory), NEVER_ASKED), NOTHING)
     times, samples, stick = known.never, known.nowhere, known.stick
     known.record.used[0] = 0
-    code, state, _, turns = advance(
+    code, state, _, turns = take_steps(
         problem, state, early + longest, fine, most, times, samples, FIRST, stick, known
     )
     end = state.motion

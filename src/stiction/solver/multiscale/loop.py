@@ -36,7 +36,7 @@ from stiction.solver.multiscale.return_map import (
     Stick,
 )
 from stiction.solver.multiscale.section import wrap_angle
-from stiction.solver.multiscale.steps import advance
+from stiction.solver.multiscale.steps import take_steps
 from stiction.solver.multiscale.walk import follow_patches
 from stiction.solver.problem import Problem
 from stiction.solver.state import COMPLETED, RUNNING, Counts, Plain, State, plain
@@ -182,7 +182,7 @@ def stride(
     sticks: np.ndarray,
     known: Returns,
 ) -> tuple[int, Plain, int, int]:
-    """Advance like `stiction.solver.exact.loop.advance`, by the return map where it is known.
+    """Advance like `stiction.solver.exact.loop.take_steps`, by the return map where it is known.
 
     Parameters
     ----------
@@ -213,7 +213,7 @@ def stride(
             known.record.used[0] = 0
         room = sticks[: state.counts.sticks + (1 if rests else 0)]  # until the next landing
         most = int(min(budget - turns, 1.0 + known.balance[MAY_COST] / SHORTER))
-        code, state, k, used = advance(
+        code, state, k, used = take_steps(
             problem, state, t_end, accuracy, most, times, samples, k, room, known
         )
         turns += used

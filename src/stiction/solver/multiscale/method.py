@@ -12,7 +12,7 @@ from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.ahead import compile_beside, is_compiled
 from stiction.solver.compilation.jit import INTERPRETED
 from stiction.solver.compilation.pointer import typeof
-from stiction.solver.exact.loop import steps
+from stiction.solver.exact.loop import advance
 from stiction.solver.exact.method import Exact, advance_compiled
 from stiction.solver.multiscale.loop import stride
 from stiction.solver.multiscale.return_map import STEP_SHARE, Returns, empty_map
@@ -85,7 +85,7 @@ class Multiscale(Exact):
         pointed = self.point_law(problem)
         steps_kinds = kinds_of_steps(pointed)
         map_kinds = *steps_kinds[:-1], typeof(empty_map(self.rtol, 0))
-        if not is_compiled(steps, steps_kinds) and not is_compiled(stride, map_kinds):
+        if not is_compiled(advance, steps_kinds) and not is_compiled(stride, map_kinds):
             _compiled_beside[kinds] = compile_beside(stride, map_kinds)
 
     def map_of(self, problem: Problem, out: Output) -> Returns:

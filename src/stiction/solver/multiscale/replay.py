@@ -12,9 +12,9 @@ from stiction.solver.multiscale.construction import add_counts
 from stiction.solver.multiscale.inside import following_step, write_kept
 from stiction.solver.multiscale.return_map import NEAR, Returns, Stick
 from stiction.solver.multiscale.section import angle
-from stiction.solver.multiscale.steps import advance
+from stiction.solver.multiscale.steps import take_steps
 from stiction.solver.multiscale.walk import elongation_at_landing, sample_known_stick
-from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.problem import Problem, drive_rate
 from stiction.solver.state import COMPLETED, NOTHING, RUNNING, Motion, State, at_takeoff, with_limit
 from stiction.solver.stepping.limit import NEVER_ASKED
 from stiction.solver.stick import stick_duration
@@ -30,7 +30,7 @@ def stick_of(problem: Problem, motion: Motion) -> Stick:
     duration, _ = stick_duration(problem, t, u_x, u_y, inf)
     if not 0.0 < duration < inf:
         return Stick(t, t + duration, nan)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    v_x, v_y = drive_rate(problem, 0.0)
     return Stick(t, t + duration, angle(problem, u_x + v_x * duration, u_y + v_y * duration))
 
 
@@ -72,7 +72,7 @@ def sample_cycle(
     # it may stick for a moment although the map just has no stick
     while code == RUNNING and k < until and alone.motion.t < landing - SAME * slip:
         alone = State(alone.motion, alone.memory, NOTHING)
-        code, alone, k, _ = advance(
+        code, alone, k, _ = take_steps(
             problem,
             alone,
             landing + slip,

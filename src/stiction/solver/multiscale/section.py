@@ -9,7 +9,7 @@ from __future__ import annotations
 from math import atan2, cos, pi, sin, sqrt
 
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.problem import Problem, at, damping, in_principal_axes, rate, static
+from stiction.solver.problem import Problem, at, damping, drive_rate, static
 from stiction.solver.stick import holding, holding_change
 from stiction.solver.surface import held_product
 
@@ -34,7 +34,7 @@ def limit_at_angle(problem: Problem, theta: float) -> tuple[float, float]:
 def elongation_held(problem: Problem, theta: float) -> tuple[float, float]:
     """Return the elongation (x, y) at which a stick ends."""
     s, (a_x, a_y) = problem.system, limit_at_angle(problem, theta)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    v_x, v_y = drive_rate(problem, 0.0)
     c_x, c_y = damping(problem, v_x, v_y)
     return (s.mass * a_x - c_x) / s.k_x, (s.mass * a_y - c_y) / s.k_y
 

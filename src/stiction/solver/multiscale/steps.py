@@ -13,7 +13,7 @@ from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED, inlined
 from stiction.solver.compilation.pointer import address_of, caller_of, typeof, types
-from stiction.solver.exact.loop import steps
+from stiction.solver.exact.loop import advance
 from stiction.solver.exact.record import record_of
 from stiction.solver.multiscale.return_map import Returns
 from stiction.solver.problem import Problem, System, kinds_of
@@ -21,7 +21,7 @@ from stiction.solver.state import State, start, state_from_plain
 
 _state = start(System(*[1.0] * len(System._fields)), 0.0, (0.0, 0.0), (0.0, 0.0))
 _row, _table = np.empty(0), np.empty((0, 0))
-KINDS = tuple(  # types of the arguments of `steps`, but for the problem's
+KINDS = tuple(  # types of the arguments of `exact.loop.advance`, but for the problem's
     typeof(each)
     for each in (
         _state,
@@ -43,23 +43,23 @@ _addresses: dict[tuple[Any, ...], Any] = {}
 
 
 def kinds_of_steps(problem: Problem) -> tuple[Any, ...]:
-    """Return the types of the arguments of `steps`."""
+    """Return the types of the arguments of `exact.loop.advance`."""
     return typeof(problem), *KINDS
 
 
 def address_of_steps(problem: Problem) -> Any:
     """Return the address of the loop in steps, compiled for a problem of this type."""
     if INTERPRETED:
-        return steps
+        return advance
     kinds = kinds_of(problem)
     if kinds not in _addresses:
         with compiling():
-            _addresses[kinds] = address_of(steps, *kinds_of_steps(problem))
+            _addresses[kinds] = address_of(advance, *kinds_of_steps(problem))
     return _addresses[kinds]
 
 
 @inlined
-def advance(
+def take_steps(
     problem: Problem,
     state: State,
     t_end: float,
@@ -71,7 +71,7 @@ def advance(
     sticks: np.ndarray,
     known: Returns,
 ) -> tuple[int, State, int, int]:
-    """Advance in steps, which the map's record keeps; see `stiction.solver.exact.loop.advance`."""
+    """Do as `stiction.solver.exact.loop.take_steps`; the map's record keeps the steps."""
     others = state, t_end, accuracy, budget, times, samples, k, sticks, known.record
     code, now, k, turns = call(known.steps, problem, others)
     return code, state_from_plain(now), k, turns

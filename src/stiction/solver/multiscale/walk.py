@@ -19,7 +19,7 @@ from stiction.solver.multiscale.return_map import (
     Stick,
 )
 from stiction.solver.multiscale.section import elongation_held, wrap_angle
-from stiction.solver.problem import Problem, in_principal_axes, rate
+from stiction.solver.problem import Problem, drive_rate
 
 HELD = switch(True)
 
@@ -97,6 +97,6 @@ def sample_known_stick(
 def elongation_at_landing(problem: Problem, stick: Stick) -> tuple[float, float]:
     """Return the elongation (x, y) at the start of a stick."""
     u_x, u_y = elongation_held(problem, stick.theta)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, 0.0))
+    v_x, v_y = drive_rate(problem, 0.0)
     back = stick.end - stick.start
     return u_x - v_x * back, u_y - v_y * back

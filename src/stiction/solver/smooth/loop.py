@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled, inlined, piece
-from stiction.solver.problem import Problem, in_principal_axes, smooth_until, travel, varies
+from stiction.solver.problem import Problem, drive_travel, smooth_until, varies
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.dispatch import grain_of
 from stiction.solver.smooth.right_hand_side import (
@@ -102,7 +102,7 @@ def motion_at_end(
     problem: Problem, start: SmoothOutset, h: float, end: float, w: Workspace
 ) -> SmoothMotion:
     """Return the motion at the end of a step."""
-    d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, h))
+    d_x, d_y = drive_travel(problem, start.t, h)
     v = w.values
     slid_x = h * dot(A[2], (v[1, 0], v[2, 0], v[3, 0]))
     slid_y = h * dot(A[2], (v[1, 1], v[2, 1], v[3, 1]))
@@ -146,7 +146,7 @@ def keep(w: Workspace, z: np.ndarray, past: np.ndarray) -> None:
 
 
 @piece
-def steps(
+def take_steps(
     problem: Problem,
     state: SmoothState,
     t_end: float,
@@ -232,7 +232,7 @@ def advance(
     turns = 0
     while True:
         most = budget - turns
-        code, numbers, k, used = steps(
+        code, numbers, k, used = take_steps(
             problem, state, t_end, accuracy, most, times, samples, k, w, inner
         )
         turns += used

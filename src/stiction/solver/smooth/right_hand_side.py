@@ -13,13 +13,12 @@ from stiction.solver.problem import (
     Problem,
     at,
     cross_damping,
-    in_principal_axes,
+    drive_rate,
+    drive_rate_change,
+    drive_travel,
     inward,
     is_aligned,
     outward,
-    rate,
-    rate_change,
-    travel,
 )
 from stiction.solver.regularised import Friction
 from stiction.solver.smooth.coordinate import slip_and_slope
@@ -94,7 +93,7 @@ class Stages(NamedTuple):
 @inlined
 def pull(problem: Problem, start: SmoothOutset, dt: float) -> Pull:
     """Return the forces `dt` after the step's start, as if there were no slip since."""
-    d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, dt))
+    d_x, d_y = drive_travel(problem, start.t, dt)
     a_x, a_y = holding(problem, start.t + dt, start.u_x + d_x, start.u_y + d_y)
     return Pull(a_x, a_y, at(problem.load, start.t + dt))
 
@@ -199,8 +198,8 @@ def moving(
 ) -> tuple[float, float]:
     """Return the motion about steady sliding at a step's start (M42); see `motion_of`."""
     system, (s_x, s_y) = problem.system, (at_start.s_x, at_start.s_y)
-    v_x, v_y = in_principal_axes(problem, rate(problem.drive, t))
-    g_x, g_y = in_principal_axes(problem, rate_change(problem.drive, t))
+    v_x, v_y = drive_rate(problem, t)
+    g_x, g_y = drive_rate_change(problem, t)
     by_x = g_x - (p.x - system.c_x * s_x * system.per_mass - at_start.f_x)
     by_y = g_y - (p.y - system.c_y * s_y * system.per_mass - at_start.f_y)
     x, y = v_x - s_x, v_y - s_y

@@ -12,7 +12,7 @@ from stiction.friction.law import Vector
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.sampling import COLUMNS
-from stiction.solver.problem import Problem, at, cross_damping, in_principal_axes, travel
+from stiction.solver.problem import Problem, at, cross_damping, drive_travel
 from stiction.solver.smooth.coordinate import coordinate
 from stiction.solver.smooth.error_estimate import balance, less_error, within
 from stiction.solver.smooth.newton import solve
@@ -38,7 +38,7 @@ def sample(
     while k < len(times) and times[k] <= start.t + h:
         dt = min(times[k] - start.t, h)
         x = dt / h
-        d_x, d_y = in_principal_axes(problem, travel(problem.drive, start.t, dt))
+        d_x, d_y = drive_travel(problem, start.t, dt)
         u_x, u_y = start.u_x + d_x, start.u_y + d_y
         if dt > 0.0 and shorter(problem, start, x, h, w, inner, accuracy):
             v = inner.values

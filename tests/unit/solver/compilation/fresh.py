@@ -14,7 +14,7 @@ from stiction.solver.compilation import jit
 from stiction.solver.compilation.machine_code import Shelf
 from stiction.solver.problem import Isotropic
 from stiction.solver.segments import segments
-from stiction.solver.smooth.dispatch import point_to_flow
+from stiction.solver.smooth.dispatch import point_to_smooth_law
 from stiction.solver.smooth.error_estimate import local_error
 from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import Workspace
@@ -47,7 +47,7 @@ def main():
     compiled = jit._entry(error_of, Shelf(error_of))
     slider = st.presets.nakano_popov_2020().replace(friction=BRISTLES)
     problem = next(segments(slider, 0.3, 1.3)).problem
-    problem = problem._replace(law=point_to_flow(BRISTLES), surface=Isotropic())
+    problem = problem._replace(law=point_to_smooth_law(BRISTLES), surface=Isotropic())
     start, numbers = SmoothOutset(0.35, 2e-3, -3e-5, inf, 1e-3, 1.0), []
     for h, row in zip(np.geomspace(1e-6, 1e-2, 40), inside(40, *[(-1e-3, 1e-3)] * 24), strict=True):
         w = Workspace(*map(np.zeros, SIZES))

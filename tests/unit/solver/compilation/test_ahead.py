@@ -59,7 +59,9 @@ def test_the_map_is_compiled_beside_steps_that_are_not_there(monkeypatch, slider
     monkeypatch.setattr(method, "_met", set())
     monkeypatch.setattr(method, "_compiled_beside", {})
     monkeypatch.setattr(
-        method, "is_compiled", lambda function, kinds: steps_are_there and function is method.steps
+        method,
+        "is_compiled",
+        lambda function, kinds: steps_are_there and function is method.advance,
     )
     monkeypatch.setattr(
         method,

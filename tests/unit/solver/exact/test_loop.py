@@ -39,7 +39,7 @@ def advance(name, state, t_end, budget=1000, accuracy=None, room=50):
     sticks = np.zeros((room, 2))
     accuracy = accuracy or held_to(1e-4)
     problem = name if not isinstance(name, str) else problem_of(name)
-    code, state, _, turns = plain(loop.advance)(
+    code, state, _, turns = plain(loop.take_steps)(
         problem, state, t_end, accuracy, budget, *NONE, sticks, record_of(0)
     )
     return code, state, sticks[: state.counts.sticks], turns
@@ -178,7 +178,7 @@ def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     assert end.counts.steps > 5
     paused, table = state, np.zeros((50, 2))
     for _ in range(1000):
-        code, paused, _, used = plain(loop.advance)(
+        code, paused, _, used = plain(loop.take_steps)(
             problem_of(name), paused, 0.45, held_to(1e-4), 3, *NONE, table, record_of(0)
         )
         assert used <= 3

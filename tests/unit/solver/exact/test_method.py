@@ -11,7 +11,7 @@ from tests.unit.solver.exact.test_predictor import COLD
 
 import stiction as st
 from stiction.solver.exact import method
-from stiction.solver.exact.loop import steps
+from stiction.solver.exact.loop import advance
 from stiction.solver.exact.sampling import COLUMNS
 from stiction.solver.integrate import integrate
 from stiction.solver.problem import kinds_of
@@ -96,11 +96,11 @@ def test_times_that_may_not_be_written_to_are_taken_without_compiling_anew():
     description = Description(STEADY, START, Settings(duration=1e-3))
     times = START.time + np.linspace(0.0, 1e-3, 5)
     wanted = integrate(description, times, 10**6, None).samples
-    known = len(steps.overloads)
+    known = len(advance.overloads)
     times.flags.writeable = False
     found = integrate(description, times, 10**6, None).samples
     assert found.tolist() == wanted.tolist()
-    assert len(steps.overloads) == known
+    assert len(advance.overloads) == known
 
 
 class Overflows(NamedTuple):

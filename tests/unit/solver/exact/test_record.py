@@ -54,8 +54,8 @@ def test_the_loop_keeps_each_step():
     ends = []
     for keeps in (kept, record.record_of(0)):
         sticks = np.zeros((50, 2))
-        advance = plain(loop.advance)
-        ends.append(advance(problem, begun, 0.45, held_to(1e-4), 1000, *NONE, sticks, keeps))
+        take_steps = plain(loop.take_steps)
+        ends.append(take_steps(problem, begun, 0.45, held_to(1e-4), 1000, *NONE, sticks, keeps))
     assert ends[0] == ends[1]
     assert keeps.used[0] == kept.used[0]
     rows = kept.rows[: kept.used[0]]

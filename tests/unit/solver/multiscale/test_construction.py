@@ -45,8 +45,9 @@ def cycle_from(problem, known, theta):
 def step_through(problem, theta, count):
     """Return the stick intervals after a take-off, by steps, and the angles at their ends."""
     sticks, state = np.zeros((count, 2)), taking_off(problem, theta)
-    advance, never = plain(loop.advance), (np.empty(0), np.empty((0, 7)))
-    advance(problem, state, 9.0, EXACT._replace(touch=0.0), 10**6, *never, 0, sticks, record_of(0))
+    take_steps, never = plain(loop.take_steps), (np.empty(0), np.empty((0, 7)))
+    exact = EXACT._replace(touch=0.0)
+    take_steps(problem, state, 9.0, exact, 10**6, *never, 0, sticks, record_of(0))
     return sticks
 
 

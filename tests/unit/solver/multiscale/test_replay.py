@@ -42,7 +42,7 @@ def test_samples_of_a_cycle(name):
     assert found.counts.steps > COUNTS.steps + 3
     assert np.isnan(samples[[0, -1]]).all()
     wanted = np.full((7, 7), np.nan)
-    plain(loop.advance)(
+    plain(loop.take_steps)(
         problem, taking_off(problem, THETA, T), landing, EXACT, 10**6,
         times[2:-1], wanted, 0, np.zeros((2, 2)), record_of(0),
     )  # fmt: skip
@@ -84,7 +84,7 @@ def test_samples_of_a_cycle_like_another(longer):
     assert (k, samples[0, 6]) == (6, 1.0)
     assert np.isnan(samples[6]).all()
     wanted = np.full((5, 7), np.nan)
-    plain(loop.advance)(
+    plain(loop.take_steps)(
         problem, taking_off(problem, THETA, T), T + slip, EXACT, 10**6,
         T + parts * slip, wanted, 0, np.zeros((2, 2)), record_of(0),
     )  # fmt: skip
@@ -98,13 +98,13 @@ def test_steps_are_taken_until_the_samples_are_filled(code, calls, monkeypatch):
     stick, times = Stick(T - 2e-3, T, THETA), T + 1e-3 * np.arange(1, 4)
     state, seen = State(taking_off(problem, 0.3).motion, MEMORY, COUNTS), []
 
-    def advance(_, state, *arguments):
+    def take_steps(_, state, *arguments):
         k = arguments[-3]
         seen.append(k)
         return code, state._replace(motion=state.motion._replace(t=times[k])), k + 1, 1
 
     cycle = plain(replay.sample_cycle)
-    monkeypatch.setitem(cycle.__globals__, "advance", advance)
+    monkeypatch.setitem(cycle.__globals__, "take_steps", take_steps)
     samples = np.full((3, 7), np.nan)
     found, _, k = cycle(problem, state, stick, T + 0.01, EXACT, times, samples, 0, known)
     assert (found, k) == (code, calls)
