@@ -44,6 +44,25 @@ class PointedSmoothLaw(NamedTuple):
     unitless: np.ndarray
 
 
+class Place(NamedTuple):
+    """Where a law is evaluated: slip (m/s), load (N), 1/mass, internal states; and the row."""
+
+    slip: Vector
+    load: float
+    per_mass: float
+    z: State
+    i: int
+
+
+class LawRows(NamedTuple):
+    """The arrays of a workspace that a law with states reads and writes; see `Workspace`."""
+
+    values: np.ndarray
+    changes: np.ndarray
+    jacobian: np.ndarray
+    size: np.ndarray
+
+
 def point_to_smooth_law(law: Any) -> PointedSmoothLaw:
     """Return a law as the smooth solver takes it."""
     plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
@@ -119,18 +138,19 @@ def friction_and_changes_at(
     wanted: bool,
     i: int,
     values: np.ndarray,
-    to: np.ndarray,
+    changes: np.ndarray,
     jacobian: np.ndarray,
     size: np.ndarray,
 ) -> Friction:
     """Do as `friction_and_changes` for the law with states at a pointer."""
     found: Any = pointee(law)
-    slip, z = (s_x, s_y), states_in(found, values, i)
-    write_changes(found, slip, load, per_mass, z, i, to)
+    at = Place((s_x, s_y), load, per_mass, states_in(found, values, i), i)
+    rows = LawRows(values, changes, jacobian, size)
+    write_changes(found, at, rows)
     if wanted:
-        write_gradient(found, slip, load, per_mass, z, values, i, to, jacobian, size)
+        write_gradient(found, at, rows)
     m = jacobian[i]
-    return to[i, 0], to[i, 1], m[0, 0], m[0, 1], m[1, 0], m[1, 1]
+    return changes[i, 0], changes[i, 1], m[0, 0], m[0, 1], m[1, 0], m[1, 1]
 
 
 @entry_by_address(*GRAIN)
@@ -140,79 +160,44 @@ def grain_at(law: Any, values: np.ndarray, i: int) -> float:
     return max(grain(found, states_in(found, values, i)), FINEST_GRAIN)
 
 
-def write_changes(
-    law: Any, slip: Vector, load: float, per_mass: float, z: State, i: int, to: np.ndarray
-) -> None:
-    """Write friction over mass and the internal states' rates of change to ``to[i]``."""
-    to[i, :2] = np.array(force(law, slip, load, z)) * per_mass
-    to[i, 2:] = change(law, slip, load, z)
+def write_changes(law: Any, at: Place, rows: LawRows) -> None:
+    """Write friction over mass and the internal states' rates of change to a row."""
+    rows.changes[at.i, :2] = np.array(force(law, at.slip, at.load, at.z)) * at.per_mass
+    rows.changes[at.i, 2:] = change(law, at.slip, at.load, at.z)
 
 
-def write_gradient(
-    law: Any,
-    slip: Vector,
-    load: float,
-    per_mass: float,
-    z: State,
-    values: np.ndarray,
-    i: int,
-    changes: np.ndarray,
-    jacobian: np.ndarray,
-    size: np.ndarray,
-) -> None:
+def write_gradient(law: Any, at: Place, rows: LawRows) -> None:
     """Write the derivatives of ``changes[i]`` to ``jacobian[i]``.
 
     They are the law's own, or forward differences.
     """
     write = own_gradient if hasattr(law, "gradient") else differences
-    write(law, slip, load, per_mass, z, values, i, changes, jacobian, size)
+    write(law, at, rows)
 
 
-def own_gradient(
-    law: Any,
-    slip: Vector,
-    load: float,
-    per_mass: float,
-    z: State,
-    values: np.ndarray,
-    i: int,
-    changes: np.ndarray,
-    jacobian: np.ndarray,
-    size: np.ndarray,
-) -> None:
+def own_gradient(law: Any, at: Place, rows: LawRows) -> None:
     """Do as `write_gradient` for a law that gives its derivatives."""
-    rows = gradient(law, slip, load, z)
-    for j in range(len(size)):
-        for k in range(len(size)):
-            jacobian[i, j, k] = rows[j][k] * per_mass if j < 2 else rows[j][k]
+    own = gradient(law, at.slip, at.load, at.z)
+    for j in range(len(rows.size)):
+        for k in range(len(rows.size)):
+            rows.jacobian[at.i, j, k] = own[j][k] * at.per_mass if j < 2 else own[j][k]
 
 
-def differences(
-    law: Any,
-    slip: Vector,
-    load: float,
-    per_mass: float,
-    z: State,
-    values: np.ndarray,
-    i: int,
-    changes: np.ndarray,
-    jacobian: np.ndarray,
-    size: np.ndarray,
-) -> None:
+def differences(law: Any, at: Place, rows: LawRows) -> None:
     """Do as `write_gradient` for any other."""
-    at = values[TRIAL]
-    for k in range(len(size)):  # not at[:] = values[i]: see `smooth.loop.keep`
-        at[k] = values[i, k]
-    at[0], at[1] = slip
-    for k in range(len(size)):
-        before = at[k]
-        at[k] = before + INCREMENT * (size[k] + abs(before))
-        per = 1.0 / (at[k] - before)
-        there = states_in(law, values, TRIAL)
-        write_changes(law, (at[0], at[1]), load, per_mass, there, TRIAL, changes)
-        for j in range(len(size)):
-            jacobian[i, j, k] = (changes[TRIAL, j] - changes[i, j]) * per
-        at[k] = before
+    i, trial, changes = at.i, rows.values[TRIAL], rows.changes
+    for k in range(len(rows.size)):  # not trial[:] = values[i]: see `smooth.loop.keep`
+        trial[k] = rows.values[i, k]
+    trial[0], trial[1] = at.slip
+    for k in range(len(rows.size)):
+        before = trial[k]
+        trial[k] = before + INCREMENT * (rows.size[k] + abs(before))
+        per = 1.0 / (trial[k] - before)
+        z = states_in(law, rows.values, TRIAL)
+        write_changes(law, Place((trial[0], trial[1]), at.load, at.per_mass, z, TRIAL), rows)
+        for j in range(len(rows.size)):
+            rows.jacobian[i, j, k] = (changes[TRIAL, j] - changes[i, j]) * per
+        trial[k] = before
 
 
 def states_in(law: Any, values: np.ndarray, i: int) -> tuple[float, ...]:
@@ -241,17 +226,15 @@ def _states_in(law: Any, values: Any, i: Any) -> Callable[..., Any]:
 
 
 @stand_in(write_changes)
-def _write_changes(
-    law: Any, slip: Any, load: Any, per_mass: Any, z: Any, i: Any, to: Any
-) -> Callable[..., None]:
+def _write_changes(law: Any, at: Any, rows: Any) -> Callable[..., None]:
     n = _count(law)
 
-    def write(law: Any, slip: Any, load: Any, per_mass: Any, z: Any, i: Any, to: Any) -> None:
-        f = force(law, slip, load, z)
-        to[i, 0], to[i, 1] = f[0] * per_mass, f[1] * per_mass
-        dz = change(law, slip, load, z)
+    def write(law: Any, at: Any, rows: Any) -> None:
+        f, to = force(law, at.slip, at.load, at.z), rows.changes[at.i]
+        to[0], to[1] = f[0] * at.per_mass, f[1] * at.per_mass
+        dz = change(law, at.slip, at.load, at.z)
         for k in range(n):
-            to[i, 2 + k] = dz[k]
+            to[2 + k] = dz[k]
 
     return write
 
