@@ -9,7 +9,7 @@ import numpy as np
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import compiled, inlined
 from stiction.solver.exact.pursuit import INSTANT, land, pursuit
-from stiction.solver.exact.record import StepRecord, keep_step
+from stiction.solver.exact.record import Sink, StepRecord, keep_step
 from stiction.solver.exact.sampling import end_of_step, sample_slip, sample_stick
 from stiction.solver.exact.slip_frame import (
     Frame,
@@ -66,10 +66,8 @@ def stick(
     state: State,
     t_stop: float,
     accuracy: Accuracy,
-    times: np.ndarray,
-    samples: np.ndarray,
+    sink: Sink,
     k: int,
-    sticks: np.ndarray,
 ) -> tuple[bool, State, int]:
     """Keep zero slip as long as friction can hold it, then set the direction of take-off.
 
@@ -88,14 +86,14 @@ def stick(
             ends, end = False, smooth
     if end > t:
         row = counts.sticks
-        goes_on = row > 0 and sticks[row - 1, 1] == t  # a stick continued over segments
+        goes_on = row > 0 and sink.sticks[row - 1, 1] == t  # a stick continued over segments
         touch = to_spare(problem, t, u_x, u_y, duration) < accuracy.touch
         is_stick = goes_on or not touch
-        k = sample_stick(problem, t, u_x, u_y, end, is_stick, times, samples, k)
+        k = sample_stick(problem, t, u_x, u_y, end, is_stick, sink.times, sink.samples, k)
         d_x, d_y = drive_travel(problem, t, end - t)
         u_x, u_y = u_x + d_x, u_y + d_y
         if is_stick:
-            counts = record_stick(counts, t, end, goes_on, sticks)
+            counts = record_stick(counts, t, end, goes_on, sink.sticks)
     a_x, a_y = holding(problem, end, u_x, u_y)
     limit = coefficient(problem.law, 0.0) * at(problem.load, end) * problem.system.per_mass
     a_x, a_y = takeoff(problem, (a_x, a_y), limit)
@@ -130,10 +128,8 @@ def slip(
     state: State,
     t_stop: float,
     accuracy: Accuracy,
-    times: np.ndarray,
-    samples: np.ndarray,
+    sink: Sink,
     k: int,
-    record: StepRecord,
 ) -> tuple[bool, State, int]:
     """Take one step of slip and plan the next."""
     motion, memory, counts = state
@@ -144,8 +140,8 @@ def slip(
     counts = count_step(counts, rejected, iterations)
     if not done:
         return False, State(motion, memory, counts), k
-    k = sample_slip(problem, frame, start, taken, accuracy, times, samples, k)
-    keep_step(record, frame, start, taken)
+    k = sample_slip(problem, frame, start, taken, accuracy, sink.times, sink.samples, k)
+    keep_step(sink.record, frame, start, taken)
     _, h, p, w = taken
     slid_1, slid_2, _, _ = end_of_step(taken)
     u_x, u_y = elongation(problem, frame, h, slid_1, slid_2)
@@ -220,13 +216,10 @@ def take_steps(
     t_end: float,
     accuracy: Accuracy,
     budget: int,
-    times: np.ndarray,
-    samples: np.ndarray,
+    sink: Sink,
     k: int,
-    sticks: np.ndarray,
-    record: StepRecord,
 ) -> tuple[int, State, int, int]:
-    """Advance until `t_end`, until the budget of steps is used up, or until `sticks` is full.
+    """Advance until `t_end`, until the budget of steps is used up, or no more sticks fit in.
 
     Parameters
     ----------
@@ -238,14 +231,10 @@ def take_steps(
         The tolerances of each step.
     budget : int
         Steps to take at most.
-    times, samples : ndarray
-        Ascending output times (n,), and rows to fill (n, 7); see `sampling`.
+    sink : Sink
+        To be filled; sticks from ``state.counts.sticks`` on.
     k : int
-        The next row to fill.
-    sticks : ndarray
-        Rows (start, end) of stick intervals to fill, from ``state.counts.sticks`` on.
-    record : StepRecord
-        What keeps the steps for later, where it has room.
+        The next sample to fill.
 
     Returns
     -------
@@ -260,11 +249,11 @@ def take_steps(
         if not (isfinite(motion.u_x) and isfinite(motion.u_y) and isfinite(motion.r)):
             return NON_FINITE, state, k, turn
         if at_rest(problem, motion, accuracy):
-            if state.counts.sticks >= len(sticks):
+            if state.counts.sticks >= len(sink.sticks):
                 return RUNNING, state, k, turn
             motion = Motion(t, motion.u_x, motion.u_y, 0.0, motion.e_x, motion.e_y)
             state = State(motion, state.memory, state.counts)
-            ends, state, k = stick(problem, state, t_end, accuracy, times, samples, k, sticks)
+            ends, state, k = stick(problem, state, t_end, accuracy, sink, k)
             motion = state.motion
             if not ends:
                 continue
@@ -276,11 +265,9 @@ def take_steps(
         if motion.r > 0.0:
             closed = pursuit(problem, frame, start, accuracy)
             if t + closed[0] < smooth:
-                state, k = land(problem, frame, start, state, closed, times, samples, k, record)
+                state, k = land(problem, frame, start, state, closed, sink, k)
                 continue
-        done, state, k = slip(
-            problem, frame, start, state, smooth, accuracy, times, samples, k, record
-        )
+        done, state, k = slip(problem, frame, start, state, smooth, accuracy, sink, k)
         if not done:
             r = motion.r
             motion = beyond_floats(start, motion, accuracy)
@@ -308,7 +295,6 @@ def advance(
     record: StepRecord,
 ) -> tuple[int, Plain, int, int]:
     """Do as `take_steps`, and return the state as plain tuples for Python."""
-    code, state, k, turns = take_steps(
-        problem, state, t_end, accuracy, budget, times, samples, k, sticks, record
-    )
+    sink = Sink(times, samples, sticks, record)
+    code, state, k, turns = take_steps(problem, state, t_end, accuracy, budget, sink, k)
     return code, plain(state), k, turns

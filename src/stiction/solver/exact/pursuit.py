@@ -20,7 +20,7 @@ import numpy as np
 
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
-from stiction.solver.exact.record import StepRecord, keep_landing
+from stiction.solver.exact.record import Sink, keep_landing
 from stiction.solver.exact.sampling import fill
 from stiction.solver.exact.slip_frame import Frame, Outset, elongation
 from stiction.solver.problem import Problem, at, constant, drift, isotropic
@@ -135,19 +135,17 @@ def land(
     start: Outset,
     state: State,
     closed: tuple[float, float, float],
-    times: np.ndarray,
-    samples: np.ndarray,
+    sink: Sink,
     k: int,
-    record: StepRecord,
 ) -> tuple[State, int]:
     """End the slip by the pursuit curve."""
     motion, memory, counts = state
     t, a_1, a_2 = motion.t, start.a_1, start.a_2
-    T, slid_1, slid_2 = closed
+    (T, slid_1, slid_2), times = closed, sink.times
     while k < len(times) and times[k] < t + T:
         left, gone = t + T - times[k], times[k] - t
-        k = write_landing(problem, frame, a_1, a_2, start.f, closed, left, gone, samples, k)
-    keep_landing(record, frame, T, a_1, a_2, start.f)
+        k = write_landing(problem, frame, a_1, a_2, start.f, closed, left, gone, sink.samples, k)
+    keep_landing(sink.record, frame, T, a_1, a_2, start.f)
     u_x, u_y = elongation(problem, frame, T, slid_1, slid_2)
     landed = Motion(t + T, u_x, u_y, 0.0, frame.e_x, frame.e_y)
     return State(landed, at_takeoff(memory), counts), k

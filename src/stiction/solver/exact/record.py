@@ -30,6 +30,19 @@ class StepRecord(NamedTuple):
     used: np.ndarray
 
 
+class Sink(NamedTuple):
+    """The arrays that a run fills.
+
+    times, samples : ascending output times (n,), and rows (n, 7), see `sampling`; sticks : start
+    and end of stick intervals (m, 2), s; record : what keeps the steps for later, if it has room.
+    """
+
+    times: np.ndarray
+    samples: np.ndarray
+    sticks: np.ndarray
+    record: StepRecord
+
+
 def record_of(steps: int) -> StepRecord:
     """Return an empty record with room for a number of steps."""
     return StepRecord(np.empty((steps, WIDTH)), np.zeros(1, dtype=np.int64))

@@ -14,7 +14,7 @@ from tests.unit.solver.exact.test_step import held_to
 import stiction as st
 from stiction.solver import stick as sticking
 from stiction.solver.exact import loop, pursuit, slip_frame
-from stiction.solver.exact.record import record_of
+from stiction.solver.exact.record import Sink, record_of
 from stiction.solver.state import (
     COMPLETED,
     NON_FINITE,
@@ -27,7 +27,12 @@ from stiction.solver.state import (
 )
 
 MEMORY = COLD._replace(h=2e-5, plan=(1e-5, *[0.0] * 7), warm=True, place=4)
-NONE = np.empty(0), np.empty((0, 7)), 0
+NEVER, NOWHERE = np.empty(0), np.empty((0, 7))
+
+
+def no_samples(sticks):
+    """Return where a run writes nothing but its sticks, and the next row of its samples."""
+    return Sink(NEVER, NOWHERE, sticks, record_of(0)), 0
 
 
 def at_rest_at(u, t=0.35):
@@ -40,7 +45,7 @@ def advance(name, state, t_end, budget=1000, accuracy=None, room=50):
     accuracy = accuracy or held_to(1e-4)
     problem = name if not isinstance(name, str) else problem_of(name)
     code, state, _, turns = plain(loop.take_steps)(
-        problem, state, t_end, accuracy, budget, *NONE, sticks, record_of(0)
+        problem, state, t_end, accuracy, budget, *no_samples(sticks)
     )
     return code, state, sticks[: state.counts.sticks], turns
 
@@ -51,7 +56,7 @@ def test_a_stick_ends_where_friction_cannot_hold_any_more(name):
     problem, u, t = problem_of(name), np.array([1e-4, 2e-6]), 0.35
     sticks, state = np.zeros((4, 2)), at_rest_at(u)
     duration, _ = plain(sticking.stick_duration)(problem, t, *u, inf)
-    found = plain(loop.stick)(problem, state, inf, held_to(1e-4), *NONE, sticks)
+    found = plain(loop.stick)(problem, state, inf, held_to(1e-4), *no_samples(sticks))
     ends, (motion, memory, counts), k = found
     assert (ends, k) == (True, 0)
     printed = Printed(problem, motion_of(*u, 1.0, 0.0, t))
@@ -68,13 +73,13 @@ def test_a_stick_ends_where_friction_cannot_hold_any_more(name):
     # it does not end before the segment does
     stop = t + 0.5 * duration
     ends, (motion, _, counts), _ = plain(loop.stick)(
-        problem, state, stop, held_to(1e-4), *NONE, sticks
+        problem, state, stop, held_to(1e-4), *no_samples(sticks)
     )
     assert (ends, motion.t, counts.stuck) == (False, stop, pytest.approx(0.5 + 0.5 * duration))
     # and goes on as the same stick in the next one
     begun = State(motion, memory, counts)
     ends, (motion, _, counts), _ = plain(loop.stick)(
-        problem, begun, inf, held_to(1e-4), *NONE, sticks
+        problem, begun, inf, held_to(1e-4), *no_samples(sticks)
     )
     assert (ends, counts.sticks) == (True, 2)
     assert sticks[1] == pytest.approx([t, t + duration], rel=1e-9)
@@ -89,7 +94,7 @@ def test_a_touch_is_no_stick():
     for part, number in ((0.99, 2), (1.01, 1)):
         sticks, held = np.zeros((4, 2)), held_to(1e-4)._replace(touch=part * spare)
         _, (motion, _, counts), _ = plain(loop.stick)(
-            problem, at_rest_at(u), inf, held, *NONE, sticks
+            problem, at_rest_at(u), inf, held, *no_samples(sticks)
         )
         assert counts.sticks == number
         assert counts.stuck == pytest.approx(0.5 + (number - 1) * duration)
@@ -105,13 +110,13 @@ def test_without_force_slip_starts_along_what_pulls_next():
     bare = bare._replace(system=undamped)
     sticks = np.zeros((4, 2))
     state = at_rest_at((0.0, 0.0))
-    ends, (motion, *_), _ = plain(loop.stick)(bare, state, inf, held_to(1e-4), *NONE, sticks)
+    ends, (motion, *_), _ = plain(loop.stick)(bare, state, inf, held_to(1e-4), *no_samples(sticks))
     s = bare.system
     pull = np.array([s.k_x * s.cos_phi, s.k_y * s.sin_phi])
     assert ends
     assert motion[3:] == pytest.approx((0.0, *(pull / np.hypot(*pull))))
     still = bare._replace(drive=bare.drive._replace(velocity=0.0))
-    _, (motion, *_), _ = plain(loop.stick)(still, state, inf, held_to(1e-4), *NONE, sticks)
+    _, (motion, *_), _ = plain(loop.stick)(still, state, inf, held_to(1e-4), *no_samples(sticks))
     assert motion[3:] == (0.0, 0.6, 0.8)
 
 
@@ -179,7 +184,7 @@ def test_the_loop_ends_where_it_is_to_and_goes_on(name):
     paused, table = state, np.zeros((50, 2))
     for _ in range(1000):
         code, paused, _, used = plain(loop.take_steps)(
-            problem_of(name), paused, 0.45, held_to(1e-4), 3, *NONE, table, record_of(0)
+            problem_of(name), paused, 0.45, held_to(1e-4), 3, *no_samples(table)
         )
         assert used <= 3
         if code != RUNNING:
@@ -208,7 +213,7 @@ def size_after(memory, t_stop):
     memory = memory._replace(p=(motion.r,) * 4, w=(0.0,) * 4)
     state = State(motion, memory, NOTHING)
     done, state, _ = plain(loop.slip)(
-        problem, frame, start, state, t_stop, held_to(1.0), *NONE, record_of(0)
+        problem, frame, start, state, t_stop, held_to(1.0), *no_samples(np.zeros((0, 2)))
     )
     assert done
     return state.memory.h_last, state.memory.h
@@ -251,9 +256,8 @@ def test_a_landing_in_closed_form_and_its_samples():
     T, t = closed[0], frame.t
     times, samples = t + T * np.array([-1.0, 0.4, 0.6, 2.0]), np.zeros((4, 7))
     state = at_rest_at((0.0, 0.0))
-    found, k = plain(pursuit.land)(
-        problem, frame, start, state, closed, times, samples, 1, record_of(0)
-    )
+    sink = Sink(times, samples, np.zeros((0, 2)), record_of(0))
+    found, k = plain(pursuit.land)(problem, frame, start, state, closed, sink, 1)
     assert k == 3
     u = plain(slip_frame.elongation)(problem, frame, *closed)
     assert found.motion == pytest.approx((t + T, *u, 0.0, frame.e_x, frame.e_y))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.entry import plain
 from tests.systems import SLIDERS, motion_of, problem_of
-from tests.unit.solver.exact.test_loop import MEMORY, NONE
+from tests.unit.solver.exact.test_loop import MEMORY, NEVER, NOWHERE
 from tests.unit.solver.exact.test_newton import SLIDES, held_to
 from tests.unit.solver.exact.test_sampling import EXACT, step_of
 
@@ -54,8 +54,8 @@ def test_the_loop_keeps_each_step():
     ends = []
     for keeps in (kept, record.record_of(0)):
         sticks = np.zeros((50, 2))
-        take_steps = plain(loop.take_steps)
-        ends.append(take_steps(problem, begun, 0.45, held_to(1e-4), 1000, *NONE, sticks, keeps))
+        sink, take_steps = record.Sink(NEVER, NOWHERE, sticks, keeps), plain(loop.take_steps)
+        ends.append(take_steps(problem, begun, 0.45, held_to(1e-4), 1000, sink, 0))
     assert ends[0] == ends[1]
     assert keeps.used[0] == kept.used[0]
     rows = kept.rows[: kept.used[0]]

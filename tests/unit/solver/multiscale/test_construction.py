@@ -10,7 +10,7 @@ from tests.unit.solver.exact.test_step import held_to
 
 import stiction as st
 from stiction.solver.exact import loop
-from stiction.solver.exact.record import record_of
+from stiction.solver.exact.record import Sink, record_of
 from stiction.solver.multiscale import construction, interpolant, section
 from stiction.solver.multiscale.return_map import WIDEST
 from stiction.solver.segments import segments
@@ -45,9 +45,9 @@ def cycle_from(problem, known, theta):
 def step_through(problem, theta, count):
     """Return the stick intervals after a take-off, by steps, and the angles at their ends."""
     sticks, state = np.zeros((count, 2)), taking_off(problem, theta)
-    take_steps, never = plain(loop.take_steps), (np.empty(0), np.empty((0, 7)))
+    sink = Sink(np.empty(0), np.empty((0, 7)), sticks, record_of(0))
     exact = EXACT._replace(touch=0.0)
-    take_steps(problem, state, 9.0, exact, 10**6, *never, 0, sticks, record_of(0))
+    plain(loop.take_steps)(problem, state, 9.0, exact, 10**6, sink, 0)
     return sticks
 
 

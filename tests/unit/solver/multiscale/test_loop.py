@@ -151,7 +151,7 @@ def test_strides_lead_to_the_same_sticks_as_steps(name, until, kept):
     times, known = np.array([0.05, 0.25, 0.251, 0.255, 0.262, 0.37]), map_of(1e-6, kept)
     (code, state, k, _), sticks, samples = run(loop.stride, problem, begun, until, times, known)
     (_, wanted, _, _), exact, rows = run(
-        exact_loop.take_steps, problem, begun, until, times, record_of(0)
+        exact_loop.advance, problem, begun, until, times, record_of(0)
     )
     counts = Counts(*state[2])
     assert (code, k) == (COMPLETED, 6)

@@ -12,7 +12,7 @@ from tests.unit.solver.multiscale.test_construction import (
 )
 
 from stiction.solver.exact import loop
-from stiction.solver.exact.record import record_of
+from stiction.solver.exact.record import Sink, record_of
 from stiction.solver.multiscale import history, replay
 from stiction.solver.multiscale.return_map import NEAR, Stick
 from stiction.solver.state import COMPLETED, NON_FINITE, RUNNING, Counts, State
@@ -44,7 +44,7 @@ def test_samples_of_a_cycle(name):
     wanted = np.full((7, 7), np.nan)
     plain(loop.take_steps)(
         problem, taking_off(problem, THETA, T), landing, EXACT, 10**6,
-        times[2:-1], wanted, 0, np.zeros((2, 2)), record_of(0),
+        Sink(times[2:-1], wanted, np.zeros((2, 2)), record_of(0)), 0,
     )  # fmt: skip
     assert samples[3:-1, :6] == pytest.approx(wanted[1:6, :6], rel=1e-6, abs=1e-9)
     assert samples[1:-1, 6].tolist() == [1.0, 1.0, *[0.0] * 5]
@@ -86,7 +86,7 @@ def test_samples_of_a_cycle_like_another(longer):
     wanted = np.full((5, 7), np.nan)
     plain(loop.take_steps)(
         problem, taking_off(problem, THETA, T), T + slip, EXACT, 10**6,
-        T + parts * slip, wanted, 0, np.zeros((2, 2)), record_of(0),
+        Sink(T + parts * slip, wanted, np.zeros((2, 2)), record_of(0)), 0,
     )  # fmt: skip
     assert samples[1:6] == pytest.approx(wanted, rel=1e-4, abs=1e-7)
 
