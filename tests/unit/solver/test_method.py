@@ -813,6 +813,11 @@ def test_a_printed_constant_is_the_code_s(file, name, value):
     assert getattr(module, name) == pytest.approx(value, rel=1e-6)
 
 
+def test_a_name_of_a_constant_has_one_value():
+    names = [name for _, name, _ in printed_constants()]
+    assert sorted(set(names)) == sorted(names)
+
+
 def test_every_constant_is_printed():
     """Plain numbers with a name of their own; codes of how a run ends are none."""
     printed = {(file, name) for file, name, _ in printed_constants()}

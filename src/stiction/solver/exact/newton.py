@@ -14,7 +14,7 @@ from stiction.solver.stepping.control import CONTRACTS, diverging, settled
 from stiction.solver.stepping.radau import FIRST, SECOND, THIRD
 
 ITERATIONS = 10
-DIVERGED = 1e10  # size of a correction
+RUNAWAY = 1e10  # size of a correction
 
 
 @inlined
@@ -78,7 +78,7 @@ def solve(
         size = max(size, abs(dp[0]) / (speed + abs(p[0])), abs(dp[1]) / (speed + abs(p[1])))
         size = max(size, abs(dw[0]), abs(dw[1]), abs(dw[2]))
         step = SlipStep(s, h, p, w)
-        if not size < DIVERGED or h <= 0.0:
+        if not size < RUNAWAY or h <= 0.0:
             return False, step, iteration
         rate = size if iteration == 1 else size / last
         if settled(size, rate, enough):

@@ -29,7 +29,7 @@ from stiction.solver.state import Motion, State, at_takeoff
 WITHOUT_FORCE = 1e-8  # of friction: springs that neither shorten nor turn the slip
 STRAIGHT = 1e-12  # sine of the angle to their force: it does not turn the slip
 UNCHANGED = 0.1  # of the tolerated slip speed: spring and friction stay constant until landing
-HALVINGS = 60  # until the place on the curve is known
+BISECTIONS = 60  # until the place on the curve is known
 INSTANT = 1e-13  # of the time so far, and of a spring's time for a radian
 
 
@@ -89,7 +89,7 @@ def slip_before_landing(
     if a < WITHOUT_FORCE * f or sin(whole) < STRAIGHT:
         return left * (f * f - square) / (f + a1), 1.0, 0.0
     low, high, speed = 0.0, whole, r
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS):
         alpha = 0.5 * (low + high)
         speed = r * (tan(0.5 * alpha) / tan(0.5 * whole)) ** (f / a) * sin(whole) / sin(alpha)
         if speed * (f + a * cos(alpha)) > left * (f * f - square):

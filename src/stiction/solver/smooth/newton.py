@@ -37,7 +37,7 @@ from stiction.solver.stepping.block_algebra import (
 from stiction.solver.stepping.control import CONTRACTS, diverging, settled
 from stiction.solver.stepping.radau import A, C, D
 
-ITERATIONS = 14
+SMOOTH_ITERATIONS = 14
 FIRM = 0.01  # of the tolerance: corrections that are negligible, where states remember them
 DIVERGED = 1e100  # size of a correction, whose square must not overflow
 CLOSEST = 1e-14  # relative: corrections below are rounding
@@ -227,7 +227,7 @@ def solve(
     at = stages_at(problem, eps, pulls, q_x, q_y, w, WANTED)
     m = factors(h, x, y, at, w)
     share = shares(problem, h, q_x, q_y, at) if eps < inf else (1.0, 1.0, 1.0)
-    for iteration in range(1, ITERATIONS + 1):
+    for iteration in range(1, SMOOTH_ITERATIONS + 1):
         r_x = residual(x, h, at.s_x, s_x, at.f_x)
         r_y = residual(y, h, at.s_y, s_y, at.f_y)
         if states:
@@ -259,4 +259,4 @@ def solve(
             if eps < inf:
                 share = shares(problem, h, q_x, q_y, at)
         last = size
-    return False, ITERATIONS
+    return False, SMOOTH_ITERATIONS

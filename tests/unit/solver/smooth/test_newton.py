@@ -19,7 +19,7 @@ from tests.unit.solver.smooth.systems import (
 
 from stiction.solver.smooth import elimination, newton, right_hand_side
 from stiction.solver.smooth.coordinate import coordinate, damped_rise, slip_at
-from stiction.solver.smooth.newton import ITERATIONS
+from stiction.solver.smooth.newton import SMOOTH_ITERATIONS
 from stiction.solver.smooth.right_hand_side import SmoothOutset
 from stiction.solver.smooth.workspace import START
 from stiction.solver.stepping.block_algebra import solve_blocks
@@ -231,7 +231,7 @@ def test_it_ends_when_corrections_are_negligible(name):
     assert counts[0] <= iterations <= counts[1]
 
 
-@pytest.mark.parametrize(("name", "count"), [("fed", 4), ("ageing", ITERATIONS)])
+@pytest.mark.parametrize(("name", "count"), [("fed", 4), ("ageing", SMOOTH_ITERATIONS)])
 def test_corrections_that_grow_are_given_up(name, count, monkeypatch):
     """After three, of the slip velocity itself; its logarithm may have decades to go."""
     solve, sizes = plain(newton.solve), iter(1.1 ** np.arange(20))
@@ -257,7 +257,7 @@ def test_no_numbers_and_no_convergence_are_no_step():
         # CLOSEST ends it where a correction is rounding
         found, iterations = plain(newton.solve)(problem, start, 1e-3, *guess, w, never)
         assert found
-        assert iterations < ITERATIONS
+        assert iterations < SMOOTH_ITERATIONS
         assert not np.array_equal(before, w.values[1:4, :2])
 
 
