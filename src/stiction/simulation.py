@@ -55,12 +55,12 @@ def simulate(
         How long to simulate, s; until the programs of drive and load end, if they do.
     sample_rate : float or str, optional
         Output samples per second, at start, start + 1/rate, ... as far as the end, which is
-        one if it falls on it; 0 for the first and last state only. By default 20 in each
-        period of the faster natural oscillation, or of what shakes drive or load if that is
-        faster still, while these are no more than 200 000; then so many, but at least 32 in each
-        period of the slower natural oscillation, up to a million in all; and 1000 in the shortest
-        run. With ``multiscale=True`` the first and last state only. Samples never influence the
-        steps, and stick intervals are all recorded anyway.
+        one if it falls on it; 0 for the first and last state only. By default 20 in each period of
+        the faster natural oscillation, while these are no more than 200 000; then so many, but at
+        least 32 in each period of the slower natural oscillation, and 20 in each of what shakes
+        drive or load, up to a million in all; and 1000 in the shortest run. With
+        ``multiscale=True`` the first and last state only. Samples never influence the steps, and
+        stick intervals are all recorded anyway.
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2. Forces are off by no more than 30 times what the
         apparatus itself would do if its mass, or its normal load, were greater by 0.8 rtol^0.8
@@ -283,8 +283,10 @@ def automatic_times(description: Description) -> np.ndarray:
     """Return output times that show the motion of a system, from start to end; see `simulate`."""
     slider, duration = description.slider, description.run.duration
     slow, fast = slider.natural_frequencies
-    fine = PER_FAST_PERIOD * duration * max((fast, *slider.modulation_frequencies))
-    wanted = max(min(fine, MANY_SAMPLES), PER_SLOW_PERIOD * duration * slow, FEWEST_SAMPLES)
+    imposed = max(slider.modulation_frequencies, default=0.0)
+    fine = min(PER_FAST_PERIOD * duration * fast, MANY_SAMPLES)
+    least = duration * max(PER_SLOW_PERIOD * slow, PER_FAST_PERIOD * imposed)
+    wanted = max(fine, least, FEWEST_SAMPLES)
     start = description.initial.time
     times: np.ndarray = np.linspace(start, start + duration, ceil(min(wanted, MOST_SAMPLES)) + 1)
     return np.unique(times)  # some may be the same to rounding

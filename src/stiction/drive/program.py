@@ -5,6 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
+from itertools import pairwise
 from math import inf, pi
 from operator import itemgetter
 from typing import Annotated, Any, Self, TypeGuard
@@ -281,6 +282,14 @@ def signals(
             return
         start, present = end, signal.value_at(end)
     yield inf, Signal(start, present)
+
+
+def fastest_turn(program: DriveProgram | LoadProgram) -> float:
+    """Return the frequency (Hz) of the two shortest pieces that follow each other; 0 if none do."""
+    lasts = [inf if piece.duration is None else piece.duration for piece in program.program]
+    if program.repeat > 1:
+        lasts.append(lasts[0])
+    return max((1.0 / (a + b) for a, b in pairwise(lasts)), default=0.0)
 
 
 def modulate(signal: Any, modulation: Any) -> Any:

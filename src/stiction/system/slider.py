@@ -23,7 +23,7 @@ from stiction.drive import (
     read_drive,
     read_load,
 )
-from stiction.drive.program import nominal_velocity
+from stiction.drive.program import fastest_turn, nominal_velocity
 from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import Anisotropic, Law, has_state, read_law, registered_name
@@ -341,13 +341,16 @@ class Slider(Apparatus):
 
     @property
     def modulation_frequencies(self) -> tuple[float, ...]:
-        """Frequencies (Hz) in the programs of drive and load, of harmonics, and those that the
-        rows of a recorded table show well, with eight to a period."""
+        """Frequencies (Hz) in the programs of drive and load: of harmonics, those that the rows
+        of a recorded table show well, with eight to a period, and that of the two shortest pieces
+        that follow each other, as a motion to and fro."""
         drive, load = self.drive, self.load
         parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]
         parts += [getattr(drive, name, None) for name in ("along", "across")]
         parts.append(getattr(load, "modulation", None))
-        return tuple(part.frequency for part in parts if hasattr(part, "frequency"))
+        known = [part.frequency for part in parts if hasattr(part, "frequency")]
+        known += [fastest_turn(each) for each in (drive, load) if hasattr(each, "program")]
+        return tuple(frequency for frequency in known if frequency > 0.0)
 
     @property
     def shaken(self) -> tuple[float, ...]:

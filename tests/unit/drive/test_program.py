@@ -495,3 +495,20 @@ def test_results_with_programs_are_kept(tmp_path):
     again = st.load(run.save(tmp_path / "a.nc"))
     assert again.slider == run.slider
     assert again.data.identical(run.data)
+
+
+def test_the_frequencies_of_a_program_include_those_of_its_pieces():
+    """Two pieces of 1 ms are a motion to and fro at 500 Hz; a piece beside long ones is none."""
+    p = st.protocols
+    there, back = p.Constant("2 mm/s", "1 ms"), p.Constant("-1 mm/s", "1 ms")
+    rig = st.presets.nakano_popov_2020()
+
+    def frequencies(*pieces, **more):
+        return rig.replace(drive=p.DriveProgram(program=pieces, **more)).modulation_frequencies
+
+    assert frequencies(there, back) == pytest.approx((500.0,))
+    assert frequencies(there, repeat=9) == pytest.approx((500.0,))
+    assert frequencies(there) == frequencies(there, p.Hold()) == ()
+    time = np.concatenate([np.arange(50) * 0.1, 5.0 + np.arange(20) * 0.01, [5.3, 5.4]])
+    table = p.Recorded(time, velocity=np.full(len(time), 1e-3))
+    assert frequencies(table) == pytest.approx((12.5,))

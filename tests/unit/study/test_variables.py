@@ -7,7 +7,7 @@ from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
 from stiction.analysis.creep.first_slip import first_slip_time
-from stiction.analysis.motion.regime.kinds import TRANSVERSE, shape
+from stiction.analysis.motion.regime.kinds import TRANSVERSE, UNDETERMINED, shape
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.features import features, zigzag
 from stiction.study.variables.measures import MEASURES
@@ -29,7 +29,7 @@ def paper():
 
 
 def value(name, run):
-    return MEASURES[name].of(run)
+    return MEASURES[name].value(run)
 
 
 def test_the_paper_s_cycle(paper, paper_run):
@@ -307,3 +307,33 @@ def test_a_study_and_an_analysis_call_a_run_the_same(number):
     )
     run = run_in_study(slider, "1.4 s")
     assert run.regime == st.analysis.classify(st.simulate(slider, "1.4 s")).kind
+
+
+def test_a_vibrated_rig_has_the_period_of_its_vibration():
+    """Friction turns twice a period of 320 Hz; 32 samples a natural period showed 18 ms."""
+    p = st.protocols
+    shaken = p.DriveProgram(velocity="1 mm/s", across=p.Modulation("1.25 mm/s", "320 Hz"))
+    run = run_in_study(PAPER.replace(phi="-2 deg", drive=shaken), "4 s")
+    assert value("period", run) == pytest.approx(0.5 / 320.0, rel=1e-3)
+
+
+def test_too_few_samples_for_a_vibration_determine_nothing(monkeypatch):
+    """At one sample a period the vibration seems at rest; what has no samples is known still."""
+    monkeypatch.setattr("stiction.study.variables.observed_run.MOST_SAMPLES", 320)
+    p = st.protocols
+    shaken = p.DriveProgram(velocity="1 mm/s", along=p.Modulation("3 mm/s", "320 Hz"))
+    run = run_in_study(PAPER.replace(drive=shaken), "1 s")
+    assert not run.resolved
+    assert np.isnan([value(name, run) for name in ("period", "peak_force", "creep_distance")]).all()
+    assert KINDS[value("regime", run)] == UNDETERMINED
+    assert value("stick_count", run) > 100.0
+
+
+def test_few_samples_suffice_where_the_motion_is_slow(monkeypatch):
+    """Loading to the first slip needs no samples of each natural period."""
+    slow = run_in_study(PAPER, "1 s")
+    monkeypatch.setattr("stiction.study.variables.observed_run.MOST_SAMPLES", 200)
+    coarse = run_in_study(PAPER, "1 s")
+    assert coarse.resolved
+    assert not coarse.enough
+    assert value("peak_force", coarse) == pytest.approx(value("peak_force", slow), rel=5e-3)

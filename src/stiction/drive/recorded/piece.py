@@ -33,7 +33,7 @@ GAP = 10.0  # of the distances beside it
 SHOWN = 4  # rows of one fault
 KINDS = {"time": TIME, "velocity": VELOCITY, "position": LENGTH, "load": FORCE}
 COLUMN = {"anyOf": [{"type": "array", "items": {"type": "number"}}, {"type": "string"}]}
-PERIOD = 8.0  # rows of a period that a table shows well
+PERIOD = 8  # rows of a period that a table shows well
 
 
 class Rows(NamedTuple):
@@ -272,5 +272,6 @@ def length(time: FrozenColumn) -> float:
 
 
 def highest_frequency(time: FrozenColumn) -> float:
-    """Return the frequency (Hz) of which a period has `PERIOD` rows."""
-    return 1.0 / (PERIOD * float(np.median(np.diff(time.values))))
+    """Return the frequency (Hz) of which a period has `PERIOD` rows where they are densest."""
+    some = min(PERIOD, len(time.values) - 1)
+    return some / PERIOD / float(np.min(time.values[some:] - time.values[:-some]))

@@ -20,8 +20,13 @@ from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.creation import create
 from stiction.study.store.kept import Kept, stored_variables
 from stiction.study.store.store import COMPLETED, ERROR, REFUSED, BlockResults, Store, open_store
-from stiction.study.variables.observed_run import observe_run
+from stiction.study.variables.observed_run import MOST_SAMPLES, observe_run
 from stiction.study.view.summary import Summary, summary
+
+TOO_FEW = (
+    f"not determined: {MOST_SAMPLES:,} samples do not show motion so fast for so long; shorten the "
+    "run"
+)
 
 
 class Unwanted(Exception):
@@ -83,7 +88,8 @@ def run_one(
         ended = STATUSES[seen.solution.code]
         if not ended.ok:
             return StoredOutcome(seen.solution.code, ended.value, ())
-        return StoredOutcome(COMPLETED, "", tuple(each.of(seen) for each in wanted))
+        why = "" if seen.resolved else TOO_FEW
+        return StoredOutcome(COMPLETED, why, tuple(each.of(seen) for each in wanted))
     except (Unwanted, OSError, MemoryError):
         raise
     except DescriptionError as error:

@@ -65,9 +65,9 @@ def _measure(name: str) -> Kept:
     known = MEASURES[name]
     if known.flags:
         labels = {"long_name": known.long_name, **flag_attributes(UNKNOWN, known.flags)}
-        return Kept(name, known.of, (), np.int8, -1, labels)
+        return Kept(name, known.value, (), np.int8, -1, labels)
     labels = {"units": known.unit, "long_name": known.long_name}
-    return Kept(name, known.of, (), np.float64, nan, labels)
+    return Kept(name, known.value, (), np.float64, nan, labels)
 
 
 def _trace(name: str, count: int) -> Kept:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import nan
+from operator import attrgetter
 from typing import NamedTuple
 
 import numpy as np
@@ -24,12 +25,19 @@ class Measure(NamedTuple):
         From the observed run to the number, or NaN for none.
     flags : tuple of str, optional
         Meanings of 0, 1, ..., if the number encodes a kind.
+    known : callable, optional
+        From the observed run to whether the samples show it; by default `ObservedRun.resolved`.
     """
 
     unit: str
     long_name: str
     of: Callable[[ObservedRun], float]
     flags: tuple[str, ...] = ()
+    known: Callable[[ObservedRun], bool] = attrgetter("resolved")
+
+    def value(self, run: ObservedRun) -> float:
+        """Return the number; NaN if the samples are too few for it."""
+        return self.of(run) if self.known(run) else nan
 
 
 def _mean(values: np.ndarray) -> float:
@@ -37,7 +45,9 @@ def _mean(values: np.ndarray) -> float:
 
 
 MEASURES: dict[str, Measure] = {
-    "regime": Measure("1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS),
+    "regime": Measure(
+        "1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS, lambda run: True
+    ),
     "peak_force": Measure(
         "N", "largest spring force along x, k_x u_x", lambda run: run.features.peak
     ),
@@ -65,27 +75,43 @@ MEASURES: dict[str, Measure] = {
         "m/s",
         "largest velocity of the mass along X in its slow motion: fast swings lie between samples",
         lambda run: run.features.peak_velocity,
+        known=attrgetter("resolved_velocities"),
     ),
     "first_slip_time": Measure(
         "s",
         "time at which the first slip begins: the mass gains on the drive, by more than it swings",
         lambda run: run.first_slip[0],
+        known=attrgetter("resolved_velocities"),
     ),
     "creep_distance": Measure(
         "m",
         "distance along X that the mass creeps before its first slip",
         lambda run: run.first_slip[1],
+        known=attrgetter("resolved_velocities"),
     ),
     "transverse_oscillation": Measure(
         "1",
         "amplitude of the fast oscillation's rate over the drive's",
         lambda run: run.transverse_oscillation,
     ),
-    "time_stuck": Measure("s", "sum of all stick intervals", lambda run: run.solution.counts.stuck),
-    "stick_count": Measure(
-        "1", "number of stick intervals", lambda run: float(run.solution.counts.sticks)
+    "time_stuck": Measure(
+        "s",
+        "sum of all stick intervals",
+        lambda run: run.solution.counts.stuck,
+        known=lambda run: True,
     ),
-    "steps": Measure("1", "slip steps of the solver", lambda run: float(run.solution.counts.steps)),
+    "stick_count": Measure(
+        "1",
+        "number of stick intervals",
+        lambda run: float(run.solution.counts.sticks),
+        known=lambda run: True,
+    ),
+    "steps": Measure(
+        "1",
+        "slip steps of the solver",
+        lambda run: float(run.solution.counts.steps),
+        known=lambda run: True,
+    ),
 }
 FORMERLY = {"song": "transverse_oscillation"}  # old names, which work until the next version
 DEFAULT = ("regime", "peak_force", "amplitude", "period", "creep_distance", "time_stuck")

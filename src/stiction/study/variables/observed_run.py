@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import first_loading
 from stiction.analysis.motion.course import COURSE_PARTS
-from stiction.analysis.motion.regime.kinds import STUCK
+from stiction.analysis.motion.regime.kinds import STUCK, UNDETERMINED
 from stiction.analysis.motion.rest import (
     rests_throughout,
     stick_shares,
@@ -40,6 +40,8 @@ from stiction.system.tensors import stiffness_and_mass_along
 # 1e-4 for the paper's system. The samples cost about a hundredth of the run's time.
 PER_SLOW_PERIOD = 32
 PER_COUPLED_PERIOD = 16  # of the mass moving only along the drive
+# Of what varies drive or load: friction that turns with it has half its period
+PER_IMPOSED_PERIOD = 2 * PER_SLOW_PERIOD
 LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of a run
 # The fast oscillation is measured over its last periods.
 PER_FAST_PERIOD = 16
@@ -48,6 +50,12 @@ PER_FAST_PERIOD = 16
 # oscillation of the paper's system, and small enough to see swings die out. It is at least the
 # solver's tolerance for the largest force.
 REVERSAL = 1e-3
+# Largest change of the force between two samples that their rates do not explain, as a share of the
+# smallest drop, and largest such velocity, as a share of the fastest. Harmonics of 10 and of 8
+# samples a period have as much, and their peaks are 1e-3 and 0.07 off at most
+UNEXPLAINED, UNEXPLAINED_VELOCITY = 0.02, 0.05
+AT_ONCE = 8  # samples, in which a stiff system comes from its initial state into balance
+JUMPS = 0.01  # of the samples: with so few a drive may jump between
 
 
 @dataclass(frozen=True)
@@ -64,12 +72,15 @@ class ObservedRun:
         Index of the first of the denser samples.
     parts : int
         Number of denser samples per even one.
+    enough : bool
+        Whether the samples are as dense as the known frequencies of the system need.
     """
 
     description: Description
     solution: Solution
     fine: int
     parts: int
+    enough: bool
 
     @property
     def start(self) -> float:
@@ -98,6 +109,38 @@ class ObservedRun:
             *slider.direction,
         )  # fmt: skip
         return found
+
+    @cached_property
+    def resolved(self) -> bool:
+        """Whether the samples show the motion: where there are too few, each follows from the last.
+
+        Samples farther apart than a period show a slower motion, which is not there; the force then
+        changes by other amounts than its rates tell.
+        """
+        if self.enough:
+            return True
+        missed = np.abs(residual_changes(self.time, self.force, self.rate))[AT_ONCE:]
+        least = float(np.min(self.cycles.drop, initial=np.ptp(self.force)))
+        if missed.max() > UNEXPLAINED * least:
+            return False
+        if len(self.cycles.drop):
+            return True
+        counts = max(REVERSAL * self.features.late_span, self.description.run.rtol * abs(least))
+        return bool(missed[3 * len(missed) // 4 :].max() <= counts)
+
+    @cached_property
+    def resolved_velocities(self) -> bool:
+        """Whether the samples show the velocities of mass and drive, too."""
+        if self.enough or not self.resolved:
+            return self.resolved
+        travel = self.description.slider.motion.travel(0.0, self.time)[0]
+        drive = np.broadcast_to(self.drive, self.time.shape)
+        for place, velocity in ((self.positions, self.velocity), (travel, drive)):
+            missed = np.abs(residual_changes(self.time, place, velocity)) / np.diff(self.time)
+            usual = np.quantile(missed, 1.0 - JUMPS)
+            if usual > UNEXPLAINED_VELOCITY * np.abs(velocity).max():
+                return False
+        return True
 
     @cached_property
     def nominal(self) -> float:
@@ -206,6 +249,8 @@ class ObservedRun:
     @cached_property
     def regime(self) -> str:
         """The kind of motion, one of `stiction.study.variables.fast_regime.KINDS`."""
+        if not self.resolved:
+            return UNDETERMINED
         if rests_throughout(self.time, self.slip_speed, self.solution.sticks):
             return STUCK
         slider = self.description.slider
@@ -234,7 +279,8 @@ def observe_run(description: Description, report: Callable[[float], None] | None
     start, duration = description.initial.time, description.run.duration
     slow, fast = description.slider.natural_frequencies
     along = PER_COUPLED_PERIOD * coupled_frequency(description.slider)
-    least = max(PER_SLOW_PERIOD * slow, along, LEAST_SAMPLES / duration)
+    imposed = PER_IMPOSED_PERIOD * max(description.slider.modulation_frequencies, default=0.0)
+    least = max(PER_SLOW_PERIOD * slow, along, imposed, LEAST_SAMPLES / duration)
     rate = min(max(description.run.sample_rate or 0.0, least), MOST_SAMPLES / duration)
     even = sample_times(start, duration, rate)
     parts = max(ceil(PER_FAST_PERIOD * fast / rate), 1)
@@ -244,7 +290,12 @@ def observe_run(description: Description, report: Callable[[float], None] | None
     dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
     times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
     solution = solve_coarsely(description, times, progress=report)
-    return ObservedRun(description, solution, fine, parts)
+    return ObservedRun(description, solution, fine, parts, rate >= least)
+
+
+def residual_changes(time: Floats, values: Floats, rates: Floats) -> Floats:
+    """Return the changes between successive samples, (n - 1,), less the mean of their rates."""
+    return np.asarray(np.diff(values) - 0.5 * np.diff(time) * (rates[1:] + rates[:-1]))
 
 
 def coupled_frequency(slider: Slider) -> float:
