@@ -568,3 +568,16 @@ def test_a_figure_that_cannot_be_drawn_leaves_the_old_one(
     assert command(config, "--law", "coulomb", "-o", "a.png") == 2
     assert Path("a.png").read_text() == "old"
     assert {path.name for path in Path().iterdir()} == {"my.toml", "a.png"}
+
+
+def test_the_largest_force_is_told_over_the_load_at_that_time() -> None:
+    """A load that doubles doubles friction: 0.2495 of the first load was 0.1988 of its own."""
+    p = st.protocols
+    load = p.LoadProgram(program=[p.Ramp("20 N", "3 s")])
+    rig = st.presets.nakano_popov_2020().replace(load=load)
+    run = st.simulate(rig, "3 s", sample_rate="1 kHz")
+    force, its = run.samples["spring_x"], run.samples["normal_load"]
+    at = int(np.argmax(force))
+    assert its[at] > 1.2 * its[0]
+    assert outcome(run).peak == pytest.approx(force[at] / its[at])
+    assert outcome(run).peak < 0.2

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import nan
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +12,7 @@ from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.errors import Status
+from stiction.result.table import largest
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
@@ -109,7 +111,8 @@ class Outcome(NamedTuple):
     time_stuck : float
         Their total duration, s.
     peak : float
-        Largest magnitude of the load cell's force, in normal loads.
+        Largest magnitude of the load cell's force, over the normal load at that time; NaN where
+        there is no load.
     fastest : float
         Largest slip speed of the samples, m/s.
     slowest : float
@@ -140,11 +143,13 @@ def outcome(run: Trajectory) -> Outcome:
     parts = np.array_split(loading, min(100, len(loading)))
     rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
+    at, peak = largest(cell_force(run))
+    load = float(run.samples["normal_load"][at])
     return Outcome(
         run.status,
         statistics.stick_count,
         statistics.time_stuck,
-        float(np.fmax.reduce(np.abs(cell_force(run)))) / run.slider.normal_load,
+        peak / load if load > 0.0 else nan,
         float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
         0.0 if rests else float(np.fmin.reduce(loading)),
         float(np.median([part.mean() for part in parts])),

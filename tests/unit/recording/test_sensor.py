@@ -230,3 +230,17 @@ def test_what_is_known_of_a_zero_is_less_later_in_the_record():
 
 def test_a_level_may_be_a_quantity():
     assert st.Sensor(noise=pint.Quantity(2, "mN")).noise == st.Sensor(noise="2 mN").noise
+
+
+def test_a_record_of_a_varying_load_states_no_load():
+    """It stated that at the start, 10 N, which its own channel contradicted."""
+    load = st.protocols.LoadProgram(program=[st.protocols.Ramp("20 N", "0.1 s")])
+    steady = st.presets.nakano_popov_2020()
+    run, other = (
+        st.simulate(slider, "0.1 s", sample_rate="1 kHz")
+        for slider in (steady.replace(load=load), steady)
+    )
+    quiet = st.Sensor(noise="2 mN")
+    assert st.measure(run, {"force": quiet, "load": quiet}).stated_load is None
+    assert st.measure(other, {"force": quiet, "load": quiet}).stated_load == 10.0
+    assert st.measure(run, quiet).stated_load == 10.0

@@ -102,8 +102,8 @@ def creep_curves(
     for phase, (start, slip) in enumerate(phases):
         times = slip - edges[edges <= slip - start]
         if isinstance(source, Trajectory):
-            rests = source.stick_intervals[:, 1]
-            found = between_rests(record, position, rests, times, (start, slip))
+            sticks = source.stick_intervals
+            found = between_rests(record, position, sticks, times, (start, slip))
         else:
             found = between_halves(record, position, times, slip)
         rounding = grain / (found.begin - found.end)
@@ -222,17 +222,18 @@ def bin_edges(least: float, longest: float) -> Floats:
 
 
 def between_rests(
-    record: Record, position: Floats, rests: Floats, times: Floats, phase: tuple[float, float]
+    record: Record, position: Floats, sticks: Floats, times: Floats, phase: tuple[float, float]
 ) -> Bins:
-    """Average between `times` (s, descending), each shifted to a rest if one is near.
+    """Average between `times` (s, descending), each shifted to the end of a stick if one is near.
 
+    There the position is that of the last sample in the stick: the next one may lie in the slip.
     Otherwise the position at the bin's ends is averaged over the oscillation, as far as this is
     inside the phase (s): before it and after it the mass slips.
     """
     if len(times) < 2:
         return Bins(*np.zeros((5, 0)))
     edges, reach, (start, slip) = times, 0.5 * (times[0] - times[1]), phase
-    at_rest = np.zeros(len(times), bool)
+    at_rest, rests = np.zeros(len(times), bool), sticks[:, 1]
     if len(rests):
         after = np.searchsorted(rests, times).clip(0, len(rests) - 1)
         pair = np.stack([rests[np.maximum(after - 1, 0)], rests[after]])
@@ -247,6 +248,10 @@ def between_rests(
     ends[:, at_rest | (edges < start + reach) | (edges > slip - reach)] = np.nan
     average = np.diff(_integral(time, position, ends), axis=0)[0] / np.diff(ends, axis=0)[0]
     place = np.where(np.isnan(average), np.interp(edges, time, position), average)
+    if at_rest.any():
+        its = sticks[np.searchsorted(rests, edges[at_rest])]
+        last = np.searchsorted(time, its[:, 1], side="right").clip(1) - 1
+        place[at_rest] = np.where(time[last] >= its[:, 0], position[last], place[at_rest])
     passed = np.diff(edges)
     force = np.diff(_integral(time, record.force[near], edges)) / passed
     unknown = np.full(len(passed), np.nan)

@@ -20,10 +20,13 @@ def used_bins(curve: xr.Dataset, low: float, high: float) -> Bins:
     bins = Bins(*(curve[name].values for name in CURVES))
     inside = (bins.end >= low) & (bins.begin <= high) & np.isfinite(bins.velocity)
     if inside.sum() < 5:
+        longest = float(np.fmax.reduce(bins.begin, initial=0.0))
+        remedy = "st.analysis.creep_curves in Python makes narrower bins (width)"
+        if longest < high:
+            remedy = f"the longest stick phase takes {in_words(longest, 's')} only"
         raise ResultError(
-            f"{inside.sum()} bins of the creep curve lie between {in_words(low, 's')} and "
-            f"{in_words(high, 's')} before slip and 5 are needed; widen the stretch, or make "
-            "narrower bins (width)"
+            f"not determined: {inside.sum()} bins of the creep curve lie between "
+            f"{in_words(low, 's')} and {in_words(high, 's')} before slip and 5 are needed; {remedy}"
         )
     error = np.hypot(np.nan_to_num(bins.error), THEORY * np.abs(bins.velocity))
     return bins._replace(error=error).some(inside)

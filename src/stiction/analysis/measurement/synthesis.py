@@ -87,7 +87,9 @@ def measure(
             continue
         slow = sensors[name].response(values[name], plain.sample_rate)
         found[name] = sensors[name].readings(np.interp(time, plain.time, slow), stream, time)
-    known = ("normal_load", "stiffness", "drive_velocity", "mass")
+    known = ["stiffness", "drive_velocity", "mass"]
+    if "load" not in found or not np.ptp(values["load"]) > 0.0:  # no number states a varying load
+        known.append("normal_load")
     return Record(
         time=time,
         **found,

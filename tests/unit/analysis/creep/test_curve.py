@@ -419,9 +419,19 @@ def test_the_slip_before_a_stick_phase_is_no_creep():
     position = np.interp(time, [0.0, 0.9, 1.0, 5.0, 5.1], [0.0, 0.0, 1e-3, 1e-3, 2e-3])
     record = st.Record(time=time, force=np.ones(len(time)), position=position)
     edges = bin_edges(0.04, 4.0)
-    found = between_rests(record, position, np.zeros(0), 5.0 - edges, (1.0, 5.0))
+    found = between_rests(record, position, np.zeros((0, 2)), 5.0 - edges, (1.0, 5.0))
     assert len(found.velocity) == len(edges) - 1 > 10
     assert np.abs(found.velocity).max() < 1e-12
+
+
+def test_a_slip_between_two_samples_is_no_creep_before_it():
+    """The mass rests until 4.97 s, slips by 1 mm until 5.03 s, and is seen at 4.95 s and 5 s."""
+    time = np.arange(0.0, 6.0, 0.05)
+    position = np.interp(time, [4.97, 5.03], [0.0, 1e-3])
+    record = st.Record(time=time, force=np.ones(len(time)), position=position)
+    stick, phase = np.array([[0.01, 4.97]]), (0.0, 4.975)
+    found = between_rests(record, position, stick, phase[1] - bin_edges(0.2, 4.0), phase)
+    assert np.abs(found.velocity).max() == 0.0
 
 
 @pytest.mark.parametrize(("exponent", "known"), [(3.0, True), (7.0, False)])
