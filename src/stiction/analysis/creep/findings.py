@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import degrees, inf
+from math import degrees, inf, tan
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -12,6 +12,14 @@ from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.force_curve import misalignment_from_force
 from stiction.analysis.creep.misalignment import REST_SPEED, SURE, Misalignment, fit_misalignment
+from stiction.analysis.creep.normal_load import (
+    CHANGED,
+    FOLLOWED,
+    TURNED,
+    at_one_load,
+    load_change,
+    refuse_change,
+)
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
@@ -90,13 +98,26 @@ def find_creep(
             divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
         return CreepFound(curves, mean, divergence, by_force, missing)
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
-    divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
+    slips = curves["slip_time"].values
+    change = load_change(record, slips - np.fmax.reduce(curves["begin"].values, axis=1), slips)
+
+    def diverging() -> Divergence:
+        refuse_change(change, CHANGED, "and Eq. (8) supposes a constant one")
+        return _divergence(mean, loading)
+
+    divergence = attempt(missing, "divergence", diverging)
 
     def implied() -> Misalignment:
-        if run is None:
-            return _misalignment(mean, V, stiffness, record.stiffness_across, record.mass)
-        _refuse_jerks(run, curves)
-        return _misalignment(mean, V, stiffness, run.slider.k_y, record.mass)
+        even = mean_creep(at_one_load(curves, record)) if record.load is not None else mean
+        across = record.stiffness_across if run is None else run.slider.k_y
+        if run is not None:
+            _refuse_jerks(run, curves)
+        found = _misalignment(even, V, stiffness, across, record.mass)
+        turned = stiffness / (across or inf) / tan(found.phi) ** 2
+        refuse_change(change, FOLLOWED, "and Eq. (7) supposes a constant one")
+        most = TURNED / turned if turned else inf
+        refuse_change(change, most, "and the spring across turns the slip with it")
+        return found
 
     by_creep = attempt(missing, "misalignment", implied)
     return CreepFound(curves, mean, divergence, by_creep, missing)

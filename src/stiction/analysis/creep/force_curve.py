@@ -9,6 +9,12 @@ import numpy as np
 
 from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
 from stiction.analysis.creep.misalignment import Misalignment
+from stiction.analysis.creep.normal_load import (
+    CHANGED,
+    load_change,
+    refuse_change,
+    typical_load,
+)
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import error_of_few
@@ -50,7 +56,8 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     with phi, F_0 and the stiffness, assumed to be stated within 2 %; also with k_x/k_y, which slows
     the turning, and with the weakening of friction with creep speed, for both of which only the
     order of magnitude is assumed. The standard error includes the scatter of the cycles, these
-    assumptions, the resolution of the force, and the misfit.
+    assumptions, the resolution of the force, and the misfit. F_0 is that at `normal_load`, where
+    the record has a load that varies.
 
     Parameters
     ----------
@@ -87,15 +94,18 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     table = find_cycles(record) if cycles is None else cycles
     if not table.sizes["cycle"]:
         raise ResultError("there is no stick-slip cycle in which friction could turn")
+    change = load_change(record, table["start"].values, table["peak_time"].values)
+    refuse_change(change, CHANGED, "and Eq. (7) supposes a constant one")
     curve = loading_curve(record, table)
     best, covariance, gain, misfit, apart = _fit(curve)
     phi, excess, off = float(best[0]), exp(best[1]), float(best[2])
     error = max(float(covariance[0, 0]) ** 0.5, apart, _over_cycles(curve, gain))
     error = float(np.hypot(error, AT_BEST * phi))
     _refuse(phi, error, excess, misfit, off)
-    F_0 = curve.peak * (1.0 + excess)
+    peak = curve.peak / typical_load(record, table["peak_time"].values)
+    F_0 = peak * (1.0 + excess)
     over = excess * float(np.hypot(covariance[1, 1] ** 0.5, EXCESS))
-    F_0_error = curve.peak * float(np.hypot(over, PEAK))
+    F_0_error = peak * float(np.hypot(over, PEAK + 0.5 * change))
     stiffness = (record.stiffness or 0.0) / (1.0 + off)
     return Misalignment(phi, error, F_0, F_0_error, stiffness)
 

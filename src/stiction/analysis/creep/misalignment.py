@@ -26,6 +26,7 @@ SURE = 2.0  # standard errors by which an angle, or a creep, must differ from ze
 class Misalignment(NamedTuple):
     """The misalignment implied by creep (rad), F_0 (N), and their standard errors.
 
+    Under a measured load that varies F_0 is that at the record's `normal_load`.
     `stiffness` (N/m) is the fitted one, if any; `misfit` is the typical relative deviation of the
     creep from Eq. (7) beyond two standard errors, `scatter` the root mean square of all deviations
     in standard errors; `weakening` is the share of friction lost at the drive's speed.

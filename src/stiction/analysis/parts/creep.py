@@ -33,13 +33,22 @@ SURE = 2.0  # standard errors that a fit must be away from nothing
 
 def _below_peak(found: Analysis, its: Misalignment) -> str:
     """Return a doubt on F_0 where the spring force exceeds it, which no rotation allows."""
-    peak = float(without_outliers(found.record.force).max())
+    force = found.record.force / found.record.relative_load()
+    peak = float(without_outliers(force[np.isfinite(force)]).max())
     if peak <= its.F_0 + SURE * its.F_0_error:
         return ""
     return (
-        f" That is too small: the force itself reaches {in_words(peak, 'N')}. Near slip the creep "
+        f" That is too small: the force itself reaches {in_words(peak, 'N')}{_at_load(found)}. "
+        "Near slip the creep "
         "is not that of Eq. (7), and the error of F_0 is larger than stated."
     )
+
+
+def _at_load(found: Analysis) -> str:
+    """Return the load that a friction force belongs to, where the load varies, in words."""
+    if found.record.load is None or found.record.normal_load is None:
+        return ""
+    return f" at a normal load of {in_words(found.record.normal_load, 'N')}"
 
 
 def section(found: Analysis) -> Section:
@@ -79,7 +88,7 @@ def section(found: Analysis) -> Section:
         lines.append(
             f"By Eq. (7){_of_both(found)} it implies a misalignment of "
             f"{with_error(phi.phi, phi.phi_error, 'rad')}{_true(found)}, and "
-            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}.{_assumption(found)}"
+            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}{_at_load(found)}.{_assumption(found)}"
             f"{_below_peak(found, phi)}"
         )
     fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}

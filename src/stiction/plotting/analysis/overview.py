@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.misalignment import REST_SPEED
+from stiction.analysis.creep.normal_load import typical_load
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
@@ -42,7 +43,8 @@ def figures(found: Analysis) -> dict[str, Figure]:
         fit, lines = found.misalignment, {}
         if fit is not None and fit.stands_out and found.record.stiffness is not None:
             stiffness = fit.stiffness if isfinite(fit.stiffness) else found.record.stiffness
-            l_x = fit.F_0 / stiffness
+            load = typical_load(found.record, found.curves["slip_time"].values)
+            l_x = fit.F_0 * load / stiffness
             theory = creep_theory(V, fit.phi, l_x, _loading(found))
             lines = {f"{name}, fitted": line for name, line in theory.items()}
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)

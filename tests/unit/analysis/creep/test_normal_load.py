@@ -1,0 +1,77 @@
+"""Misalignments by creep under a load that varies."""
+
+from math import degrees
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.creep.normal_load import load_change
+from stiction.analysis.record import record_of
+
+PAPER = st.presets.nakano_popov_2020()
+p = st.protocols
+
+
+@pytest.fixture(scope="module")
+def ramp():
+    """Return a run of the paper's rig under a load that doubles."""
+    load = p.LoadProgram(program=[p.Ramp("20 N", "6 s")])
+    return st.simulate(PAPER.replace(load=load), "6 s", sample_rate="2 kHz")
+
+
+def test_friction_follows_the_load(ramp):
+    """By a constant load it was 1.45 ± 0.02 deg, 22 errors off, and F_0 = 3.49 ± 0.04 N."""
+    found = st.analyse(ramp)
+    its = found.misalignment
+    assert abs(its.phi - PAPER.phi) < 2.0 * its.phi_error < 0.1 * PAPER.phi
+    assert abs(its.F_0 - 2.0) < 2.0 * its.F_0_error < 0.1
+    assert "at a normal load of 10 N" in str(found)
+    assert "That is too small" not in str(found)
+
+
+def test_so_it_does_in_records(ramp):
+    """Their F_0 belongs to the mean of the load, 15 N."""
+    quiet = {"force": st.Sensor(noise="2 mN"), "load": st.Sensor(noise="10 mN")}
+    with_position = quiet | {"position": st.Sensor(noise="20 nm", unit="m")}
+    its = st.analyse(st.measure(ramp, with_position)).misalignment
+    assert abs(its.phi - PAPER.phi) < 2.0 * its.phi_error
+    assert abs(its.F_0 - 3.0) < 2.0 * its.F_0_error
+
+
+def test_so_it_does_in_records_of_force_and_load():
+    """F_0 was that at the loads of the peaks, 2.31 ± 0.04 N."""
+    load = p.LoadProgram(program=[p.Ramp("12 N", "6 s")])
+    run = st.simulate(PAPER.replace(load=load), "6 s", sample_rate="1 kHz")
+    quiet = {"force": st.Sensor(noise="1 mN"), "load": st.Sensor(noise="1 mN")}
+    its = st.analyse(st.measure(run, quiet)).misalignment
+    assert abs(its.phi - PAPER.phi) < 2.0 * its.phi_error
+    assert abs(its.F_0 - 2.2) < 2.0 * its.F_0_error < 0.2
+
+
+def test_a_load_that_goes_up_and_down_determines_no_angle():
+    """Friction is not F_0 for long where its load swings by a third each second."""
+    load = p.LoadProgram(modulation=p.Modulation("3 N", "1 Hz"))
+    run = st.simulate(PAPER.replace(load=load), "5 s", sample_rate="1 kHz")
+    found = st.analyse(run)
+    assert found.misalignment is None
+    assert "the normal load changes by" in found.missing["misalignment"]
+    assert "the normal load changes by" in found.missing["divergence"]
+
+
+def test_the_change_of_a_load_is_that_beyond_its_noise(ramp):
+    """Within 2 s a ramp from 10 N to 20 N in 6 s rises by a third of 11.7 N; the ends are means."""
+    begin, end = np.array([0.0]), np.array([2.0])
+    change = load_change(record_of(ramp), begin, end)
+    assert change == pytest.approx(10.0 / 3.0 / (35.0 / 3.0) * 15.0 / 16.0, rel=1e-3)
+    sensors = {"force": st.Sensor(noise="2 mN"), "load": st.Sensor(noise="0.1 N")}
+    quiet = st.measure(st.simulate(PAPER, "2 s", sample_rate="2 kHz"), sensors)
+    assert load_change(quiet, begin, end) < 0.02
+
+
+def test_a_load_that_hardly_varies_loses_no_angle():
+    """Measured loads vary by some per cent."""
+    load = p.LoadProgram(modulation=p.Modulation("0.05 N", "0.7 Hz"))
+    its = st.analyse(st.simulate(PAPER.replace(load=load), "3 s", sample_rate="2 kHz")).misalignment
+    assert degrees(its.phi) == pytest.approx(1.0, abs=2.0 * degrees(its.phi_error))
+    assert its.phi_error < 0.02 * its.phi
