@@ -6,7 +6,7 @@ and rounded (to this share of the friction force at rest), goes the way of a mea
 rounding are estimated, readings averaged. It is held against a library of simulations under the
 conditions found so: coverage, ranks, and how many are called unlike the rig's, 5 % as stated.
 ``--hum 0.01`` adds a line of 50 Hz, which wanders, and its third harmonic; ``--spikes 5`` that many
-wild readings.
+wild readings; ``--lasting 0.005 --lasts 5`` noise that lasts for five readings.
 """
 
 from __future__ import annotations
@@ -39,6 +39,7 @@ from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import Library, build
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import draw
+from stiction.recording.coloured_noise import draw_lasting
 from stiction.recording.sensor import digitise
 from stiction.study.execution.cores import Cores
 
@@ -50,11 +51,16 @@ MAINS, WANDER, PERIOD, THIRD = 50.0, 0.1, 30.0, 0.3
 
 
 class Disturbance(NamedTuple):
-    """What is added to the readings: hum of this amplitude (N), and so many of this size (N)."""
+    """What is added to readings: hum (amplitude), so many spikes, and noise that lasts (readings).
+
+    Hum, spikes and the noise's standard deviation in N.
+    """
 
     hum: float
     spikes: int
     spike: float
+    lasting: float
+    lasts: float
 
     def of(self, step: float, size: int, random: np.random.Generator) -> Floats:
         """Return its readings, a step (s) apart."""
@@ -64,6 +70,7 @@ class Disturbance(NamedTuple):
         found: Floats = np.sin(2.0 * np.pi * turns + first)
         found += THIRD * np.sin(6.0 * np.pi * turns + third)
         found *= self.hum
+        found += draw_lasting(size, self.lasting, self.lasts, random)
         found[random.choice(size, self.spikes, replace=False)] += self.spike
         return found
 
@@ -102,6 +109,8 @@ def main() -> None:
     parser.add_argument("--noise", type=float, default=0.3, help="digits; of a hundredth if none")
     parser.add_argument("--hum", type=float, default=0.0, help="over the friction force")
     parser.add_argument("--spikes", type=int, default=0, help="in a record, of half of it")
+    parser.add_argument("--lasting", type=float, default=0.0, help="over the friction force")
+    parser.add_argument("--lasts", type=float, default=5.0, help="readings")
     parser.add_argument("--records", type=int, default=330)
     parser.add_argument("--simulations", type=int, default=1500)
     parser.add_argument("--seed", type=int, default=77)
@@ -111,7 +120,13 @@ def main() -> None:
     digit, noise = options.digit * friction, options.noise * (options.digit or 0.01) * friction
     filters = usual.noise["force"].filters
     its = {"force": Noise(noise, filters=filters)}
-    added = Disturbance(options.hum * friction, options.spikes, 0.5 * friction)
+    added = Disturbance(
+        options.hum * friction,
+        options.spikes,
+        0.5 * friction,
+        options.lasting * friction,
+        options.lasts,
+    )
     fine = usual._replace(noise=its, step=usual.step / options.block)
     of = plan(rig.slider, rig.priors, [fine])
     work = partial(read, of, digit, added, options.seed)

@@ -27,6 +27,7 @@ from stiction.inference.suitability import (
     refuse_other_motion,
     refuse_other_sign,
 )
+from stiction.recording.coloured_noise import coloured_noise
 from stiction.recording.noise import ROUNDING_SPREAD, lattice, resolved_noise
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
@@ -41,6 +42,10 @@ MOST_READINGS = 256  # of which a simulated sample is the mean, where each of th
 # numbers of cycles, so that a library serves many records
 LADDER = (6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40)
 MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
+# shares of a loading from which noise is told: between the swing after a slip and the quick creep
+# before the next; and the percentile of loadings that are too short, so that the rest have as many
+# samples
+LOADED, LATEST, SHORTEST = (0.2, 0.6), 0.8, 10.0
 DIGITS_OF_BAND = 3  # the mains keep theirs
 DIGITS = 4  # of sampling interval and quantisation: those of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
@@ -66,6 +71,9 @@ class Noise(NamedTuple):
         Step between its readings, where noise does not hide it; 0 where that is part of the noise.
     stop_bands : tuple of Band
         Left out of record and simulations alike, because a line, as of the mains, lay there.
+    lasting, lasts : float
+        Standard deviation of noise that lasts, beside the white, and the time (s) within which its
+        correlation falls by a factor of e.
     """
 
     level: float
@@ -75,11 +83,13 @@ class Noise(NamedTuple):
     drift: float = 0.0
     quantisation: float = 0.0
     stop_bands: tuple[Band, ...] = ()
+    lasting: float = 0.0
+    lasts: float = 0.0
 
     @property
     def error(self) -> float:
         """Standard deviation of a sample from noise and rounding."""
-        return hypot(self.level, ROUNDING_SPREAD * self.quantisation)
+        return hypot(self.level, self.lasting, ROUNDING_SPREAD * self.quantisation)
 
 
 class Conditions(NamedTuple):
@@ -220,6 +230,11 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         for each, (values, _) in lineless.items()
     }
     found = slip_cycles(thin["force"], thin_noise["force"].error)
+    thin_noise = {
+        each: with_lasting_noise(its, thin[each], found, step * block)
+        for each, its in thin_noise.items()
+    }
+    found = slip_cycles(thin["force"], thin_noise["force"].error)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = Cycles(*(each[:number] for each in found))
     drifts = any(each.drift for each in noise.values())
@@ -337,6 +352,24 @@ def noise_of_means(noise: Noise, block: int, step: float) -> Noise:
             if band.high < fastest
         ),
     )
+
+
+def with_lasting_noise(noise: Noise, values: Floats, cycles: Cycles, step: float) -> Noise:
+    """Return the noise of samples, a step (s) apart, that do not differ by white noise alone.
+
+    It is told from their loadings, which have the same course; where rounding shows, it is none.
+    """
+    if noise.quantisation:
+        return noise
+    rise = cycles.peak - cycles.before
+    begin = cycles.before + np.rint(LOADED[0] * rise).astype(np.intp)
+    size = int((LOADED[1] - LOADED[0]) * np.percentile(rise, SHORTEST)) if len(rise) else 0
+    begin = begin[begin + size <= cycles.before + LATEST * rise]
+    found = coloured_noise(values[begin[:, None] + np.arange(size)])
+    if found is None:
+        return noise
+    level, lasting = round_up(found.white), round_up(found.deviation)
+    return noise._replace(level=level, lasting=lasting, lasts=near(found.time * step))
 
 
 def block_means(values: Floats, block: int) -> Floats:

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple, Self
 import numpy as np
 from scipy.special import ndtr
 
-from stiction.analysis.signals.hum import Band
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
 from stiction.inference.disagreement import Disagreement, disagreement
@@ -196,11 +195,7 @@ class Fit(Report):
         if "phi" in self.plan.priors and self.plan.slider.cell_angle is None:
             sentences.append(ALONG_X)
         sentences.append(f"Compared with {self.simulations} simulated records.")
-        if self.stop_bands:
-            bands = ", ".join(f"{band.low:g} to {band.high:g} Hz" for band in self.stop_bands)
-            sentences.append(
-                f"Left out of records and simulations alike, for lines such as mains hum: {bands}."
-            )
+        sentences += self.disturbances
         sentences.append(
             "Experimental: the coverage is how many of such 95 % intervals hold the truth of "
             "simulated records left out, which says nothing of what the simulations leave out."
@@ -278,10 +273,21 @@ class Fit(Report):
         return not stated and self.trend.peaks < TREND <= self.trend.drops
 
     @property
-    def stop_bands(self) -> list[Band]:
-        """The bands that are left out of records and simulations."""
-        noises = (noise for each in self.plan.conditions for noise in each.noise.values())
-        return sorted({band for noise in noises for band in noise.stop_bands})
+    def disturbances(self) -> list[str]:
+        """What is left out of records, and what is added to simulations, as sentences."""
+        noises = [noise for each in self.plan.conditions for noise in each.noise.values()]
+        bands = sorted({band for noise in noises for band in noise.stop_bands})
+        times = sorted({noise.lasts for noise in noises if noise.lasting})
+        found = []
+        if bands:
+            named = ", ".join(f"{band.low:g} to {band.high:g} Hz" for band in bands)
+            found.append(
+                f"Left out of records and simulations alike, for lines such as mains hum: {named}."
+            )
+        if times:
+            named = ", ".join(in_words(time, "s") for time in times)
+            found.append(f"Noise that is not white but lasts is simulated as seen: for {named}.")
+        return found
 
     @property
     def sign_unseen(self) -> bool:

@@ -8,7 +8,13 @@ import stiction as st
 from stiction.analysis.signals.hum import without_bands
 from stiction.errors import ResultError
 from stiction.inference.cycles import slip_cycles
-from stiction.inference.observation import Conditions, Noise, block_means, observe
+from stiction.inference.observation import (
+    Conditions,
+    Noise,
+    block_means,
+    observe,
+    with_lasting_noise,
+)
 from stiction.inference.priors import Uniform
 from stiction.inference.simulated.jitter import SPARE, Jitter, first_loading, move
 from stiction.inference.simulated.plan import plan
@@ -135,17 +141,38 @@ def test_wild_samples_make_no_difference_to_a_fit():
     assert np.abs(found.force - expected.force).max() < 6e-3  # three deviations of a reading
 
 
-def test_simulations_leave_out_the_same_bands():
-    slider, bands = slider_of(0.6), ((18.0, 19.0),)
+def simulated_record(cycles: int, **noise: Noise):
+    """Return a simulated record of so many cycles with this noise, and the time between samples."""
+    slider = slider_of(0.6)
     cycle = 0.6 * slider.F_0 / (slider.k_x * slider.drive_speed)
-    noise = {"force": Noise(0.01, stop_bands=bands), "force_across": Noise(0.01)}
-    conditions = Conditions(1e-4, 10.0, 0.0, 0.02, 6, cycle, noise)
+    conditions = Conditions(1e-4, 10.0, 0.0, cycle / 200.0, cycles, cycle, noise)
     its = plan(slider, {"phi": Uniform(0.01, 0.02), "jitter": Uniform(0.01, 0.02)}, [conditions])
-    record = next(draw(its, 0, 1)[1])
+    return next(draw(its, 0, 1)[1]), conditions.step
+
+
+def test_noise_that_lasts_is_seen_in_records_and_simulations_alike():
+    """Of 146 records with such noise, 0.5 % of friction for 80 ms, phi held in 48 %."""
+    made, step = simulated_record(20, force=Noise(0.01, lasting=0.03, lasts=0.54))
+    found = with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step)
+    assert found.lasting == pytest.approx(0.03, rel=0.3)
+    assert found.level < 0.015
+    assert 0.26 < found.lasts < 1.1  # to a factor of two
+    assert found.error == pytest.approx(np.hypot(found.level, found.lasting))
+    made, step = simulated_record(20, force=Noise(0.02))
+    assert with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step) == Noise(0.02)
+    rounded = Noise(0.02, quantisation=0.1)
+    assert with_lasting_noise(rounded, made.channels["force"], made.cycles, step) is rounded
+
+
+def test_simulations_leave_out_the_same_bands():
+    bands = ((2.0, 2.2),)
+    record, step = simulated_record(
+        6, force=Noise(0.01, stop_bands=bands), force_across=Noise(0.01)
+    )
     for name, left in (("force", 0.02), ("force_across", np.inf)):
         values = record.channels[name]
         power = np.abs(np.fft.rfft(values - np.linspace(values[0], values[-1], len(values))))
-        frequency = np.fft.rfftfreq(len(values), conditions.step)
-        inside = (frequency > 18.0) & (frequency < 19.0)
+        frequency = np.fft.rfftfreq(len(values), step)
+        inside = (frequency > 2.0) & (frequency < 2.2)
         assert power[inside].max() < left * np.median(power)
     assert power[inside].max() > 0.1 * np.median(power)

@@ -15,6 +15,7 @@ from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.observation import MOST_PLACES, Conditions, block_means
 from stiction.inference.simulated.jitter import SPARE, Jitter, SampledMotion, first_loading, move
 from stiction.inference.simulated.plan import Plan
+from stiction.recording.coloured_noise import draw_lasting
 from stiction.recording.sensor import FASTEST, digitise, low_pass
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
@@ -95,6 +96,9 @@ def measure(
         more = ceil(conditions.block / places) if noise.quantisation else 1
         readings, block = refine(values_of, more), places * more
         readings = readings + noise.level * block**0.5 * random.standard_normal(len(readings))
+        if noise.lasting:
+            lasts = noise.lasts / conditions.step * block
+            readings += draw_lasting(len(readings), noise.lasting, lasts, random)
         means = block_means(digitise(readings, noise.quantisation), block)
         found[name] = without_bands(means, conditions.step, noise.stop_bands)
     return found
