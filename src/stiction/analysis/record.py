@@ -40,6 +40,11 @@ from stiction.text.units import (
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
 
+# of a load cell that measures nothing of a force: see `across_force`
+ACROSS = (
+    "stands across the force of the springs and measures nothing of it; cell_angle = '0 deg' in "
+    "[slider] lays it along the drive"
+)
 LARGEST = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
 SHARP = 1e-3  # of the load: noise of it that is averaged away
@@ -454,6 +459,20 @@ def _share(x: float, y: float, slider: Slider) -> float:
     return 0.0 if abs(share) < ROUND else share  # at a right angle
 
 
+def across_force(run: Trajectory, record: Record) -> bool:
+    """Return whether springs carry a force that the load cell, across it, does not measure."""
+    samples = run.samples
+    carried = any(np.nanmax(np.abs(samples[name])) > 0.0 for name in ("spring_x", "spring_y"))
+    return carried and not record.force.any()
+
+
+def _along_cell(x: float, y: float, f_x: Floats, f_y: Floats) -> Floats:
+    """Return the part of a force along (x, y): zero where it stands across, but for rounding."""
+    force = f_x if y == 0.0 else x * f_x + y * f_y
+    whole = max(np.abs(f_x).max(), np.abs(f_y).max())
+    return force if np.abs(force).max() > ROUND * whole else np.zeros_like(force)
+
+
 def record_of(run: Trajectory) -> Record:
     """Return a run as its load cell records it, with position, slip speed and stick intervals.
 
@@ -483,7 +502,7 @@ def record_of(run: Trajectory) -> Record:
         raise ResultError("no sample of the run is a number; simulate it again")
     record = Record(
         time=time,
-        force=way * (f_x if y == 0.0 else x * f_x + y * f_y),
+        force=way * _along_cell(x, y, f_x, f_y),
         normal_load=slider.normal_load,
         stiffness=stiffness if stiffness > 0.0 else None,  # loading across may unload the cell
         drive_velocity=abs(along) or None,

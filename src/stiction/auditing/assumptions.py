@@ -12,7 +12,7 @@ from stiction import theory
 from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
-from stiction.auditing.prediction import Prediction, creep_distance
+from stiction.auditing.prediction import Prediction, creep_distance, swing_of_slip
 from stiction.friction import Anisotropic, has_state
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
@@ -110,11 +110,12 @@ def _of_friction(s: Slider, p: Prediction) -> Iterator[str]:
         yield from _of_creep_end(s, p)
     elif not p.slips:
         yield from _of_sliding(s, p)
-    swing = s.drive_speed * sqrt(s.k_x * s.masses[0])
-    if p.slips and swing > WEAKENED * p.drop:
+    k, m, share = swing_of_slip(s)
+    swing = s.drive_speed * sqrt(k * m)
+    if p.slips and share * swing > WEAKENED * p.drop > 0.0:
         yield (
             "the mass leaves rest slowly beside its slip; here the drive's velocity alone swings "
-            f"the force by {in_words(swing, 'N')} (V √(k_x m))"
+            f"the force by {in_words(swing, 'N')} (V √(k m))"
         )
     creeps = phi != 0.0 and isfinite(p.creep_at_slip)
     lost = s.F_0 - float(law.coefficient(p.creep_at_slip)) * s.normal_load if creeps else 0.0

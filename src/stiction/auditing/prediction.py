@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from math import atan2, cos, hypot, isfinite, nan, pi, sin, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from stiction import theory
-from stiction.analysis.creep.first_slip import along_force, force_off_drive, slips_at_once
+from stiction.analysis.creep.first_slip import along_force, slips_at_once
+from stiction.analysis.record import cell_axis
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
-from stiction.system.tensors import damping_tensor
+from stiction.system.tensors import damping_tensor, stiffness_tensor, unit_vector
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
 HALF = 32  # places along the first half of a slip where its friction is asked
@@ -46,7 +48,7 @@ class Prediction(NamedTuple):
     creep_distance : float
         Distance crept before the slip, m.
     mu_static, mu_kinetic : float
-        Apparent coefficients of friction: largest and mean force over load.
+        Apparent coefficients of friction: largest and mean force on the load cell over load.
     drop, period : float
         Fall of the force in a slip, N, and time from one slip to the next, s.
     amplitude : float
@@ -102,8 +104,10 @@ def predict(slider: Slider) -> Prediction:
     load_up = float(theory.creep_time(turn, V, phi, l_x)) if creeps else l_x / V
     creep = theory.creep_velocity(np.array([0.0, load_up]), V, phi, l_x)
     distance = creep_distance(V, phi, l_x, load_up)
-    peak, mean, drop = _forces(s, F_static, turn, fast)
-    if isfinite(drop) and slips_at_once(s):
+    at_once = slips_at_once(s)
+    forces = _at_once(s, F_static) if at_once else _forces(s, F_static, turn, fast)
+    peak, mean, drop, period = forces
+    if at_once and isfinite(drop):
         load_up, distance, creep = first_stick, 0.0, np.full(2, nan if phi > 0.0 else 0.0)
     return Prediction(
         F_0,
@@ -122,7 +126,7 @@ def predict(slider: Slider) -> Prediction:
         peak / s.normal_load,
         mean / s.normal_load,
         drop,
-        stick_slip_period(s, drop),
+        period,
         float(theory.transverse_amplitude_bound(V, phi, 2.0 * pi * f_y)),
         SEEN * f_y,
     )
@@ -150,25 +154,76 @@ def first_stick_duration(slider: Slider, F_static: float) -> float:
     return (sqrt(mean**2 + F_static**2 - first**2) - mean) / rate
 
 
-def _forces(slider: Slider, F_static: float, turn: float, fast: bool) -> tuple[float, float, float]:
-    """Return the peak and the mean of the force, and its fall in a slip, N; NaN without a slip.
+def _at_once(slider: Slider, F_static: float) -> tuple[float, float, float, float]:
+    """Return `_forces` of a mass that slips at the end of the first stick.
 
-    `turn` is the force angle at slip, rad; `fast`, whether slow motion turns fast before friction
-    points along the drive.
+    Both springs load together, until they carry the static friction; then the mass swings on both,
+    along their force. That it does again and again about a mean that lies along the drive, as all
+    friction does on average. The load cell measures the parts of both along its axis. Dampers that
+    are critical for that swing let nothing slip.
+    """
+    (k, m, swing), direction = swing_of_slip(slider), np.array(force_direction(slider))
+    drop, mean = stick_slip(slider, F_static, k, m)
+    damping = float(direction @ damping_tensor(slider) @ direction)
+    if not drop > 0.0 or damping >= 2.0 * sqrt(k * m):
+        return _steadily(slider)
+    rate = slider.drive_speed * hypot(*(stiffness_tensor(slider) @ slider.direction))
+    period = stick_slip_period(slider, drop, k, m, rate)
+    along = _on_cell(slider, slider.direction)
+    first, later = swing * (mean + 0.5 * drop), along * mean + 0.5 * swing * drop
+    return max(first, later), along * mean, swing * drop, period
+
+
+def swing_of_slip(slider: Slider) -> tuple[float, float, float]:
+    """Return stiffness (N/m) and mass (kg) of the swing of a slip, and its share on the load cell.
+
+    It is along the force where the first stick ends in a slip, else along the soft spring.
+    """
+    if not slips_at_once(slider):
+        return slider.k_x, slider.masses[0], 1.0
+    return *along_force(slider), _on_cell(slider, force_direction(slider))
+
+
+def _on_cell(slider: Slider, direction: Iterable[float]) -> float:
+    """Return the share of a force in this direction (x, y) that the load cell measures."""
+    x, y = direction
+    cell = cell_axis(slider)
+    return abs(cell.x * x + cell.y * y)
+
+
+def _forces(
+    slider: Slider, F_static: float, turn: float, fast: bool
+) -> tuple[float, float, float, float]:
+    """Return peak and mean of the force, its fall in a slip, N, and the period, s.
+
+    The last two are NaN without a slip. `turn` is the force angle at slip, rad; `fast`, whether
+    slow motion turns fast before friction points along the drive.
     """
     s, phi = slider, abs(slider.misalignment)
-    if slips_at_once(s):  # both springs load together, until they carry the static friction
-        along = cos(force_off_drive(s))
-        drop, mean = (along * each for each in stick_slip(s, F_static, *along_force(s)))
-        peak = along * F_static
-    else:  # without misalignment friction does not turn, and the mass rests until the spring slips
-        peak = F_static if phi == 0.0 else s.F_0 * cos(turn)
-        drop, mean = stick_slip(s, peak, s.k_x, s.masses[0]) if fast else (nan, peak)
-    if drop > 0.0:
-        return mean + 0.5 * drop, mean, drop  # it rises until the mass is as fast as the drive
-    # friction does not fall below the spring's force: steady sliding follows
-    steady = s.law.coefficient(s.drive_speed) * s.normal_load * cos(phi)
-    return max(peak, steady) if fast else steady, steady, nan
+    # without misalignment friction does not turn, and the mass rests until the spring slips
+    peak = F_static if phi == 0.0 else s.F_0 * cos(turn)
+    k, m = s.k_x, s.masses[0]
+    drop, mean = stick_slip(s, peak, k, m) if fast else (nan, peak)
+    if drop > 0.0:  # the force rises until the mass is as fast as the drive
+        period = stick_slip_period(s, drop, k, m, k * s.drive_speed * cos(s.misalignment))
+        return mean + 0.5 * drop, mean, drop, period
+    steady = _steadily(s)
+    return (max(peak, steady[0]), *steady[1:]) if fast else steady
+
+
+def _steadily(slider: Slider) -> tuple[float, float, float, float]:
+    """Return `_forces` of a mass that comes to slide steadily, where friction lies along the drive.
+
+    Friction does not fall below the spring's force.
+    """
+    friction = slider.law.coefficient(slider.drive_speed) * slider.normal_load
+    steady = friction * _on_cell(slider, slider.direction)
+    return steady, steady, nan, nan
+
+
+def force_direction(slider: Slider) -> tuple[float, float]:
+    """Return the unit vector of the springs' force, in x and y, while the mass first rests."""
+    return unit_vector(float(theory.first_force_angle(slider.misalignment, slider.k_x, slider.k_y)))
 
 
 def critical_misalignment(slider: Slider, V: float) -> float:
@@ -210,13 +265,14 @@ def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tu
     return 2.0 * (swing if peak > mean else peak - mean), mean
 
 
-def stick_slip_period(slider: Slider, drop: float) -> float:
+def stick_slip_period(
+    slider: Slider, drop: float, stiffness: float, mass: float, rate: float
+) -> float:
     """Return the time from slip to slip (s) if the force falls by `drop` (N) in each; NaN if not.
 
-    By (E3) of docs/explanation/estimates.md.
+    By (E3) of docs/explanation/estimates.md; at rest the force rises at `rate` (N/s).
     """
-    V, k = slider.drive_speed, slider.k_x
-    by_drive = V * sqrt(k * slider.masses[0])
+    by_drive = slider.drive_speed * sqrt(stiffness * mass)
     over = sqrt(max((0.5 * drop) ** 2 - by_drive**2, 0.0)) if isfinite(drop) else nan
-    slip = (0.5 + atan2(by_drive, over) / pi) / slider.natural_frequency_x
-    return 2.0 * over / (k * V * cos(slider.misalignment)) + slip
+    slip = (pi + 2.0 * atan2(by_drive, over)) * sqrt(mass / stiffness)
+    return 2.0 * over / rate + slip

@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.analysis.creep.first_slip import first_slip_time, slips_at_once
 from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, swings
@@ -17,7 +17,7 @@ from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import SLOWER, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.motion.rest import stuck_share
-from stiction.analysis.record import Record, record_of
+from stiction.analysis.record import Record, across_force, record_of
 from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.inference.progress import Progress, silent
@@ -122,6 +122,11 @@ class SimulatedTest:
         return STUCK if self.comes_to == STUCK else self.regime.kind
 
     @property
+    def blind(self) -> bool:
+        """Whether the load cell stands across the springs' force: see `across_force`."""
+        return across_force(self.run, self.record)
+
+    @property
     def work(self) -> int:
         """The work of the simulation in solver steps, accepted or rejected, and samples."""
         steps = self.run.statistics
@@ -172,6 +177,8 @@ def simulate_test(
         Called with the fraction done.
     """
     load_up = prediction.load_up
+    if slips_at_once(slider):  # the soft spring goes on loading until friction lies along the drive
+        load_up = max(load_up, loading_time(slider))
     slips = CYCLES * prediction.period if prediction.slips else 0.0
     if not prediction.slips and growth > 0.0:  # what grows swings, and may rest between swings
         slips = CYCLES * 2.0 / prediction.f_x
@@ -191,6 +198,11 @@ def simulate_test(
         progress=progress,
     )
     return SimulatedTest(run, growth)
+
+
+def loading_time(slider: Slider) -> float:
+    """Return the time in which the drive loads the spring along x by all of friction, s."""
+    return slider.F_0 / (slider.k_x * slider.drive_speed)
 
 
 def simulate_coarsely(
@@ -263,13 +275,9 @@ def relative_speed(run: Trajectory) -> Floats:
 
 
 def shares(run: Trajectory, force: Floats, cycles: CycleTable) -> Shares:
-    """Return the shares of time in whole cycles, or in the loading if there are none.
-
-    The loading ends where the force comes close to its largest value.
-    """
+    """Return the shares of time in whole cycles, or in the loading if there are none."""
     times, speed = run.samples["time"], relative_speed(run)
-    loaded = int(np.argmax(force >= ALMOST * force.max()))
-    begin, end = float(times[0]), float(times[loaded])
+    begin, end = float(times[0]), float(times[end_of_loading(force)])
     if len(cycles):
         begin, end = float(cycles["start"][0]), float(cycles["trough_time"][-1])
     if not end > begin:  # started sliding
@@ -277,6 +285,11 @@ def shares(run: Trajectory, force: Floats, cycles: CycleTable) -> Shares:
     slip = float((speed[(times >= begin) & (times <= end)] > 1.0).mean())
     rest = stuck_share(begin, end, run.stick_intervals)
     return Shares(rest, max(0.0, 1.0 - slip - rest), slip)
+
+
+def end_of_loading(force: Floats) -> int:
+    """Return the sample at which the loading ends: the force comes close to its largest value."""
+    return int(np.argmax(force >= ALMOST * force.max()))
 
 
 def slip_time(seen: SimulatedTest) -> float:

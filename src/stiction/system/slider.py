@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property, partial
-from math import cos, pi, sin, sqrt
+from math import pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
@@ -31,7 +31,7 @@ from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law, sound
 from stiction.names import picture, warn_renamed
 from stiction.system.springs import Springs, read_springs, whole
-from stiction.system.tensors import ROUND, solver_axes
+from stiction.system.tensors import ROUND, solver_axes, unit_vector
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_toml, toml_text
@@ -277,8 +277,7 @@ class Slider(Apparatus):
     @cached_property
     def direction(self) -> tuple[float, float]:
         """Unit vector of X in the axes (x, y), (cos phi, sin phi), exact at a right angle."""
-        c, s = cos(self.misalignment), sin(self.misalignment)
-        return (0.0, s) if abs(c) < 1e-15 else (c, s)
+        return unit_vector(self.misalignment)
 
     def along_drive(self, x: Any, y: Any) -> Any:
         """Return the component along X of a vector with these components along the axes (x, y)."""
@@ -336,8 +335,7 @@ class Slider(Apparatus):
         """Unit vector of the load cell's axis, along (x, y); that of X by default."""
         if self.cell_angle is None:
             return self.direction
-        angle = self.misalignment + self.cell_angle
-        return cos(angle), sin(angle)
+        return unit_vector(self.misalignment + self.cell_angle)
 
     @property
     def modulation_frequencies(self) -> tuple[float, ...]:

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from stiction.system.slider import Slider
 
 ROUND = 1e-12  # of a compliance, or rad: less is rounding
+ROUNDED = 1e-15  # of a cosine or sine: at a right angle, in double precision, it is 2e-16 at most
 
 
 def mass_tensor(slider: Slider) -> Floats:
@@ -70,9 +71,21 @@ def damping_tensor(slider: Slider) -> Floats:
     return principal(slider.c_x, slider.c_y, slider.damping_angle - slider.turn)
 
 
+def unit_vector(angle: float) -> tuple[float, float]:
+    """Return (cos, sin) of an angle (rad), exact at multiples of a right angle.
+
+    Examples
+    --------
+    >>> unit_vector(pi / 2), unit_vector(-pi)
+    ((0.0, 1.0), (-1.0, 0.0))
+    """
+    c, s = cos(angle), sin(angle)
+    return 0.0 if abs(c) < ROUNDED else c, 0.0 if abs(s) < ROUNDED else s
+
+
 def principal(along: float, across: float, angle: float) -> Floats:
     """Return the symmetric tensor with these principal values, the first at `angle` (rad) to x."""
-    c, s = cos(angle), sin(angle)
+    c, s = unit_vector(angle)
     mixed = (along - across) * c * s
     return np.array(
         [[along * c * c + across * s * s, mixed], [mixed, along * s * s + across * c * c]]

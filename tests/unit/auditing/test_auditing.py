@@ -14,6 +14,7 @@ from stiction import theory
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
+from stiction.analysis.signals.reversals import extrema
 from stiction.auditing import advice, figures, report, simulated_test
 from stiction.auditing.advice import advise, advise_one, nearest
 from stiction.auditing.assumptions import suppositions
@@ -536,6 +537,31 @@ def test_a_transverse_oscillation_is_said_to_die_out_where_it_does(friction, c_y
     text = " ".join(transverse(found))
     assert ("During creep the mass oscillates" in text) == early
     assert ("dies out" in text) != late
+
+
+@pytest.mark.parametrize("phi", [0.5, 2.0, 20.0, 60.0])
+@pytest.mark.parametrize("damping", [0.01, 0.1, 0.3, 0.6, 1.2, 10.0])
+def test_a_transverse_oscillation_is_told_where_the_run_shows_one(phi, damping):
+    """Beyond half of critical damping a swing is less than a sixth of the one before."""
+    c_y = damping * 2.0 * sqrt(PAPER.k_y * PAPER.mass)
+    slider = PAPER.replace(phi=f"{phi} deg", c_y=c_y, friction=st.Coulomb(0.2))
+    found = short(slider)
+    p = found.prediction
+    run = st.simulate(slider, p.first_stick + 10.0 / p.f_y, sample_rate=50.0 * p.f_y)
+    samples = run.samples
+    u_y = samples["u_y"][samples["time"] > p.first_stick]
+    swings = np.abs(np.diff(u_y[extrema(u_y)]))[1:-1]
+    shown = np.count_nonzero(swings > 0.1 * p.amplitude) > 1
+    text = " ".join(transverse(found))
+    assert shown == (damping < 0.5)
+    assert ("is hardly seen" in text) != shown
+
+
+def test_a_mass_that_follows_an_overdamped_drive_does_not_stick():
+    slider = PAPER.replace(phi="89 deg", c_x="200 N s/m", c_y="20 kN s/m")
+    text = " ".join(stick(short(slider)))
+    assert "as fast as the drive to within 2 %: nothing sticks" in text
+    assert "0 m" not in text
 
 
 def test_the_loading_ends_where_the_force_is_largest():

@@ -10,6 +10,7 @@ from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import SimulatedTest, coarse_rate, simulate_test
 from stiction.auditing.words.load_cell import _largest, _readings, _sliding, largest_force
 from stiction.auditing.words.numbers import peak
+from stiction.auditing.words.verdict import describe_motion
 from stiction.linear_stability import growth_rate
 
 PAPER = st.presets.nakano_popov_2020()
@@ -113,3 +114,45 @@ def test_a_test_that_ended_before_the_spring_was_loaded_reads_nothing():
     none = test.record.model_copy(update={"force": np.zeros(len(test.record))})
     vars(test)["record"] = none  # in place of that of the run
     assert _largest(test) == []
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"phi": "90 deg"},
+        {"phi": "-90 deg", "friction": st.laws.Anisotropic(PAPER.friction, 1.5, "90 deg")},
+        {"phi": "0 deg", "cell_angle": "90 deg"},
+    ],
+)
+@pytest.mark.parametrize("multiscale", [False, True])
+def test_a_load_cell_across_the_springs_force_reads_nothing_and_is_said_to(change, multiscale):
+    """In place of cycles of the rounding of cos 90 deg, 52 zN, that looked like stick-slip."""
+    slider = PAPER.replace(**change)
+    run = st.simulate(slider, "0.2 s", sample_rate="5 kHz", multiscale=multiscale)
+    test = SimulatedTest(run)
+    said = "stands across the force of the springs and measures nothing of it; cell_angle = '0 deg'"
+    assert not test.record.force.any()
+    assert describe_motion(test).startswith(f"nothing: it {said}")
+    warning = st.analyse(run).warnings[0]
+    assert said in warning
+    along = slider.replace(cell_angle="0 deg")
+    assert record_of(st.simulate(along, "3 s", sample_rate="100 Hz")).force.max() > 1.5
+
+
+@pytest.mark.parametrize(
+    ("phi", "ratio", "cell"),
+    [
+        (88.0, 1.05, None),
+        (54.6, 1.64, None),
+        (69.3, 0.94, 51.0),
+        (5.2, 1.33, None),
+        (80.0, 100.0, 0),
+    ],
+)
+def test_theory_of_the_largest_force_is_that_on_the_load_cell(phi, ratio, cell):
+    """Not along the drive: at 89 deg that is 0.35, where the cell along x reads 0.0034."""
+    slider = PAPER.replace(
+        phi=f"{phi} deg", k_y=ratio * 1e3, cell_angle=None if cell is None else f"{cell} deg"
+    )
+    test = friction_test(slider)
+    assert predict(slider).mu_static == pytest.approx(peak(test), rel=0.05)

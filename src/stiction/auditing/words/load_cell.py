@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.record import cell_axis
+from stiction.analysis.record import ACROSS, cell_axis
 from stiction.auditing.simulated_test import CALM, SLIDES, SimulatedTest, relative_speed
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.friction import Anisotropic
@@ -88,6 +88,8 @@ def load_cell(found: Audit) -> list[str]:
     seen = found.observation
     if not len(seen.record) or not np.nanmax(seen.run.samples["friction"]) > 0.0:
         return ["There is no friction to read."]
+    if seen.blind:
+        return [f"It {ACROSS}."]
     return [_readings(seen), *_largest(seen), *_sliding(seen)]
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
-from stiction.auditing.simulated_test import SimulatedTest, relative_speed
+from stiction.auditing.simulated_test import CALM, SimulatedTest, end_of_loading, relative_speed
 from stiction.friction import has_state
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -24,6 +24,18 @@ HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 def stick(found: Audit) -> list[str]:
     """Return how much of the apparent stick is creep."""
     seen, s = found.observation, found.slider
+    if seen.blind:
+        return ["The load cell shows nothing that could be taken for stick."]
+    if not len(seen.table) and (share := _following(seen)) > 0.5:
+        return [
+            f"For {percent(share)} of the loading the mass is as fast as the drive to within "
+            f"{percent(CALM)}: nothing sticks."
+            + (
+                " The load cell shows a rising force while friction turns."
+                if s.misalignment
+                else ""
+            )
+        ]
     whole = "of each cycle" if len(seen.table) else "of the loading"
     vibrates, inertia = seen.motion in VIBRATES, _share_of_inertia(found)
     slowly = "creeps" if s.misalignment or has_state(s.law) else "slides slowly"
@@ -70,7 +82,7 @@ def _why(found: Audit, inertia: float) -> str:
         far = (
             f"{in_words(distance, 'm')} before each slip"
             if isfinite(distance)
-            else f"{in_words(found.prediction.creep_distance, 'm')}, by Eq. (7), before it slides"
+            else f"{in_words(_moved_while_loaded(seen), 'm')} while the force rises"
         )
         return (
             f"The apparent stick is mostly creep under a turning friction force: an artefact "
@@ -83,6 +95,18 @@ def _why(found: Audit, inertia: float) -> str:
             "lose it, as to swing on its spring."
         )
     return "The apparent stick is mostly true rest." if seen.shares.rest > HARDLY else ""
+
+
+def _following(seen: SimulatedTest) -> float:
+    """Return the share of the loading in which the mass is as fast as the drive."""
+    speed = relative_speed(seen.run)[: end_of_loading(seen.record.force) + 1]
+    return float((np.abs(speed - 1.0) < CALM).mean())
+
+
+def _moved_while_loaded(seen: SimulatedTest) -> float:
+    """Return the distance that the mass moves until the force is close to its largest value, m."""
+    X = seen.run.samples["X"]
+    return abs(float(X[end_of_loading(seen.record.force)] - X[0]))
 
 
 def _faster(seen: SimulatedTest) -> str:

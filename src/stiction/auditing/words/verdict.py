@@ -14,6 +14,7 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSITIONAL,
     UNDETERMINED,
 )
+from stiction.analysis.record import ACROSS
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.simulated_test import (
     OSCILLATES,
@@ -122,7 +123,9 @@ def short_motion(seen: SimulatedTest) -> str:
 
 
 def describe_motion(seen: SimulatedTest) -> str:
-    """Return a kind of motion with its cycles, in one line."""
+    """Return a kind of motion with its cycles, in one line, as the load cell shows it."""
+    if seen.blind:
+        return f"nothing: it {ACROSS}"
     count = len(seen.table)
     sure = SEEN.get(seen.motion, seen.motion)
     if seen.motion == seen.regime.kind:

@@ -13,6 +13,8 @@ from stiction.solver.problem import Problem, at, damping, drive_rate, static
 from stiction.solver.stick import holding, holding_change
 from stiction.solver.surface import held_product
 
+ROUNDING = 1e-15  # of a cosine or sine, as in system.tensors: that of pi/2, rounded, is 6e-17
+
 
 @inlined
 def angle(problem: Problem, u_x: float, u_y: float) -> float:
@@ -26,7 +28,9 @@ def angle(problem: Problem, u_x: float, u_y: float) -> float:
 def limit_at_angle(problem: Problem, theta: float) -> tuple[float, float]:
     """Return the limit of friction at an angle, over mass (x, y)."""
     n, f = problem.surface, static(problem.law) * at(problem.load, 0.0) * problem.system.per_mass
-    x, y = f * cos(theta) / sqrt(n.xx), f * sin(theta) * sqrt(n.yy - n.xy * n.xy / n.xx)
+    c, s = cos(theta), sin(theta)
+    c, s = 0.0 if abs(c) < ROUNDING else c, 0.0 if abs(s) < ROUNDING else s
+    x, y = f * c / sqrt(n.xx), f * s * sqrt(n.yy - n.xy * n.xy / n.xx)
     return n.xx * x, n.xy * x + y
 
 

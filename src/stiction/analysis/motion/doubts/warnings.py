@@ -32,7 +32,7 @@ from stiction.analysis.motion.metadata import (
     StatedQuantity,
 )
 from stiction.analysis.motion.regime.kinds import HARMONIC
-from stiction.analysis.record import Record
+from stiction.analysis.record import ACROSS, Record, across_force
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.quantity_text import percent
@@ -130,6 +130,7 @@ def _doubt_load(record: Record) -> Iterator[str]:
 def warnings_of_run(run: Trajectory, record: Record, cycles: CycleTable) -> tuple[str, ...]:
     """Return warnings about the samples of a run; its parameters are exact."""
     return (
+        *([f"The load cell {ACROSS}."] if across_force(run, record) else []),
         *_unsteady(run),
         *doubt_few_samples(record, cycles),
         *doubt_slips_between_samples(record, cycles),
