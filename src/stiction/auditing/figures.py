@@ -111,8 +111,9 @@ def fit_of(found: Audit) -> Fit | None:
 
 
 def tolerance(found: Audit) -> Figure | None:
-    """Draw the tolerance budget; None where the misalignment is not uncertain."""
-    return figure_of(plot_tolerance, found.budget) if found.budget else None
+    """Draw the tolerance budget over the misalignment; None where that is certain."""
+    shown = found.budget is not None and not found.budget.certain
+    return figure_of(plot_tolerance, found.budget) if shown else None
 
 
 def stability(found: Audit) -> Figure | None:

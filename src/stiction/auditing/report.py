@@ -71,7 +71,7 @@ class Audit(NamedTuple):
     chain : Chain or None
         The springs in series, and each replaced; None for a single spring.
     budget : Budget or None
-        The tolerance budget; None where the misalignment is not uncertain.
+        The tolerance budget; None where no parameter is uncertain.
     measured : RecordComparison or None
         A measured record beside simulations of the apparatus; None where none was given.
 
@@ -160,7 +160,7 @@ def audit(
     ----------
     slider : Slider, Description, Rig, str or Path
         The apparatus, or the file of its description, with a steady drive and load. The initial
-        state and settings of a description are ignored. Where its ``phi`` is uncertain, as in
+        state and settings of a description are ignored. Where a parameter is uncertain, as in
         ``phi = "2 +- 1 deg"``, the audit ends with a tolerance budget.
     progress : callable, optional
         Called with the fraction done.
@@ -207,7 +207,7 @@ def audit(
 def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) -> Audit:
     """Return the audit of a rig, whose record was compared with it before."""
     system = steadily_driven(rig.slider)
-    report = partial(part, progress, count=PARTS + (MORE if "phi" in rig.priors else 0))
+    report = partial(part, progress, count=PARTS + (MORE if rig.priors else 0))
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
     rate = max(prediction.sample_rate, coarse_rate(prediction))
@@ -222,7 +222,7 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     if not sliding.stable or observation.comes_to != SLIDES:
         advices = tuple(advise(system, sliding.stable, work, report(3, of=len(LEVERS))))
     misalignment = critical(system, "phi")
-    tolerance = budget(rig, report(PARTS, of=MORE)) if "phi" in rig.priors else None
+    tolerance = budget(rig, report(PARTS, of=MORE)) if rig.priors else None
     progress(1.0)
     both = observation, sliding_on
     return Audit(

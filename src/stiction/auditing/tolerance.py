@@ -1,4 +1,4 @@
-"""Tests of a rig over the range of its uncertain misalignment, and how well to align it."""
+"""Tests of a rig over the ranges of its uncertain parameters, and how well to align it."""
 
 from __future__ import annotations
 
@@ -80,13 +80,14 @@ class Budget:
     Parameters
     ----------
     angles : ndarray
-        (n,), misalignments drawn from the prior, rad.
+        (n,), misalignments drawn from the prior, rad; equal where it is certain.
     drawn : ndarray
         (n, 4), the readings with them and with the draws of all other uncertain parameters.
     ends : ndarray
-        (3,), misalignments with 2.5, 50 and 97.5 % of the prior below them, rad.
+        (3,), misalignments with 2.5, 50 and 97.5 % of the prior below them, rad; (1,), that of the
+        rig, where it is certain.
     at_ends : ndarray
-        (3, 4), readings there, all other parameters in the middle of their priors.
+        (3, 4) or (1, 4), readings there, all other parameters in the middle of their priors.
     aligned : Reading
         Without misalignment.
     alignment : Alignment
@@ -102,6 +103,11 @@ class Budget:
     aligned: Reading
     alignment: Alignment
     others: tuple[str, ...]
+
+    @property
+    def certain(self) -> bool:
+        """Whether the misalignment is certain, and only other parameters are not."""
+        return len(self.ends) == 1
 
     @property
     def intervals(self) -> Floats:
@@ -127,10 +133,13 @@ def read(slider: Slider) -> Reading:
 
 
 def budget(rig: Rig, progress: Progress) -> Budget:
-    """Return the tolerance budget of a rig with an uncertain misalignment."""
+    """Return the tolerance budget of a rig with uncertain parameters."""
     names, values = [*rig.priors], draw_values(rig)
-    count = len(values["phi"])
-    ends = rig.priors["phi"].quantile(np.array([BOUNDS_95[0], 0.5, BOUNDS_95[1]]))
+    count = len(values[names[0]])
+    ends, angles = np.array([rig.slider.phi]), np.full(count, rig.slider.phi)
+    if "phi" in values:
+        angles = values["phi"]
+        ends = rig.priors["phi"].quantile(np.array([BOUNDS_95[0], 0.5, BOUNDS_95[1]]))
     rigs = [
         *(change(rig.slider, {name: values[name][i] for name in names}) for i in range(count)),
         *(change(rig.slider, {"phi": end}) for end in ends),
@@ -139,12 +148,9 @@ def budget(rig: Rig, progress: Progress) -> Budget:
     found = read_all(rigs, lambda fraction: progress(0.7 * fraction))
     limit = alignment(rig.slider, found[-1][0], max(abs(ends - rig.slider.turn)))
     progress(1.0)
-    angles = values["phi"] - rig.slider.turn
-    others = tuple(name for name in names if name != "phi")
-    at_ends = found[count : count + len(ends)]
-    return Budget(
-        angles, found[:count], ends - rig.slider.turn, at_ends, Reading(*found[-1]), limit, others
-    )
+    others, turn = tuple(name for name in names if name != "phi"), rig.slider.turn
+    at_ends, aligned = found[count : count + len(ends)], Reading(*found[-1])
+    return Budget(angles - turn, found[:count], ends - turn, at_ends, aligned, limit, others)
 
 
 def draw_values(rig: Rig) -> dict[str, Floats]:
@@ -244,25 +250,33 @@ def crossing(angles: Floats, errors: Floats) -> float:
 
 def section(found: Budget) -> Section:
     """Return the budget as a section of a report."""
-    low, middle, high = (in_words(end, "rad") for end in found.ends)
     static = in_words(found.aligned.static, "")
     lines = [
         limit(found.alignment),
         f"The error is relative to what this rig reads without misalignment, {static}, at the same "
         "drive, load and friction.",
-        f"The misalignment is {middle}, with 95 % probability {low} to {high}. The last column "
-        f"holds 95 % of {len(found.drawn)} simulated tests with parameters drawn from their "
-        "priors.",
+        f"{_misalignment(found)} The last column holds 95 % of {len(found.drawn)} simulated tests "
+        "with parameters drawn from their priors.",
     ]
     if found.others:
+        start = "Uncertain" if found.certain else "Also uncertain"
         lines.append(
-            f"Also uncertain, there only: {', '.join(found.others)}. In the other columns they "
+            f"{start}, there only: {', '.join(found.others)}. In the other columns they "
             "are in the middle of their priors."
         )
     unread = int(sum(isnan(each) for each in found.drawn[:, Reading._fields.index("static")]))
     if unread:
         lines.append(f"{unread} of the tests could not be simulated to their end.")
     return Section(TITLE, lines, table(found))
+
+
+def _misalignment(found: Budget) -> str:
+    """Return the misalignment, and how uncertain it is, in a sentence."""
+    ends = [in_words(end, "rad") for end in found.ends]
+    if found.certain:
+        return f"The misalignment is {ends[0]} throughout, as stated without an uncertainty."
+    low, middle, high = ends
+    return f"The misalignment is {middle}, with 95 % probability {low} to {high}."
 
 
 def limit(found: Alignment) -> str:

@@ -32,11 +32,11 @@ from stiction.auditing.simulated_test import (
     from_sliding,
     simulate_test,
 )
-from stiction.auditing.words.changes import _change
+from stiction.auditing.words.changes import _change, changes
 from stiction.auditing.words.numbers import apparent_stiffness, numbers
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
-from stiction.auditing.words.verdict import margin, motions, stability, verdict
+from stiction.auditing.words.verdict import final_motion, margin, motions, stability, verdict
 from stiction.cli import main
 from stiction.inference.progress import silent
 from stiction.linear_stability import Critical, critical, steady_sliding
@@ -770,6 +770,19 @@ def test_a_change_that_leaves_little_is_no_failure(found):
     assert _change(found, tried)[-1].startswith("almost: stick-slip, force drop ")
     again = found.advices[0]._replace(tried=rest)
     assert _change(found, again)[-1].startswith("no remedy: stick-slip, force drop ")
+
+
+def test_a_change_whose_test_ends_too_early_is_not_decided(found):
+    """Not "no remedy: steady sliding, after a motion that dies out (still growing ...)"."""
+    rest = found.observation
+    calm = rest.regime._replace(kind=SETTLING)
+    tried = seen_otherwise(rest, comes_to=UNSETTLED, regime=calm)
+    said = "a motion that still changes when the test ends"
+    assert final_motion(tried) == said
+    undecided = found.advices[0]._replace(tried=tried)
+    assert _change(found, undecided)[-1] == f"not decided: {said}"
+    lines, _ = changes(found._replace(advices=(undecided,)))
+    assert lines[0].startswith("None of these is seen to make it slide steadily.")
 
 
 @pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.__name__)

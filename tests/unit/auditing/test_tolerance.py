@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import stiction as st
+from stiction.auditing import report
 from stiction.auditing import tolerance as module
 from stiction.auditing.page import page
 from stiction.auditing.tolerance import (
@@ -74,6 +75,25 @@ def test_readings_at_the_ends_are_those_of_audits_there(found):
     assert found.budget.at_ends[2] == pytest.approx(np.array(other), rel=1e-9)
 
 
+def test_a_certain_misalignment_leaves_the_other_parameters_uncertain(monkeypatch):
+    """They were ignored without a word unless phi was uncertain, too."""
+    monkeypatch.setattr(module, "DRAWS", 4)
+    monkeypatch.setattr(module, "alignment", lambda *_: Alignment(nan, 0.1, 0.0))
+    rig = st.Rig.from_toml(TEXT.replace("2 +- 1 deg", "2 deg"))
+    other = budget(rig, lambda _: None)
+    low, high = other.intervals[:, 0]
+    assert 0.55 < low < other.at_ends[0, 0] < high < 0.65
+    assert other.certain
+    assert np.degrees(other.angles) == pytest.approx(2.0)
+    said = module.section(other)
+    text = " ".join(said.sentences)
+    assert "The misalignment is 2 deg throughout, as stated without an uncertainty." in text
+    assert "Uncertain, there only: friction.mu_0." in text
+    assert said.table.headings == ("quantity", "aligned", "at 2 deg", "95 %")
+    monkeypatch.setattr(report, "budget", lambda rig, progress: other)
+    assert report.audit(rig).tables()[-1].sentences == said.sentences
+
+
 def test_what_else_is_uncertain_widens_the_interval(found):
     low, high = found.budget.intervals[:, 0]
     ends = found.budget.at_ends[:, 0]
@@ -83,7 +103,7 @@ def test_what_else_is_uncertain_widens_the_interval(found):
 
 
 def test_without_uncertainty_there_is_no_budget():
-    plain = TEXT.replace("2 +- 1 deg", "2 deg")
+    plain = TEXT.replace("2 +- 1 deg", "2 deg").replace("0.6 +- 0.02", "0.6")
     assert st.audit(plain).budget is None
 
 
@@ -95,13 +115,6 @@ def test_the_page_and_the_figure_show_it(found):
                line.get_linestyle() != "None"]  # fmt: skip
     assert line.get_xdata()[0] == pytest.approx(degrees(found.budget.alignment.angle))
     assert isinstance(axes[0].figure, Figure)
-
-
-def test_the_rig_that_is_uncertain_in_other_things_only_has_no_budget():
-    text = TEXT.replace("2 +- 1 deg", "2 deg")
-    rig = st.Rig.from_toml(text)
-    assert [*rig.priors] == ["friction.mu_0"]
-    assert st.audit(rig).budget is None
 
 
 def test_a_limit_that_is_not_reached_is_said():

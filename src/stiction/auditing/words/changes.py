@@ -9,6 +9,7 @@ from stiction.auditing.advice import Remedy, is_compliance
 from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
+    UNSETTLED,
 )
 from stiction.auditing.words.verdict import final_motion, where
 from stiction.text.sections import Table
@@ -37,7 +38,9 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
         for each in found.advices
         if each.works
     ]
-    what = f"To {goal}: {', or '.join(remedies)}" if remedies else f"None of these makes it {goal}"
+    undecided = any(each.tried and each.tried.comes_to == UNSETTLED for each in found.advices)
+    none = f"None of these {'is seen to make' if undecided else 'makes'} it {goal}"
+    what = f"To {goal}: {', or '.join(remedies)}" if remedies else none
     lines = [f"{what}. Each change was simulated from rest; the last column shows the result."]
     cut = [name_of(found, each.path) for each in found.advices if each.cut]
     if cut:
@@ -82,6 +85,8 @@ def _change(found: Audit, advice: Remedy) -> tuple[str, ...]:
     if not seen.run.status.ok:
         until = in_words(float(seen.record.time[-1]), "s")
         return name, now, stable, then, f"not known: the simulation was cut at {until}"
+    if seen.comes_to == UNSETTLED:
+        return name, now, stable, then, f"not decided: {final_motion(seen)}"
     what, drop = f"no remedy: {final_motion(seen)}", seen.mean("drop")
     if seen.comes_to == OSCILLATES and isfinite(drop):
         if drop < ALMOST * found.observation.mean("drop"):

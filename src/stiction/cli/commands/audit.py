@@ -39,8 +39,8 @@ def audit(
     misalignment and the margin to it, true rest and creep in apparent stick, apparent friction
     coefficients, period, the frequency of the transverse oscillation and the sampling rate that
     shows it; and, if it does not slide steadily, advice, each tried in a simulation. Of springs in
-    series: which is the softest, and what each replaced by a stiffer one changes. Where phi is
-    uncertain in CONFIG, as in phi = "2 +- 1 deg": how well to align.
+    series: which is the softest, and what each replaced by a stiffer one changes. Where values are
+    uncertain in CONFIG, as in phi = "2 +- 1 deg": what that does to a test, and how well to align.
 
     For example, with what `stiction init my.toml` writes:
 
