@@ -190,10 +190,19 @@ def faults(
     except TypeError:  # too many, or too few: Python's message says so
         return []
     return [
-        Fault(name, f"must be {types_in_words(hint)}, is {echo(value)}{remedy(public)}")
+        Fault(name, f"must be {types_in_words(hint)}, is {value_in_words(value)}{remedy(public)}")
         for name, hint, value in pairs(shape, given)
         if not accepts(hint, value, scope)
     ]
+
+
+def value_in_words(value: Any) -> str:
+    """Return a wrong argument for a message; of data that were read from a file, that file."""
+    encoding = getattr(value, "encoding", None)
+    source = encoding.get("source") if isinstance(encoding, Mapping) else None
+    if source is None:
+        return echo(value)
+    return f"{_with_article(type(value).__name__)} from {echo(str(source))}: give that path"
 
 
 def pairs(shape: Signature, given: Mapping[str, Any]) -> Iterator[tuple[str, ast.expr, Any]]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from stiction.analysis.slip import cell_symbol, outcome
 from stiction.errors import DescriptionError, Fault
-from stiction.friction import LAWS, Law, has_state, name_of, parameters, read_law
+from stiction.friction import LAWS, Anisotropic, Law, has_state, name_of, parameters, read_law
 from stiction.friction.equivalent import Traits, like, traits
 from stiction.friction.law import static_coefficient
 from stiction.friction.user.loading import finder_for_descriptions
@@ -168,10 +168,10 @@ def share(progress: Callable[[float], None], done: int, runs: int) -> Callable[[
 
 
 def labels(laws: Sequence[Law]) -> list[str]:
-    """Return a name for each law; equal names get the parameters that differ."""
+    """Return a name for each law; equal names get the parameters that differ, if they are set."""
     names = [name_of(law) for law in laws]
     written = [
-        {key: f"{v:.6g}" for key, v in parameters(law).items() if isinstance(v, int | float)}
+        {key: f"{v:.6g}" for key, v in set_parameters(law).items() if isinstance(v, int | float)}
         for law in laws
     ]
     full = []
@@ -185,6 +185,14 @@ def labels(laws: Sequence[Law]) -> list[str]:
         if seen[label] > 1:
             full[at] = f"{label} ({seen[label]})"
     return full
+
+
+def set_parameters(law: Law) -> dict[str, Any]:
+    """Return the parameters of a law without those that have their default."""
+    inner = law.law if isinstance(law, Anisotropic) else law
+    defaults: dict[str, Any] = getattr(inner, "_field_defaults", {})
+    known = parameters(law)
+    return {key: known[key] for key in known if key not in defaults or known[key] != defaults[key]}
 
 
 def exchange_law(description: Description, law: Law) -> Description:

@@ -91,6 +91,9 @@ def test_the_onset_shows_both_sweeps_and_the_hysteresis():
 
 def test_parameters_have_symbols_and_units():
     assert parameter_symbol("k_x, k_y") == "$k_{x}$ = $k_{y}$"
+    assert parameter_symbol("load.modulation.frequency") == "load modulation frequency"
+    assert parameter_symbol("load.program.1.to, run.duration") == "load program 1 to = run duration"
+    assert parameter_symbol("springs.load-cell.k_x") == "load cell $k_{x}$"
     assert scale_of("k_x", "N/m", (1e3, 5e3)).label == "$k_{x}$ (kN/m)"
     assert scale_of("drive.velocity", "m/s", (1e-6, 1.0), logarithmic=True).unit == "mm/s"
     assert scale_of("phi", "rad", (0.0, 1.0)).quantity(np.radians(8.0)) == r"$\varphi$ = 8°"

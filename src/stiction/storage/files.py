@@ -45,9 +45,11 @@ def placeable(path: str | Path, suffixes: Collection[str] = ()) -> Path:
     Raises
     ------
     ResultError
-        If its name has another one, its folder does not exist or cannot be written to, or something
-        other than a file is there.
+        If it is not a path, its name has another suffix, its folder does not exist or cannot be
+        written to, or something other than a file is there.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise ResultError(f"a file is named by text or a path, not by {echo(path)}")
     target = Path(path)
     if suffixes and target.suffix.lower() not in suffixes:
         first, *others = suffixes

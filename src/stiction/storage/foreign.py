@@ -23,7 +23,10 @@ def opening(path: str | Path, what: str) -> Iterator[None]:
     ------
     ResultError
         With `what` is wrong with the file.
+    TypeError
+        If `path` is not a path, which is not damage; `stiction.arguments` names the argument.
     """
+    os.fspath(path)
     try:
         yield
     except StictionError:

@@ -30,6 +30,7 @@ from stiction.friction import Anisotropic, Law, has_state, read_law, registered_
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law, sound
 from stiction.names import picture, warn_renamed
+from stiction.system.replacement import refusals
 from stiction.system.springs import Springs, read_springs, whole
 from stiction.system.tensors import ROUND, solver_axes, unit_vector
 from stiction.system.writing import parameter_table, slider_tables
@@ -371,6 +372,13 @@ class Slider(Apparatus):
 
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""
+        known = type(self).model_fields
+        if found := refusals(self, changes, known):
+            try:  # all faults at once
+                self.replace(**{name: changes[name] for name in changes if name in known})
+            except DescriptionError as error:
+                found += error.faults
+            raise DescriptionError(found)
         values = {name: getattr(self, name) for name in self.own_fields()}
         values |= {name: f"{values[name]!r} rad" for name in ANGLES if values[name] is not None}
         if _are_several(changes.get("springs")):

@@ -12,6 +12,7 @@ from stiction.study.plan.coordinates import unit, vary
 from stiction.study.plan.layout import Layout, layout_of, places
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
+from stiction.text.paths import with_changes
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="30 ms"))
@@ -107,9 +108,53 @@ def test_what_was_stopped_goes_on_and_comes_out_the_same(tmp_path, study, finish
     assert st.sweep(study, tmp_path / "a.zarr") == result  # nothing left to do
 
 
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"rtol": 1e-5}, r"run\.rtol is 1e-06 there and 1e-05 here"),
+        ({"friction.mu_0": 0.3}, r"friction\.mu_0 is 0\.2 there and 0\.3 here"),
+        ({"axes.phi.values": ["1 deg", "4 deg"]}, r"axes\.phi\.values\.2 is '2 deg' there and '4"),
+    ],
+)
+def test_a_store_of_another_study_says_what_differs(change, words, tmp_path):
+    axes = {"phi": st.Values(["1 deg", "2 deg"])}
+    study = st.Study(base=BASE, axes=axes, measures=["peak_force"])
+    create(study, tmp_path / "a.zarr")
+    other = st.Study.from_dict(with_changes(study.to_dict(), change))
+    with pytest.raises(st.ResultError, match=words):
+        st.sweep(other, tmp_path / "a.zarr")
+
+
+def test_a_change_of_a_parameter_that_varies_is_refused(tmp_path):
+    """The values of the axis replaced it without a word."""
+    file = tmp_path / "study.toml"
+    axes = '[axes.phi]\nfrom = "1 deg"\nto = "2 deg"\ncount = 2\n[axes.V]\nvalues = ["1 mm/s"]\n'
+    file.write_text(BASE.to_toml() + axes)
+    for name in ("phi", "slider.phi"):
+        with pytest.raises(st.DescriptionError, match=r"change 'axes\.phi\.from' and 'axes\."):
+            st.Study.from_toml(file, {name: "3 deg"})
+    with pytest.raises(st.DescriptionError, match=r"change 'axes\.V\.values' instead"):
+        st.Study.from_toml(file, {"drive.velocity": "3 mm/s"})
+    changed = st.Study.from_toml(file, {"axes.phi.to": "9 deg", "mass": "1 kg"})
+    assert changed.axes["phi"].stop == "9 deg"
+
+
+def test_a_dataset_in_place_of_its_store_is_told_its_path(finished, study):
+    data = st.open_study(finished[0])
+    for verb in (st.map, st.open_study, st.load, lambda path: st.sweep(study, path)):
+        with pytest.raises(
+            st.DescriptionError, match=r"is a Dataset from '.*zarr': give that path"
+        ):
+            verb(data)
+    with pytest.raises(st.DescriptionError, match="store: must be text or a path, is None"):
+        st.map(None)  # it was "damaged: TypeError"
+
+
 def test_another_study_s_store_is_refused(finished, tmp_path):
     other = st.Study(base=BASE, axes={"phi": AXES["phi"]}, measures=MEASURES)
-    with pytest.raises(st.ResultError, match="another study"):
+    with pytest.raises(
+        st.ResultError, match=r"another study: axes\.drive\.velocity is .* nothing h"
+    ):
         st.sweep(other, finished[0])
     (tmp_path / "empty").mkdir()
     with pytest.raises(st.ResultError, match="not the store of a study"):

@@ -49,9 +49,22 @@ def label_decades(axis: Axis, low: float, high: float) -> None:
 
 
 def parameter_symbol(path: str) -> str:
-    """Return the printed symbol of a parameter; equals signs join several."""
-    names = [name.strip() for name in path.split(",")]
-    return " = ".join(SYMBOLS.get(name, symbol(name.rpartition(".")[2])) for name in names)
+    """Return the printed symbol of a parameter; equals signs join several.
+
+    Outside of slider and friction, whose symbols are known, it names the owner, too: each piece of
+    a program, and the run, has a duration.
+
+    >>> parameter_symbol("friction.mu_0"), parameter_symbol("drive.program.1.duration")
+    ('$\\\\mu_{0}$', 'drive program 1 duration')
+    """
+    names = (name.strip().removeprefix("slider.") for name in path.split(","))
+    return " = ".join(SYMBOLS.get(name) or _behind_owners(name) for name in names)
+
+
+def _behind_owners(name: str) -> str:
+    """Return the symbol of a parameter behind the names of its owners."""
+    *owners, last = name.removeprefix("friction.").removeprefix("springs.").split(".")
+    return " ".join([*(owner.replace("-", " ") for owner in owners), symbol(last)])
 
 
 def in_unit(values: ArrayLike, unit: str) -> tuple[float, str]:

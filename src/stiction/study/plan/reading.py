@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-from stiction.errors import DescriptionError, echo
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.names import by_new_names
 from stiction.study.plan.axes import Axis, read_axis
 from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES
 from stiction.system.description import Description
-from stiction.text.paths import canonical_path
+from stiction.text.paths import canonical_path, keys_of
 from stiction.text.validation import faulty, unknown_name
 
 
@@ -59,3 +59,37 @@ def measures_of(value: Any) -> tuple[str, ...]:
 def traces_of(value: Any) -> tuple[str, ...]:
     """Return names of traces."""
     return named_ones(value, "trace", TRACES)
+
+
+def refuse_varied(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> None:
+    """Refuse changes of parameters that vary along an axis: its values would replace them.
+
+    Raises
+    ------
+    DescriptionError
+        With each of them, and what to change instead.
+    """
+    axes = tables.get("axes")
+    axes = axes if isinstance(axes, Mapping) else {}
+    varied = {
+        tuple(keys_of(tables, name)): (str(path), axis)
+        for path, axis in axes.items()
+        for name in str(path).split(",")
+        if _is_known(tables, name)
+    }
+    found = []
+    for name in changes:
+        path, axis = varied.get(tuple(keys_of(tables, name)), ("", None))
+        if path:
+            ends = ("values",) if isinstance(axis, Mapping) and "values" in axis else ("from", "to")
+            remedy = " and ".join(f"{echo(f'axes.{path}.{end}')}" for end in ends)
+            found.append(Fault(name, f"varies along an axis of the study; change {remedy} instead"))
+    if found:
+        raise DescriptionError(found)
+
+
+def _is_known(tables: Mapping[str, Any], name: str) -> bool:
+    try:
+        return bool(keys_of(tables, name))
+    except KeyError:
+        return False

@@ -25,7 +25,13 @@ from stiction.study.plan.coordinates import (
     zip_faults,
 )
 from stiction.study.plan.layout import Index, Layout, axis_faults, layout_of, run_faults
-from stiction.study.plan.reading import axes_of, is_description, measures_of, traces_of
+from stiction.study.plan.reading import (
+    axes_of,
+    is_description,
+    measures_of,
+    refuse_varied,
+    traces_of,
+)
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observed_run import seconds_of
 from stiction.system import parameter
@@ -188,7 +194,9 @@ class Study(Described):
         """
         folder = folder_of(path)
         find, locate = finder_for_descriptions(folder, trust), locator(folder, trust)
-        return cls.from_dict(read_toml(path, changes), find=find, locate=locate)
+        raw = read_toml(path, changes)
+        refuse_varied(raw, changes or {})
+        return cls.from_dict(raw, find=find, locate=locate)
 
     @classmethod
     def from_dict(

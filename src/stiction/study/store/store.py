@@ -216,7 +216,7 @@ def open_store(study: Study, path: str | Path) -> Store:
     held = attributes.get("description")
     if held != study.to_json():
         raise ResultError(
-            f"{path}: holds another study, or one with a different description; it was not "
+            f"{path}: holds another study{_difference(str(held), study)}; it was not "
             "overwritten: choose another name, or remove it"
         )
     if attributes.get("stiction_version") != own_version():
@@ -225,6 +225,39 @@ def open_store(study: Study, path: str | Path) -> Store:
             f"{own_version()}; continue with that version, or choose another name"
         )
     return store
+
+
+def _difference(held: str, study: Study) -> str:
+    """Return the first value in which a stored study differs from another one, in words."""
+    try:
+        there, here = json.loads(held), study.to_dict()
+    except ValueError:
+        return ""
+    found = first_difference(there, json.loads(json.dumps(here)))
+    if found is None:  # axes are dimensions, in their order
+        return ", whose tables stand in another order"
+    name, *values = found
+    said = ("nothing" if each is None else errors.echo(each) for each in values)
+    return f": {name} is {next(said)} there and {next(said)} here"
+
+
+def first_difference(there: Any, here: Any, path: str = "") -> tuple[str, Any, Any] | None:
+    """Return the path of the first value that differs between tables, and both; None if equal.
+
+    Elements of a list count from 1, as in all paths. None stands for a missing value.
+
+    >>> first_difference({"run": {"rtol": 1e-4}, "axes": [1]}, {"run": {"rtol": 1e-4}, "axes": [2]})
+    ('axes.1', 1, 2)
+    """
+    if isinstance(there, list) and isinstance(here, list):
+        there, here = ({str(at): each for at, each in enumerate(its, 1)} for its in (there, here))
+    if not (isinstance(there, Mapping) and isinstance(here, Mapping)):
+        return None if there == here else (path, there, here)
+    for key in (*there, *(each for each in here if each not in there)):
+        inner = f"{path}.{key}" if path else key
+        if (found := first_difference(there.get(key), here.get(key), inner)) is not None:
+            return found
+    return None
 
 
 def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
@@ -327,4 +360,5 @@ def open_study(path: str | Path) -> xr.Dataset:
     files: Any = WholeChunks(LocalStore(path, read_only=True)) if store.checked else path
     with opening(path, "is damaged"):
         data: xr.Dataset = xr.open_zarr(files, zarr_format=3)
+    data.encoding["source"] = str(path)  # as xarray names the files that it opens
     return data.rename({old: new for old, new in FORMERLY.items() if old in data})

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+WIDTH = 40  # characters of a title as wide as a column
 DAMPING = ("phi", "drive.velocity")  # coordinates that locate a run in the damping diagram
 
 
@@ -173,7 +175,8 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
         else:
             panels = _curves(view, found.measures, axes)
         if view.at:
-            panels[0].set_title(cut(view), loc="left")
+            wide = whole_figure(panels[0]).get_figwidth() / COLUMN
+            panels[0].set_title(fill(cut(view), int(WIDTH * wide)), loc="left")
         return np.array(panels, dtype=object)
 
 

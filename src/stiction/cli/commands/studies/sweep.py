@@ -142,6 +142,7 @@ def read_study(
 ) -> Study:
     """Return the requested study, with changed parameters."""
     from stiction.study import presets
+    from stiction.study.plan.reading import refuse_varied
     from stiction.study.plan.study import Study
     from stiction.text.paths import with_changes
 
@@ -151,7 +152,11 @@ def read_study(
     if config is not None:
         return Study.from_toml(config, given, trust=trust)
     study = presets.preset(str(preset))
-    return Study.from_dict(with_changes(study.to_dict(), given)) if given else study
+    if not given:
+        return study
+    raw = with_changes(study.to_dict(), given)
+    refuse_varied(raw, given)
+    return Study.from_dict(raw)
 
 
 def engine(
