@@ -9,7 +9,7 @@ from stiction.analysis.record import record_of
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import SimulatedTest, coarse_rate, simulate_test
 from stiction.auditing.words.load_cell import _largest, _readings, _sliding, largest_force
-from stiction.auditing.words.numbers import peak
+from stiction.auditing.words.numbers import apparent_stiffness, loading, peak
 from stiction.auditing.words.verdict import describe_motion
 from stiction.linear_stability import growth_rate
 
@@ -156,3 +156,10 @@ def test_theory_of_the_largest_force_is_that_on_the_load_cell(phi, ratio, cell):
     )
     test = friction_test(slider)
     assert predict(slider).mu_static == pytest.approx(peak(test), rel=0.05)
+
+
+@pytest.mark.parametrize(("phi", "cell"), [(10.0, 20.0), (30.0, 0.0), (60.0, -15.0)])
+def test_both_springs_load_a_cell_askew_where_the_first_stick_ends_in_a_slip(phi, cell):
+    """At 60 deg the soft spring alone has 366 N/m of the 1190 N/m that the test shows."""
+    slider = PAPER.replace(phi=f"{phi} deg", k_y="1.3 kN/m", cell_angle=f"{cell} deg")
+    assert loading(friction_test(slider)) == pytest.approx(apparent_stiffness(slider), rel=1e-6)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.analysis.motion.friction import friction_of
 from stiction.analysis.record import cell_axis
 from stiction.auditing.assumptions import creep_suppositions, suppositions
@@ -88,11 +89,13 @@ def loading(seen: SimulatedTest) -> float:
 def apparent_stiffness(slider: Slider) -> float:
     """Return the rate of loading over the drive's speed, both along the load cell, N/m.
 
-    By Eq. (7) the transverse spring keeps its force: only the soft one is loaded.
+    By Eq. (7) the transverse spring keeps its force, and only the soft one is loaded; both are
+    where the first stick ends in a slip.
     """
-    cell, along = cell_axis(slider), slider.k_x * slider.direction[0]
+    cell, (x, y) = cell_axis(slider), slider.direction
+    across = cell.y * slider.k_y * y if slips_at_once(slider) else 0.0
     share = slider.along_drive(cell.x, cell.y)
-    return cell.x * along / share if share else nan
+    return (cell.x * slider.k_x * x + across) / share if share else nan
 
 
 def peak(seen: SimulatedTest) -> float:
