@@ -13,7 +13,7 @@ from stiction.solver.problem import Problem, at, damping, drive_rate, static
 from stiction.solver.stick import holding, holding_change
 from stiction.solver.surface import held_product
 
-ROUNDING = 1e-15  # of a cosine or sine, as in system.tensors: that of pi/2, rounded, is 6e-17
+ROUNDING_OF_COSINE = 1e-15  # as in system.tensors: that of pi/2, rounded, is 6e-17
 
 
 @inlined
@@ -29,7 +29,7 @@ def limit_at_angle(problem: Problem, theta: float) -> tuple[float, float]:
     """Return the limit of friction at an angle, over mass (x, y)."""
     n, f = problem.surface, static(problem.law) * at(problem.load, 0.0) * problem.system.per_mass
     c, s = cos(theta), sin(theta)
-    c, s = 0.0 if abs(c) < ROUNDING else c, 0.0 if abs(s) < ROUNDING else s
+    c, s = 0.0 if abs(c) < ROUNDING_OF_COSINE else c, 0.0 if abs(s) < ROUNDING_OF_COSINE else s
     x, y = f * c / sqrt(n.xx), f * s * sqrt(n.yy - n.xy * n.xy / n.xx)
     return n.xx * x, n.xy * x + y
 
