@@ -224,17 +224,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     refuse_other_sign(name, lineless["force"].values, found)
     cycle = near(float(np.mean(found.after - found.before)) * step)
     block = max(round(cycle / step / PER_CYCLE), 1)
-    thin_noise = {each: noise_of_means(its, block, step) for each, its in noise.items()}
-    thin = {
-        each: without_bands(block_means(values, block), step * block, thin_noise[each].stop_bands)
-        for each, (values, _) in lineless.items()
-    }
-    found = slip_cycles(thin["force"], thin_noise["force"].error)
-    thin_noise = {
-        each: with_lasting_noise(its, thin[each], found, step * block)
-        for each, its in thin_noise.items()
-    }
-    found = slip_cycles(thin["force"], thin_noise["force"].error)
+    thin, thin_noise, found = thin_out(lineless, noise, step, block)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
     found = Cycles(*(each[:number] for each in found))
     drifts = any(each.drift for each in noise.values())
@@ -282,6 +272,29 @@ def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lin
         bands = tuple(band for line in lines for band in line.bands)
         found[name] = Lineless(grid.on(less), bands)
     return found
+
+
+class Thinned(NamedTuple):
+    """Channels, of which blocks of samples are averaged, their noise, and their cycles."""
+
+    channels: dict[str, Floats]
+    noise: dict[str, Noise]
+    cycles: Cycles
+
+
+def thin_out(
+    lineless: Mapping[str, Lineless], noise: Mapping[str, Noise], step: float, block: int
+) -> Thinned:
+    """Return means of blocks of samples, which are a step (s) apart, without the bands of lines."""
+    its = {each: noise_of_means(own, block, step) for each, own in noise.items()}
+    channels = {
+        each: without_bands(block_means(values, block), step * block, its[each].stop_bands)
+        for each, (values, _) in lineless.items()
+    }
+    found = slip_cycles(channels["force"], its["force"].error)
+    for each, values in channels.items():
+        its[each] = with_lasting_noise(its[each], values, found, step * block)
+    return Thinned(channels, its, slip_cycles(channels["force"], its["force"].error))
 
 
 def sign_seen(conditions: Iterable[Conditions]) -> bool:
