@@ -123,7 +123,7 @@ class SimulatedTest:
 
     @property
     def blind(self) -> bool:
-        """Whether the load cell stands across the springs' force: see `across_force`."""
+        """Whether the load cell stands across the springs' force, by `across_force`."""
         return across_force(self.run, self.record)
 
     @property

@@ -69,8 +69,9 @@ class Noise(NamedTuple):
         Uncertainty of its zero's drift, in its unit over s.
     quantisation : float
         Step between its readings, where noise does not hide it; 0 where that is part of the noise.
-    stop_bands : tuple of Band
-        Left out of record and simulations alike, because a line, as of the mains, lay there.
+    stop_bands : tuple
+        Of `Band`: left out of record and simulations alike, because a line of the record, as of
+        the mains, lay there.
     lasting, lasts : float
         Standard deviation of noise that lasts, beside the white, and the time (s) within which its
         correlation falls by a factor of e.

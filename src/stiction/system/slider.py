@@ -306,7 +306,7 @@ class Slider(Apparatus):
 
     @property
     def stiffer_axis(self) -> int:
-        """Axis of the stiffer spring: 0 for x, 1 for y."""
+        """Axis of the stiffer spring, 0 for x and 1 for y."""
         return 1 if self.k_y >= self.k_x else 0
 
     @property
@@ -340,9 +340,11 @@ class Slider(Apparatus):
 
     @property
     def modulation_frequencies(self) -> tuple[float, ...]:
-        """Frequencies (Hz) in the programs of drive and load: of harmonics, those that the rows
-        of a recorded table show well, with eight to a period, and that of the two shortest pieces
-        that follow each other, as a motion to and fro."""
+        """Frequencies (Hz) in the programs of drive and load.
+
+        Of harmonics; those that the rows of a recorded table show well, with eight to a period; and
+        that of the two shortest pieces that follow each other, as a motion to and fro.
+        """
         drive, load = self.drive, self.load
         parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]
         parts += [getattr(drive, name, None) for name in ("along", "across")]
