@@ -5,7 +5,6 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import pairwise
 from math import inf, pi
 from operator import itemgetter
 from typing import Annotated, Any, Self, TypeGuard
@@ -285,11 +284,16 @@ def signals(
 
 
 def fastest_turn(program: DriveProgram | LoadProgram) -> float:
-    """Return the frequency (Hz) of the two shortest pieces that follow each other; 0 if none do."""
+    """Return the frequency (Hz) of the quickest alternation of pieces; 0 if there is none.
+
+    Three pieces in a row make one, as do two that are repeated: a short step and its way back come
+    once.
+    """
     lasts = [inf if piece.duration is None else piece.duration for piece in program.program]
     if program.repeat > 1:
-        lasts.append(lasts[0])
-    return max((1.0 / (a + b) for a, b in pairwise(lasts)), default=0.0)
+        lasts += lasts[:2] if len(lasts) > 1 else lasts * 2
+    turns = zip(lasts, lasts[1:], lasts[2:], strict=False)
+    return max((1.0 / (b + max(a, c)) for a, b, c in turns), default=0.0)
 
 
 def modulate(signal: Any, modulation: Any) -> Any:

@@ -10,13 +10,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
-from stiction.analysis.motion.cycles import Swings, swings
+from stiction.analysis.motion.cycles import OWN_HARMONICS, Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import MOST_MISSING, EvenGrid, even_grid
 from stiction.analysis.signals.hum import Band, lines_like, without_bands
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
+from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError
 from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.features import USED, FeatureScale, features
@@ -46,7 +47,6 @@ MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 # before the next; and the percentile of loadings that are too short, so that the rest have as many
 # samples
 LOADED, LATEST, SHORTEST = (0.2, 0.6), 0.8, 10.0
-DIGITS_OF_BAND = 3  # the mains keep theirs
 DIGITS = 4  # of sampling interval and quantisation: those of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
 SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
@@ -237,7 +237,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
     until = float(record.time[0]) + step * block * float(found.after[-1] + 1)
-    changes = changes_within(seen.lasting, regime, until)
+    changes = changes_within(seen, regime, until)
     return Observation(conditions, its, thin["force"], found, changes)
 
 
@@ -262,13 +262,13 @@ class Lineless(NamedTuple):
 
 def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lineless]:
     """Return the channels of a record without lines, as of the mains; the force as its swings."""
-    found = {}
+    found, least = {}, OWN_HARMONICS / seen.lasting.median("period")
     for name in USED:
         values, lines = getattr(record, name, None), list(seen.lines)
         if values is None:
             continue
         if name != "force":
-            lines = lines_like(lines, grid, values)
+            lines = lines_like(lines, grid, values, least)
         less = seen.force if name == "force" else values - sum(line.values for line in lines)
         bands = tuple(band for line in lines for band in line.bands)
         found[name] = Lineless(grid.on(less), bands)
@@ -294,7 +294,7 @@ def thin_out(
     }
     found = slip_cycles(channels["force"], its["force"].error)
     for each, values in channels.items():
-        its[each] = with_lasting_noise(its[each], values, found, step * block)
+        its[each] = with_lasting_noise(its[each], values, found, step * block, block)
     return Thinned(channels, its, slip_cycles(channels["force"], its["force"].error))
 
 
@@ -305,7 +305,7 @@ def sign_seen(conditions: Iterable[Conditions]) -> bool:
 
 def drive_velocity(record: Record, slider: Slider) -> float:
     """Return the velocity of the drive, in the sense of the rig's: that which a record states."""
-    velocity, stated = float(slider.motion.rate(0.0)[0]), record.drive_velocity
+    velocity, stated = nominal_velocity(slider.motion), record.drive_velocity
     if stated is None or abs(stated / abs(velocity) - 1.0) <= SAME:
         return velocity
     return float(np.copysign(stated, velocity))
@@ -360,16 +360,24 @@ def noise_of_means(noise: Noise, block: int, step: float) -> Noise:
     return noise._replace(
         level=round_up(noise.level / block**0.5),
         quantisation=float(f"{noise.quantisation:.{DIGITS}g}"),
-        stop_bands=tuple(
-            Band(*(float(f"{end:.{DIGITS_OF_BAND}g}") for end in band))
-            for band in noise.stop_bands
-            if band.high < fastest
-        ),
+        stop_bands=tuple(to_tenths(band) for band in noise.stop_bands if band.high < fastest),
     )
 
 
-def with_lasting_noise(noise: Noise, values: Floats, cycles: Cycles, step: float) -> Noise:
-    """Return the noise of samples, a step (s) apart, that do not differ by white noise alone.
+def to_tenths(band: Band) -> Band:
+    """Return a band with ends rounded to a tenth of its width: one that many records share.
+
+    >>> to_tenths(Band(149.43, 150.42)), to_tenths(Band(0.4956, 0.5056))
+    (Band(low=149.4, high=150.4), Band(low=0.496, high=0.506))
+    """
+    digits = 1 - round(log10(band.high - band.low))
+    return Band(*(round(end, digits) for end in band))
+
+
+def with_lasting_noise(
+    noise: Noise, values: Floats, cycles: Cycles, step: float, block: int
+) -> Noise:
+    """Return the noise of means of blocks, a step (s) apart, that differ by more than white noise.
 
     It is told from their loadings, which have the same course; where rounding shows, it is none.
     """
@@ -379,7 +387,7 @@ def with_lasting_noise(noise: Noise, values: Floats, cycles: Cycles, step: float
     begin = cycles.before + np.rint(LOADED[0] * rise).astype(np.intp)
     size = int((LOADED[1] - LOADED[0]) * np.percentile(rise, SHORTEST)) if len(rise) else 0
     begin = begin[begin + size <= cycles.before + LATEST * rise]
-    found = coloured_noise(values[begin[:, None] + np.arange(size)])
+    found = coloured_noise(values[begin[:, None] + np.arange(size)], block)
     if found is None:
         return noise
     level, lasting = round_up(found.white), round_up(found.deviation)

@@ -9,12 +9,13 @@ import numpy as np
 
 from stiction.analysis.assessment import imposed_reversal
 from stiction.analysis.motion.changes.strokes import strokes
-from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
     doubt_loading,
     doubt_mean_period,
 )
+from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.record import Record
@@ -80,13 +81,14 @@ def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
         )
 
 
-def changes_within(cycles: CycleTable, regime: Regime, until: float) -> tuple[str, ...]:
+def changes_within(seen: Swings, regime: Regime, until: float) -> tuple[str, ...]:
     """Return what an analysis says of cycles that differ until a time, s, as sentences.
 
     Simulated records have one velocity and one load, so that such a record is like none of them.
     """
-    used = cycles.part(cycles["trough_time"] <= until)
+    used = seen.lasting.part(seen.lasting["trough_time"] <= until)
     return (
+        *subtracted_lines((), seen.ringing),
         *_name_other_motion(regime, until),
         *doubt_mean_period(used),
         *doubt_loading(used),

@@ -20,6 +20,7 @@ FINER = 2.0**0.5  # ratio of the times tried, from one sample to a quarter of a 
 # twice the logarithm of the likelihood's ratio to white noise: below 4 in 95 % of records of white
 # noise, 140 and more in 95 % of those with as much noise that lasts 1.25 or 12.5 samples
 CLEAR = 20.0
+MOST_PLACES = 16  # in a block, at which its readings count: more change no mean
 
 
 class ColouredNoise(NamedTuple):
@@ -38,7 +39,7 @@ class ColouredNoise(NamedTuple):
     time: float
 
 
-def coloured_noise(rows: Floats) -> ColouredNoise | None:
+def coloured_noise(rows: Floats, block: int = 1) -> ColouredNoise | None:
     """Estimate the noise of rows of the same course; None where it is white.
 
     By the largest likelihood of what is left of each row without its polynomial and without what
@@ -48,6 +49,8 @@ def coloured_noise(rows: Floats) -> ColouredNoise | None:
     ----------
     rows : ndarray
         (c, n), equally spaced samples.
+    block : int
+        Readings of which each sample is the mean. The noise that lasts is that of a reading.
 
     Examples
     --------
@@ -76,7 +79,7 @@ def coloured_noise(rows: Floats) -> ColouredNoise | None:
     best, found = -freedom * np.log(variance) + CLEAR, None
     time = 1.0
     while time <= size / 4.0:
-        own, axes = np.linalg.eigh(beside.T @ np.exp(-apart / time) @ beside)
+        own, axes = np.linalg.eigh(beside.T @ correlation(size, time, block)[apart] @ beside)
         seen = np.einsum("ji,jk,ki->i", axes, covariance, axes)
         for share in SHARES:
             expected = share * own + 1.0 - share
@@ -87,6 +90,19 @@ def coloured_noise(rows: Floats) -> ColouredNoise | None:
                 best, found = likelihood, ColouredNoise(white, deviation, time)
         time *= FINER
     return found
+
+
+def correlation(size: int, time: float, block: int) -> Floats:
+    """Return the covariance of means of readings that are 0, 1, ... (size) means apart.
+
+    Of readings of variance 1, whose correlation falls by a factor of e within a time, in means.
+
+    >>> correlation(3, 2.0, 1).round(3), correlation(3, 2.0, 4).round(3)
+    (array([1.   , 0.607, 0.368]), array([0.862, 0.618, 0.375]))
+    """
+    places = np.arange(min(block, MOST_PLACES))
+    between = np.subtract.outer(places, places).ravel() / len(places)
+    return np.asarray(np.exp(-np.abs(np.add.outer(np.arange(size), between)) / time).mean(axis=1))
 
 
 def is_steady(rows: Floats) -> bool:

@@ -343,7 +343,7 @@ class Slider(Apparatus):
         """Frequencies (Hz) in the programs of drive and load.
 
         Of harmonics; those that the rows of a recorded table show well, with eight to a period; and
-        that of the two shortest pieces that follow each other, as a motion to and fro.
+        that of the shortest pieces that alternate.
         """
         drive, load = self.drive, self.load
         parts = [*getattr(drive, "program", ()), *getattr(load, "program", ())]

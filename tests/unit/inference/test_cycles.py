@@ -5,6 +5,8 @@ import pytest
 from scipy.signal import lfilter
 
 import stiction as st
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import without_bands
 from stiction.errors import ResultError
 from stiction.inference.cycles import slip_cycles
@@ -14,11 +16,13 @@ from stiction.inference.observation import (
     block_means,
     observe,
     with_lasting_noise,
+    without_lines,
 )
 from stiction.inference.priors import Uniform
 from stiction.inference.simulated.jitter import SPARE, Jitter, first_loading, move
 from stiction.inference.simulated.plan import plan
 from stiction.inference.simulated.synthetic import draw
+from stiction.recording.coloured_noise import draw_lasting
 from stiction.recording.noise import white_noise
 
 
@@ -141,11 +145,11 @@ def test_wild_samples_make_no_difference_to_a_fit():
     assert np.abs(found.force - expected.force).max() < 6e-3  # three deviations of a reading
 
 
-def simulated_record(cycles: int, **noise: Noise):
+def simulated_record(cycles: int, block: int = 1, /, **noise: Noise):
     """Return a simulated record of so many cycles with this noise, and the time between samples."""
     slider = slider_of(0.6)
     cycle = 0.6 * slider.F_0 / (slider.k_x * slider.drive_speed)
-    conditions = Conditions(1e-4, 10.0, 0.0, cycle / 200.0, cycles, cycle, noise)
+    conditions = Conditions(1e-4, 10.0, 0.0, cycle / 200.0, cycles, cycle, noise, 0.0, block)
     its = plan(slider, {"phi": Uniform(0.01, 0.02), "jitter": Uniform(0.01, 0.02)}, [conditions])
     return next(draw(its, 0, 1)[1]), conditions.step
 
@@ -153,15 +157,48 @@ def simulated_record(cycles: int, **noise: Noise):
 def test_noise_that_lasts_is_seen_in_records_and_simulations_alike():
     """Of 146 records with such noise, 0.5 % of friction for 80 ms, phi held in 48 %."""
     made, step = simulated_record(20, force=Noise(0.01, lasting=0.03, lasts=0.54))
-    found = with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step)
+    found = with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step, 1)
     assert found.lasting == pytest.approx(0.03, rel=0.3)
     assert found.level < 0.015
     assert 0.26 < found.lasts < 1.1  # to a factor of two
     assert found.error == pytest.approx(np.hypot(found.level, found.lasting))
+    rounded = Noise(0.02, quantisation=0.1)  # its rounding may be what lasts
+    assert with_lasting_noise(rounded, made.channels["force"], made.cycles, step, 1) is rounded
     made, step = simulated_record(20, force=Noise(0.02))
-    assert with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step) == Noise(0.02)
-    rounded = Noise(0.02, quantisation=0.1)
-    assert with_lasting_noise(rounded, made.channels["force"], made.cycles, step) is rounded
+    own = Noise(0.02)
+    assert with_lasting_noise(own, made.channels["force"], made.cycles, step, 1) is own
+
+
+@pytest.mark.parametrize("block", [1, 8])
+@pytest.mark.parametrize("samples", [2.0, 5.0])
+def test_noise_that_lasts_is_simulated_as_it_is_seen(block, samples):
+    """Means of eight readings were taken for readings: 5 samples came out as 12."""
+    lasting = Noise(0.01, lasting=0.03, lasts=samples * 0.18)
+    made, step = simulated_record(34, block, force=lasting)
+    found = with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step, block)
+    assert found.lasting == pytest.approx(0.03, rel=0.35)
+    assert 0.5 < found.lasts / lasting.lasts < 2.0
+
+
+def test_a_record_is_observed_with_the_noise_that_lasts():
+    lasting = draw_lasting(len(sawtooth()), 0.02, 15.0, np.random.default_rng(4))
+    noise = observe(sawtooth(force=lasting), slider_of(0.6)).conditions.noise
+    assert noise["force"].lasting == pytest.approx(0.02, rel=0.35)
+    assert 0.015 < noise["force"].lasts < 0.06
+    assert noise["position"].lasting == 0.0
+
+
+@pytest.mark.parametrize("frequency", [50.0, 47.0])
+def test_cycles_as_quick_as_the_mains_are_no_hum(frequency):
+    """The force across lost nine tenths of its cycles, where these came 50 times in a second."""
+    time = 1e-4 * np.arange(20_000)
+    saw = 1.0 + np.interp(frequency * time % 1.0, [0.0, 0.9, 1.0], [0.0, 1.0, 0.0])
+    saw += 1e-3 * np.random.default_rng(1).standard_normal(len(time))
+    record = st.Record(time=time, force=saw, force_across=0.1 * saw, drive_velocity=1e-4)
+    found = without_lines(record, even_grid(time), swings(record))
+    for name in ("force", "force_across"):
+        assert found[name].bands == ()
+        assert np.array_equal(found[name].values, getattr(record, name))
 
 
 def test_simulations_leave_out_the_same_bands():

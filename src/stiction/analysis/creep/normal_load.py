@@ -31,10 +31,13 @@ def at_one_load(curves: xr.Dataset, record: Record) -> xr.Dataset:
 def load_change(record: Record, begin: Floats, end: Floats) -> float:
     """Return how far the load goes up and down, over its mean, in the stick phase of most change.
 
-    `begin` and `end` (s) are those of the phases.
+    `begin` and `end` (s) are those of the phases. Readings without load count as neighbours do; 0
+    where the load's noise may be all of its variation.
     """
-    time, load = record.time, record.relative_load()
-    if len(time) < 2 or not np.ptp(load) > 0.0:
+    load = record.relative_load()
+    loaded = np.isfinite(load)
+    time, load = record.time[loaded], load[loaded]
+    if len(time) < 2 or not np.ptp(load) > 0.0 or not varies(record):
         return 0.0
     steps = np.diff(time) * 0.5 * (load[1:] + load[:-1])
     area = np.concatenate([[0.0], np.cumsum(steps)])
@@ -42,6 +45,11 @@ def load_change(record: Record, begin: Floats, end: Floats) -> float:
     means = np.diff(np.interp(edges, time, area), axis=0) / np.diff(edges, axis=0)
     changes = np.abs(np.diff(means, axis=0)).sum(axis=0) / means.mean(axis=0)
     return float(np.fmax.reduce(changes, initial=0.0))
+
+
+def varies(record: Record) -> bool:
+    """Return whether the load varies beyond its noise."""
+    return record.load is None or record.load_variation() > 0.0
 
 
 def typical_load(record: Record, times: Floats) -> float:

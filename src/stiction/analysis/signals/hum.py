@@ -89,12 +89,15 @@ def narrow_lines(grid: EvenGrid | None, force: Floats) -> list[Line]:
     return [_measure_line(force, grid, power, floor, width, at) for at in found]
 
 
-def lines_like(lines: Sequence[Line], grid: EvenGrid, values: Floats) -> list[Line]:
-    """Return the narrow lines of another channel that are of the mains or are those of a force."""
+def lines_like(lines: Sequence[Line], grid: EvenGrid, values: Floats, least: float) -> list[Line]:
+    """Return the narrow lines of another channel that are of the mains or are those of a force.
+
+    Those of the mains from a frequency `least` (Hz) on: slower ones may be those of its cycles.
+    """
     return [
         line
         for line in narrow_lines(grid, values)
-        if of_mains(line.frequency)
+        if (line.frequency >= least and of_mains(line.frequency))
         or any(abs(line.frequency / each.frequency - 1.0) < MAINS_VARIES for each in lines)
     ]
 

@@ -14,6 +14,7 @@ from stiction.auditing.assumptions import creep_suppositions, suppositions
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, slip_time
 from stiction.friction import has_state
 from stiction.system.slider import Slider
+from stiction.system.tensors import ROUND
 from stiction.text.sections import Table
 from stiction.text.units import in_words
 
@@ -95,7 +96,7 @@ def apparent_stiffness(slider: Slider) -> float:
     cell, (x, y) = cell_axis(slider), slider.direction
     across = cell.y * slider.k_y * y if slips_at_once(slider) else 0.0
     share = slider.along_drive(cell.x, cell.y)
-    return (cell.x * slider.k_x * x + across) / share if share else nan
+    return (cell.x * slider.k_x * x + across) / share if abs(share) > ROUND else nan
 
 
 def peak(seen: SimulatedTest) -> float:

@@ -69,6 +69,23 @@ def test_the_change_of_a_load_is_that_beyond_its_noise(ramp):
     assert load_change(quiet, begin, end) < 0.02
 
 
+def test_wild_and_noisy_readings_of_a_load_are_no_change_of_it():
+    """One reading without load made "no change" of a load that swings; noise of 1 N one of 41 %."""
+    begin, end = np.array([0.1]), np.array([1.9])
+    swings = PAPER.replace(load=p.LoadProgram(modulation=p.Modulation("3 N", "1 Hz")))
+    sensors = {"force": st.Sensor(noise="2 mN"), "load": st.Sensor(noise="0.1 N")}
+    record = st.measure(st.simulate(swings, "2 s", sample_rate="500 Hz"), sensors)
+    change = load_change(record, begin, end)
+    assert change > 0.8
+    load = record.load.copy()
+    load[40] = -1.0
+    record = record.model_copy(update={"load": load})
+    assert load_change(record, begin, end) == pytest.approx(change, rel=0.1)
+    sensors["load"] = st.Sensor(noise="1 N")
+    noisy = st.measure(st.simulate(PAPER, "2 s", sample_rate="500 Hz"), sensors)
+    assert load_change(noisy, begin, end) == 0.0
+
+
 def test_a_load_that_hardly_varies_loses_no_angle():
     """Measured loads vary by some per cent."""
     load = p.LoadProgram(modulation=p.Modulation("0.05 N", "0.7 Hz"))
