@@ -57,15 +57,15 @@ def simulate(
         Output samples per second, at start, start + 1/rate, ... as far as the end, which is
         one if it falls on it; 0 for the first and last state only. By default 20 in each period of
         the faster natural oscillation, while these are no more than 200 000; then so many, but at
-        least 32 in each period of the slower natural oscillation, and 20 in each of what shakes
-        drive or load, up to a million in all; and 1000 in the shortest run. With
+        least 32 in each period of the slower natural oscillation, and 20 in each period by
+        which drive or load vary, up to a million in all; and 1000 in the shortest run. With
         ``multiscale=True`` the first and last state only. Samples never influence the steps, and
         stick intervals are all recorded anyway.
     rtol : float, optional
-        Relative tolerance, 1e-13 to 1e-2. Forces are off by no more than 30 times what the
-        apparatus itself would do if its mass, or its normal load, were greater by 0.8 rtol^0.8
-        (1.3e-5 at the default); a few random systems exceed that. See "How right it is" in the
-        documentation (docs/explanation/how-right.md).
+        Relative tolerance, 1e-13 to 1e-2. The measure of the error is how much the forces change if
+        the mass, or the normal load, is greater by 0.8 rtol^0.8 (1.3e-5 at the default): they are
+        off by no more than 30 times that, but for a few random systems. See "How right it is" in
+        the documentation (docs/explanation/how-right.md).
     initial : Initial, optional
         The state to start from; by default the paper's.
     regularisation : float or str, optional

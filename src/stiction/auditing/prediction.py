@@ -48,7 +48,8 @@ class Prediction(NamedTuple):
     creep_distance : float
         Distance crept before the slip, m.
     mu_static, mu_kinetic : float
-        Apparent coefficients of friction: largest and mean force on the load cell over load.
+        Apparent coefficients of friction: largest and mean force over load; along the drive, or on
+        the load cell where the first stick ends in a slip or the mass slides steadily.
     drop, period : float
         Fall of the force in a slip, N, and time from one slip to the next, s.
     amplitude : float

@@ -7,13 +7,14 @@ from scipy.signal import lfilter
 import stiction as st
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.signals.even_grid import even_grid
-from stiction.analysis.signals.hum import without_bands
+from stiction.analysis.signals.hum import Band, without_bands
 from stiction.errors import ResultError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.observation import (
     Conditions,
     Noise,
     block_means,
+    noise_of_means,
     observe,
     with_lasting_noise,
     without_lines,
@@ -133,6 +134,25 @@ def test_hum_makes_no_difference_to_a_fit(amplitude):
     assert error < 3e-3
     assert np.abs(found.force - expected)[200:-200].max() < 0.5 * error
     assert np.std(found.force - expected) < 0.3 * error
+
+
+@pytest.mark.parametrize("frequency", [50.0, 60.0, 37.3])
+def test_lines_of_another_channel_are_those_of_the_force_or_of_the_mains(frequency):
+    """A vibration of the floor at 37.3 Hz may be the mass's own where the force has none."""
+    size = len(sawtooth())
+    line = np.sin(2.0 * np.pi * frequency * STEP * np.arange(size))
+    for force in (0.0, 0.1):
+        record = sawtooth(force=force * line, position=1e-3 * line)
+        found = without_lines(record, even_grid(record.time), swings(record))
+        assert (len(found["force"].bands) > 0) == (force > 0.0)
+        left = np.std(found["position"].values - sawtooth().position)
+        assert (left < 2e-4) == (frequency != 37.3 or force > 0.0)
+
+
+def test_bands_that_means_cannot_resolve_are_not_left_out():
+    noise = Noise(0.01, stop_bands=(Band(49.51, 50.49), Band(149.53, 150.51)))
+    assert noise_of_means(noise, 4, 1e-3).stop_bands == ((49.5, 50.5),)
+    assert noise_of_means(noise, 3, 1e-3).stop_bands == ((49.5, 50.5), (149.5, 150.5))
 
 
 def test_wild_samples_make_no_difference_to_a_fit():
