@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction import theory
-from stiction.analysis.creep.first_slip import along_force, slips_at_once
+from stiction.analysis.creep.first_slip import along_force, force_direction, slips_at_once
 from stiction.analysis.record import cell_axis
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
-from stiction.system.tensors import damping_tensor, stiffness_tensor, unit_vector
+from stiction.system.tensors import damping_tensor, stiffness_tensor
 
 SEEN = 10.0  # samples per transverse period, enough for its shape and not only its frequency
 HALF = 32  # places along the first half of a slip where its friction is asked
@@ -220,11 +220,6 @@ def _steadily(slider: Slider) -> tuple[float, float, float, float]:
     friction = slider.law.coefficient(slider.drive_speed) * slider.normal_load
     steady = friction * _on_cell(slider, slider.direction)
     return steady, steady, nan, nan
-
-
-def force_direction(slider: Slider) -> tuple[float, float]:
-    """Return the unit vector of the springs' force, in x and y, while the mass first rests."""
-    return unit_vector(float(theory.first_force_angle(slider.misalignment, slider.k_x, slider.k_y)))
 
 
 def critical_misalignment(slider: Slider, V: float) -> float:

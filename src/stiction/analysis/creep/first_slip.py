@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import cos, pi, sin, sqrt
+from math import pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +12,7 @@ from stiction.arrays import Floats, xr
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.system.slider import Slider
-from stiction.system.tensors import stiffness_and_mass_along
+from stiction.system.tensors import stiffness_and_mass_along, unit_vector
 from stiction.trajectory import Trajectory
 
 # Least gain of a slip on the drive, in units of the drive's speed over the slower and over the
@@ -99,8 +99,12 @@ def _runs_away(slider: Slider) -> bool:
 
 def along_force(slider: Slider) -> tuple[float, float]:
     """Return stiffness and mass of the swing along the force at the end of the first stick."""
-    angle = float(theory.first_force_angle(slider.misalignment, slider.k_x, slider.k_y))
-    return stiffness_and_mass_along(slider, (cos(angle), sin(angle)))
+    return stiffness_and_mass_along(slider, force_direction(slider))
+
+
+def force_direction(slider: Slider) -> tuple[float, float]:
+    """Return the unit vector of the springs' force, in x and y, while the mass first rests."""
+    return unit_vector(float(theory.first_force_angle(slider.misalignment, slider.k_x, slider.k_y)))
 
 
 def _least_gain(slider: Slider) -> float:

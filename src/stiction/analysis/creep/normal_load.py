@@ -37,7 +37,7 @@ def load_change(record: Record, begin: Floats, end: Floats) -> float:
     load = record.relative_load()
     loaded = np.isfinite(load)
     time, load = record.time[loaded], load[loaded]
-    if len(time) < 2 or not np.ptp(load) > 0.0 or not varies(record):
+    if len(time) < 2 or not record.load_variation() > 0.0:
         return 0.0
     steps = np.diff(time) * 0.5 * (load[1:] + load[:-1])
     area = np.concatenate([[0.0], np.cumsum(steps)])
@@ -45,11 +45,6 @@ def load_change(record: Record, begin: Floats, end: Floats) -> float:
     means = np.diff(np.interp(edges, time, area), axis=0) / np.diff(edges, axis=0)
     changes = np.abs(np.diff(means, axis=0)).sum(axis=0) / means.mean(axis=0)
     return float(np.fmax.reduce(changes, initial=0.0))
-
-
-def varies(record: Record) -> bool:
-    """Return whether the load varies beyond its noise."""
-    return record.load is None or record.load_variation() > 0.0
 
 
 def typical_load(record: Record, times: Floats) -> float:

@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction import theory
-from stiction.analysis.creep.first_slip import along_force, slips_at_once
+from stiction.analysis.creep.first_slip import along_force, force_direction, slips_at_once
 from stiction.analysis.motion.regime.kinds import TRANSVERSE
-from stiction.auditing.prediction import force_direction
 from stiction.auditing.simulated_test import SLIDES, loading_time
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
