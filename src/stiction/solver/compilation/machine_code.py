@@ -17,6 +17,7 @@ import shutil
 import stat
 import sys
 import tempfile
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from functools import cache
@@ -45,7 +46,9 @@ normalize_signature: Any = _normalize
 log = logging.getLogger(__name__)
 
 CHECKSUM = 32  # bytes of a SHA-256 digest, before the code itself
+ROOMS = ("drive", "friction", "solver")  # whose parts are compiled into many functions
 FOLDERS = 6  # versions of the package whose code is kept, the last used ones
+IMPORTED = time.time()  # s: later edits of the sources are not in what this process compiles
 
 
 class Shelf:
@@ -63,8 +66,11 @@ class Shelf:
         """Store the function, and the digest of the user's law."""
         self._own = own
         self._name = f"{function.__module__}.{function.__qualname__}"
-        text = Path(getfile(function)).read_bytes()
-        self._made_from = hashlib.sha256(text).hexdigest() + own
+        digest = hashlib.sha256(Path(getfile(function)).read_bytes())
+        for called in function.__globals__.values():
+            if isinstance(shelf := getattr(called, "_cache", None), Shelf):
+                digest.update(shelf._made_from.encode())
+        self._made_from: str = digest.hexdigest() + own
 
     @property
     def cache_path(self) -> str:
@@ -91,6 +97,8 @@ class Shelf:
         """Store compiled code; if this fails, the next process compiles anew."""
         if result.lifted or result.library.has_dynamic_globals:
             return  # the code contains addresses of this process
+        if _stale():
+            return
         code = dumps(result._reduce())
         path = self._path(signature, result.codegen)
         with suppress(ResultError), whole(path) as part:
@@ -153,16 +161,17 @@ def folder() -> Path:
 
     It lies below ``NUMBA_CACHE_DIR`` if that is set, else below the user's cache. Its content is
     run: if others may write to it, or nobody may, this process uses a temporary folder of its own.
+    So it does if the sources have been edited since it imported them.
     """
     chosen = os.environ.get("NUMBA_CACHE_DIR")
     root = Path(chosen) if chosen else user_cache_path("stiction")
-    place = root / f"compiled-{fingerprint()}"
     try:
+        place = root / f"compiled-{fingerprint()}"
         if not place.exists():
             root.mkdir(parents=True, exist_ok=True)
             _prune(root)
             place.mkdir(mode=0o700, exist_ok=True)
-        if _private(place):
+        if _private(place) and not _stale():
             os.utime(place)  # removed last
             return place
     except OSError:
@@ -195,10 +204,23 @@ def fingerprint() -> str:
     An edit in any of them leads to a new folder, because one compiled function contains code of
     many files.
     """
-    package = Path(__file__).parent.parent.parent
     digest = hashlib.sha256(f"{sys.implementation.cache_tag} {numba.__version__}".encode())
-    for room in ("drive", "friction", "solver"):
-        for file in sorted((package / room).rglob("*.py")):
-            if file.stem != "reference":  # plain Python
-                digest.update(file.read_bytes())
+    for file in _sources():
+        digest.update(file.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def _stale() -> bool:
+    """Return whether a source was edited, or another version installed, after the import."""
+    try:
+        found = [file.stat() for file in _sources()]
+    except OSError:  # one of them is being exchanged
+        return True
+    return any(max(each.st_mtime, each.st_ctime) > IMPORTED for each in found)
+
+
+def _sources() -> list[Path]:
+    """Return the files from which the parts of compiled functions come."""
+    package = Path(__file__).parent.parent.parent
+    files = [file for room in ROOMS for file in sorted((package / room).rglob("*.py"))]
+    return [file for file in files if file.stem != "reference"]  # that is plain Python

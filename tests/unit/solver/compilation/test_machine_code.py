@@ -2,6 +2,7 @@
 
 import logging
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -112,24 +113,63 @@ def test_without_room_nothing_is_kept_and_all_is_computed(root, monkeypatch):
     assert not list(root.glob("*/*.code"))  # no half file either
 
 
-def test_the_folder_is_named_after_the_sources(tmp_path, monkeypatch):
-    """An edit in any compiled file must not meet machine code of the old one."""
-    before = machine_code.fingerprint()
+@pytest.fixture
+def law(tmp_path, monkeypatch):
+    """Return the file of a law in a copy of the package's sources."""
     package, copy = Path(st.__file__).parent, tmp_path / "stiction"
-    for room in ("solver", "friction", "drive"):
-        for file in (package / room).rglob("*.py"):
-            to = copy / file.relative_to(package)
-            to.parent.mkdir(parents=True, exist_ok=True)
-            to.write_bytes(file.read_bytes())
+    for room in machine_code.ROOMS:
+        shutil.copytree(package / room, copy / room)
     moved = copy / "solver" / "compilation" / "machine_code.py"
     monkeypatch.setattr(machine_code, "__file__", str(moved))
     machine_code.fingerprint.cache_clear()
-    assert machine_code.fingerprint() == before  # wherever the package lies
-    law = copy / "friction" / "laws" / "coulomb.py"
+    yield copy / "friction" / "laws" / "coulomb.py"
+    machine_code.fingerprint.cache_clear()
+
+
+def test_the_folder_is_named_after_the_sources(law):
+    """An edit in any compiled file must not meet machine code of the old one."""
+    there = machine_code.fingerprint()
+    machine_code.fingerprint.cache_clear()
     law.write_text(law.read_text() + "\n# edited\n")
-    machine_code.fingerprint.cache_clear()
-    assert machine_code.fingerprint() != before
-    machine_code.fingerprint.cache_clear()
+    assert machine_code.fingerprint() != there
+
+
+def test_the_folder_s_name_does_not_depend_on_where_the_package_lies(monkeypatch, request):
+    before = machine_code.fingerprint()
+    request.getfixturevalue("law")
+    assert machine_code.fingerprint() == before
+
+
+@pytest.mark.parametrize("when", ["before the first function", "before a later one"])
+def test_what_ran_before_an_edit_is_not_kept_as_the_new_version(root, law, monkeypatch, when):
+    """The functions in memory are the old ones, and the folder is named after the new files."""
+    monkeypatch.setattr(machine_code, "IMPORTED", law.stat().st_ctime + 3600)
+    if when == "before a later one":
+        fresh()(1.5)
+    kept = list(root.glob("*/*.code"))
+    os.utime(law, (0, machine_code.IMPORTED + 1))
+    assert fresh()(2) == 4.0
+    assert list(root.glob("*/*.code")) == kept
+
+
+def test_a_file_that_is_being_exchanged_counts_as_edited(root, law, monkeypatch):
+    monkeypatch.setattr(machine_code, "_sources", lambda: [law.with_name("gone.py")])
+    assert fresh()(1.5) == 3.0
+    assert not list(root.glob("*/*.code"))
+
+
+def test_an_edit_in_a_compiled_function_that_is_called_leads_to_new_code():
+    """Code of `features` holds that of `zigzag`, which lies in another file."""
+    from stiction.study.variables.features import features
+    from stiction.study.variables.zigzag import zigzag
+
+    function, shelf = jit.python_of(features), zigzag._cache
+    before, there = shelf._made_from, Shelf(function)._made_from
+    shelf._made_from = "edited"
+    try:
+        assert Shelf(function)._made_from != there
+    finally:
+        shelf._made_from = before
 
 
 def test_the_versions_used_last_stay(root):
