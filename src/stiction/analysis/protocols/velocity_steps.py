@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import exp, hypot, isnan, log, nan, sqrt
+from typing import NamedTuple
 
 import numpy as np
+from scipy.special import chdtrc
 
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
@@ -19,7 +21,12 @@ from stiction.analysis.protocols.inversion.law_choice import FittedLaw, choose
 from stiction.analysis.protocols.inversion.rig_and_clock import say_rig_and_clock
 from stiction.analysis.protocols.inversion.spring_slider import Law, SpringSlider
 from stiction.analysis.protocols.inversion.step import StepData
-from stiction.analysis.protocols.steady_levels import SteadyLevels, TravelTrend, steady_levels
+from stiction.analysis.protocols.steady_levels import (
+    LEAST_ERROR,
+    SteadyLevels,
+    TravelTrend,
+    steady_levels,
+)
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -34,6 +41,7 @@ Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0
 SURE = 2.0  # standard errors beyond which a - b has a sign
+DIFFERENT = 0.01  # probability of steps that differ as much by chance
 
 
 @dataclass(frozen=True)
@@ -146,15 +154,12 @@ class VelocitySteps(SectionReport):
         known = [each for each in self.steps if not isnan(each.a_minus_b)]
         if not known:
             return "Friction has not settled after any step: a - b is not known."
-        mean = float(np.mean([each.a_minus_b for each in known]))
-        shared = min(len(known), 2)  # steps that steady friction between two of them counts in
-        errors = np.array([each.a_minus_b_error for each in known])
-        shares = np.array([each.trend_share for each in known])
-        levels = max(float(errors @ errors - shares @ shares), 0.0)
-        error = hypot(sqrt(shared * levels) / len(known), float(shares.mean()))
+        mean, error, alike = common_value(known)
         way = "depends on speed in an unknown way"
         if abs(mean) > SURE * error:
             way = f"{'weakens' if mean < 0.0 else 'strengthens'} with speed"
+        elif not alike:
+            way = "depends on speed differently from step to step"
         elif not isnan(error):
             way = "does not depend on speed beyond its error"
         steps = "one step" if len(known) == 1 else f"{len(known)} steps"
@@ -170,6 +175,40 @@ class VelocitySteps(SectionReport):
         way = "rises" if self.trend > 0.0 else "falls"
         by = f"{1e-3 * abs(self.trend):.2g} per mm of travel, ± {1e-3 * self.trend_error:.1g}"
         return [f"Friction {way} by {by}: the steps are freed of this trend."]
+
+
+class CommonValue(NamedTuple):
+    """What a - b of all steps have in common, its standard error, and whether they are alike."""
+
+    value: float
+    error: float
+    alike: bool
+
+
+def common_value(steps: Sequence[VelocityStep]) -> CommonValue:
+    """Return the mean of a - b, weighted by errors; where steps differ, so says its error.
+
+    The trend is common to all: one more unknown, zero within its error (weighted least squares; of
+    steps that are not alike the error is scaled by Birge's ratio, Phys. Rev. 40, 207 (1932)).
+    """
+    sure = [each for each in steps if not isnan(each.a_minus_b_error)] or steps
+    values = np.array([each.a_minus_b for each in sure])
+    errors = np.array([each.a_minus_b_error for each in sure])
+    shares = np.array([each.trend_share for each in sure])
+    own = np.sqrt(np.maximum(errors**2 - shares**2, 0.0))
+    if not own.max() > 0.0:  # a run, or unknown
+        return CommonValue(float(values.mean()), hypot(own.max(), float(shares.mean())), True)
+    weights = 1.0 / np.maximum(own, LEAST_ERROR * own.max())
+    rows = np.vstack([np.stack([weights, weights * shares], axis=1), [0.0, 1.0]])
+    wanted = np.append(weights * values, 0.0)
+    found = np.linalg.lstsq(rows, wanted)[0]
+    square = float(np.sum((wanted - rows @ found) ** 2))
+    shared = min(len(sure), 2)  # steps that steady friction between two of them counts in
+    variance, free = shared * np.linalg.inv(rows.T @ rows)[0, 0], len(sure) - 1
+    alike = bool(free == 0 or chdtrc(free, square) > DIFFERENT)
+    return CommonValue(
+        float(found[0]), sqrt(variance if alike else variance * square / free), alike
+    )
 
 
 HEADINGS = ("from", "to", "a - b", "±", "law", "a", "±", "b", "±", "D_c", "±")

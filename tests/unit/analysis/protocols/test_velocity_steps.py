@@ -3,6 +3,7 @@
 Records are courses of a slider without inertia on a spring, which an independent integrator checks.
 """
 
+from dataclasses import replace
 from math import log, sinh
 
 import numpy as np
@@ -18,11 +19,19 @@ from stiction.analysis.protocols.inversion.fit import invert, unknown
 from stiction.analysis.protocols.inversion.rig_and_clock import say_rig_and_clock
 from stiction.analysis.protocols.inversion.spring_slider import SpringSlider, course_after_a_step
 from stiction.analysis.protocols.inversion.step import StepData, onset, step_problem
+from stiction.analysis.protocols.velocity_steps import (
+    VelocityStep,
+    VelocitySteps,
+    common_value,
+)
 from stiction.presets.preset import on_a_line
 
 A, B, D, W, MU = 0.008, 0.012, 5e-6, 12.5e3, 0.6
 SOFT = 4.0 * (B - A) * W / D
 LAWS = ("ageing", "slip", "perrin")
+
+
+ONE = VelocityStep(0.0, 1e-6, 1e-5, MU, MU, MU, *[np.nan] * 5, *[np.zeros(0)] * 3)
 
 
 def growth(law, x):
@@ -501,3 +510,34 @@ def test_an_evolution_longer_than_a_stretch_is_no_certain_trend():
         assert np.isnan(each.a_minus_b) or (
             abs(each.a_minus_b - A + B) < 3.0 * each.a_minus_b_error
         )
+
+
+def test_a_level_that_is_hardly_known_does_not_hide_the_others():
+    """The first stage holds the loading from rest: it said "does not depend on speed"."""
+    size = 1e-3
+    rough = replace(ONE, a_minus_b=-4e-3, a_minus_b_error=2e-2)
+    known = [replace(ONE, a_minus_b=size + 1e-6 * n, a_minus_b_error=5e-6) for n in range(3)]
+    found = common_value([rough, *known])
+    assert found.value == pytest.approx(size, abs=5e-6)
+    assert found.error < 1e-5
+    assert "strengthens with speed" in str(VelocitySteps((rough, *known), np.nan))
+
+
+def test_steps_that_differ_are_not_said_to_be_alike():
+    steps = [replace(ONE, a_minus_b=x, a_minus_b_error=1e-5) for x in (-1e-3, 1e-3)]
+    found = common_value(steps)
+    assert not found.alike
+    assert 1e-3 < found.error < 2e-3  # as they scatter, not as they are known
+    assert "depends on speed differently" in str(VelocitySteps((*steps,), np.nan))
+
+
+def test_a_trend_that_all_steps_share_cancels():
+    """Up and down it has opposite signs: the mean is known where neither step is."""
+    share, size, own = 1e-2, 1e-3, 1e-5
+    steps = [
+        replace(ONE, a_minus_b=size + way * share, a_minus_b_error=np.hypot(own, share),
+                trend_share=way * share)
+        for way in (-1.0, 1.0)
+    ]  # fmt: skip
+    assert common_value(steps).value == pytest.approx(size, abs=1e-9)
+    assert common_value(steps).error == pytest.approx(own, rel=1e-3)  # 2 steps with one level
