@@ -333,6 +333,25 @@ class Looping(NamedTuple):
         return (z,)
 
 
+def test_a_slider_takes_no_law_that_does_not_end(slider):
+    """Neither a law with states, nor a set-valued one: it ran for ever."""
+
+    class Turning(NamedTuple):
+        mu_0: float
+
+        def coefficient(law, v):
+            while v > 0.5:
+                pass
+            return law.mu_0
+
+        def slope(law, v):
+            return 0.0
+
+    for law in (Turning(0.2), Looping(0.2)):
+        with pytest.raises(st.DescriptionError, match=r"ran 100,000 lines.*range\(50\)"):
+            slider.replace(friction=law)
+
+
 class Bound(Looping):
     """A law whose states are those of an object, not of its class."""
 

@@ -60,6 +60,10 @@ def endless(law: Any) -> str:
     return ""
 
 
+# once for each law; those of different classes are equal as tuples
+_endless = lru_cache(maxsize=256, typed=True)(endless)
+
+
 def _calls(law: Any, v: float) -> dict[str, Callable[[], object]]:
     calls: dict[str, Callable[[], object]] = {"coefficient": lambda: law.coefficient(v)}
     if not hasattr(law, "states"):
@@ -161,9 +165,8 @@ def _is_free(method: Callable[..., object]) -> bool:
 
 
 def try_law(law: Any, name: str) -> Any:
-    """Return the law, if its methods end, return numbers at a few speeds, and it is `sound`."""
-    if said := endless(law):
-        raise fault(f"{echo(name)}: {said}; {ENDING}")
+    """Return the law, if its methods return numbers at a few speeds, and it is `sound`."""
+    check_end(law, name)
     probes = [("coefficient", v) for v in PROBED] + [("slope", v) for v in PROBED]
     for method, v in [("coefficient", PROBED[1])] if has_state(law) else probes:
         try:
@@ -180,8 +183,8 @@ def try_law(law: Any, name: str) -> Any:
     return sound(law, name)
 
 
-def sound(law: Any, name: str) -> Any:
-    """Return the law, if it can be told from others, and friction and slope can be right."""
+def check_end(law: Any, name: str) -> None:
+    """Raise an error if a law cannot be told from others, or one of its methods does not end."""
     for key, value in law._asdict().items():
         try:
             hash(value)
@@ -190,13 +193,20 @@ def sound(law: Any, name: str) -> Any:
                 f"{key} of {echo(name)} is a {type(value).__name__}, which may change; let each "
                 "parameter be a number, or a tuple of numbers"
             ) from None
+    if said := _endless(law):
+        raise fault(f"{echo(name)}: {said}; {ENDING}")
+
+
+def sound(law: Any, name: str) -> Any:
+    """Return the law, if its methods end, and friction and slope can be right."""
+    check_end(law, name)
     if not has_state(law) and (said := _wrong(law)):
         method, rest = said
         raise fault(f"{method} of {echo(name)} {rest}")
     return law
 
 
-@lru_cache(maxsize=256, typed=True)  # laws of different classes are equal as tuples
+@lru_cache(maxsize=256, typed=True)
 def _wrong(law: Any) -> tuple[str, str] | None:
     """Return what is wrong with a set-valued law at a few speeds: of which method, and what.
 
