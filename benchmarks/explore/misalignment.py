@@ -4,7 +4,7 @@ Each rig is simulated, its force given noise up to a hundredth of the drop and a
 off by up to 2 %, and the angle found is held against the true one. Of the intervals that are told,
 95 % should hold it; 90 % are asked for, and no angle off by a factor of three. With ``--creep``
 the angle is that of the creep of whole runs, at up to 25 deg and under three laws, with ``--soft``
-on springs across that are hardly stiffer.
+on springs across that are hardly stiffer; then the record of a force states the stiffness across.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from rich.console import Console
 import stiction as st
 
 COVERED, FACTOR = 0.9, 3.0
+SOFT = 0.2, 2.5  # powers of ten of k_y/k_x
 LONGEST_RUN = 2e5  # transverse periods in a run
 STICKING = ("stick-slip", "transitional oscillation")
 Generator = np.random.Generator
@@ -35,8 +36,11 @@ class Seen(NamedTuple):
     reason: str
 
 
-def rig(rng: Generator) -> st.Slider:
-    """Return a random rig that is driven slowly enough to stick."""
+def rig(rng: Generator, across: tuple[float, float]) -> st.Slider:
+    """Return a random rig that is driven slowly enough to stick.
+
+    The spring across is stiffer by a factor between powers of ten.
+    """
 
     def between(low: float, high: float) -> float:
         return exp(rng.uniform(log(low), log(high)))
@@ -46,7 +50,7 @@ def rig(rng: Generator) -> st.Slider:
     return st.Slider(
         mass=between(0.05, 1.0) * (k_x / 1e3) ** 0.5,
         k_x=k_x,
-        k_y=k_x * between(100.0, 1e4),
+        k_y=k_x * 10 ** rng.uniform(*across),
         phi=f"{radians(rng.uniform(0.5, 5.0))!r} rad",
         normal_load=between(2.0, 40.0) * (k_x / 1e3) ** 0.7,
         friction=st.ExponentialWeakening(mu_0=mu_0, mu_inf=mu_0 * rng.uniform(0.5, 0.85), v_f=v_f),
@@ -54,9 +58,9 @@ def rig(rng: Generator) -> st.Slider:
     )
 
 
-def look(rng: Generator, noise: float, off: float) -> Seen | None:
+def look(rng: Generator, noise: float, off: float, soft: bool) -> Seen | None:
     """Return what is seen of one rig; None if it does not stick and slip at least three times."""
-    slider = rig(rng)
+    slider = rig(rng, SOFT if soft else (2.0, 4.0))
     V, F_0 = slider.motion.velocity, slider.F_0
     weakens = 1.0 - slider.friction.mu_inf / slider.friction.mu_0
     period = 2.0 * weakens * F_0 / slider.k_x / V
@@ -74,6 +78,7 @@ def look(rng: Generator, noise: float, off: float) -> Seen | None:
         time=run.data["time"].values,
         force=force + hiss * rng.standard_normal(len(force)),
         stiffness=slider.k_x * (1.0 + rng.uniform(-off, off)),
+        stiffness_across=slider.k_y * (1.0 + rng.uniform(-0.1, 0.1)) if soft else None,
         drive_velocity=V * cos(slider.phi),
     )
     try:
@@ -129,10 +134,13 @@ def main() -> int:
     parser.add_argument("--creep", action="store_true", help="of whole runs, not of their force")
     parser.add_argument("--soft", action="store_true", help="springs across down to 1.5 k_x")
     options = parser.parse_args()
-    across = (0.2, 2.5) if options.soft else (2.5, 4.5)
+    soft, across = options.soft, SOFT if options.soft else (2.5, 4.5)
     rng, seen = np.random.default_rng(options.seed), list[Seen]()
     while len(seen) < options.rigs:
-        one = look_at_creep(rng, across) if options.creep else look(rng, options.noise, options.off)
+        if options.creep:
+            one = look_at_creep(rng, across)
+        else:
+            one = look(rng, options.noise, options.off, soft)
         if one is not None:
             seen.append(one)
     return report(Console(), seen)

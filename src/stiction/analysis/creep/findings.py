@@ -10,6 +10,7 @@ import numpy as np
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
+from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.force_curve import misalignment_from_force
 from stiction.analysis.creep.misalignment import REST_SPEED, SURE, Misalignment, fit_misalignment
 from stiction.analysis.creep.normal_load import (
@@ -98,10 +99,12 @@ def find_creep(
             divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
         return CreepFound(curves, mean, divergence, by_force, missing)
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
-    slips = curves["slip_time"].values
-    change = load_change(record, slips - np.fmax.reduce(curves["begin"].values, axis=1), slips)
+    ends = curves["slip_time"].values
+    change = load_change(record, ends - np.fmax.reduce(curves["begin"].values, axis=1), ends)
 
     def diverging() -> Divergence:
+        if run is not None and not slips(run):
+            raise ResultError("not determined: no slip ends the creep")
         refuse_change(change, CHANGED, "and Eq. (8) supposes a constant one")
         return _divergence(mean, loading)
 
@@ -208,21 +211,21 @@ def _refuse_jerks(run: Trajectory, curves: xr.Dataset) -> None:
     They are faster than the creep, and Eq. (7) supposes that friction is F_0 all the time. One long
     rest, in which soft springs are loaded, is not meant: creep begins after it.
     """
-    slips, length = curves["slip_time"].values, np.fmax.reduce(curves["begin"].values, axis=1)
+    ends, length = curves["slip_time"].values, np.fmax.reduce(curves["begin"].values, axis=1)
 
     def phase(time: Floats) -> Indices:
-        return np.searchsorted(slips, time).clip(max=len(slips) - 1)
+        return np.searchsorted(ends, time).clip(max=len(ends) - 1)
 
-    starts, ends = run.stick_intervals.T
-    its = phase(ends)
-    jerks = (ends - starts < AT_ONCE * length[its]) & (ends <= slips[its])
-    jerks &= starts >= (slips - length)[its]
-    share = float((ends - starts)[jerks].sum() / np.nansum(length))
+    start, stop = run.stick_intervals.T
+    its = phase(stop)
+    jerks = (stop - start < AT_ONCE * length[its]) & (stop <= ends[its])
+    jerks &= start >= (ends - length)[its]
+    share = float((stop - start)[jerks].sum() / np.nansum(length))
     if share < JERKS:
         return
     samples = run.samples
     time, its = samples["time"], phase(samples["time"])
-    creeps = (time <= slips[its]) & (time >= (slips - length)[its]) & (samples["slip_speed"] > 0.0)
+    creeps = (time <= ends[its]) & (time >= (ends - length)[its]) & (samples["slip_speed"] > 0.0)
     if not creeps.any():
         return
     lost = 1.0 - float(samples["friction"][creeps].mean()) / run.slider.F_0

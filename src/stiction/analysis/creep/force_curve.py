@@ -30,6 +30,7 @@ WORST = 1e-3  # of the drop: with a larger misfit, the rises do not have the sha
 # logarithms of k_x/k_y and of the weakening of friction at the drive velocity.
 TAILS = (0.0, log(1e-3), log(1e-2))
 WIDTHS = (0.02, 1.5, 1.3)
+ACROSS = 0.1  # relative error of a k_x/k_y that is stated
 # Relative accuracy of phi at the best: the transverse oscillation lowers friction, too. Of 600 rigs
 # of `python -m benchmarks.explore.misalignment` the intervals hold 95 %, with 0.1 they held 94 %
 AT_BEST = 0.15
@@ -54,10 +55,10 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     By Eq. (7) the force rises at k_x V_x (1 - tan(phi) cot(theta)), F = F_0 cos(theta): more slowly
     as it approaches F_0. The duration of the rises (the mean over cycles at equal forces) is fitted
     with phi, F_0 and the stiffness, assumed to be stated within 2 %; also with k_x/k_y, which slows
-    the turning, and with the weakening of friction with creep speed, for both of which only the
-    order of magnitude is assumed. The standard error includes the scatter of the cycles, these
-    assumptions, the resolution of the force, and the misfit. F_0 is that at `normal_load`, where
-    the record has a load that varies.
+    the turning, within 10 % where the record states both stiffnesses, and with the weakening of
+    friction with creep speed; of what is not stated only the order of magnitude is assumed. The
+    standard error includes the scatter of the cycles, these assumptions, the resolution of the
+    force, and the misfit. F_0 is that at `normal_load`, where the record has a load that varies.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     change = load_change(record, table["start"].values, table["peak_time"].values)
     refuse_change(change, CHANGED, "and Eq. (7) supposes a constant one")
     curve = loading_curve(record, table)
-    best, covariance, gain, misfit, apart = _fit(curve)
+    best, covariance, gain, misfit, apart = _fit(curve, _tails(record))
     phi, excess, off = float(best[0]), exp(best[1]), float(best[2])
     error = max(float(covariance[0, 0]) ** 0.5, apart, _over_cycles(curve, gain))
     error = float(np.hypot(error, AT_BEST * phi))
@@ -150,13 +151,21 @@ class _Fit(NamedTuple):
     apart: float
 
 
-def _fit(curve: LoadingCurve) -> _Fit:
+def _tails(record: Record) -> Floats:
+    """Return assumed values and widths (2, 3) of the unknowns of a record."""
+    tails = np.array([TAILS, WIDTHS])
+    if record.stiffness and record.stiffness_across:
+        tails[:, 1] = log(record.stiffness / record.stiffness_across), ACROSS
+    return tails
+
+
+def _fit(curve: LoadingCurve, tails: Floats) -> _Fit:
     """Fit phi, ln(F_0/peak - 1), the stiffness' error, ln(k_x/k_y) and ln(weakening)."""
     from scipy.optimize import least_squares
 
     seen = curve.crept - curve.crept.mean()
     error = np.hypot(curve.error, MODEL * curve.drop)
-    middle, width = np.array(TAILS), np.array(WIDTHS)
+    middle, width = tails
 
     def deviation(p: Floats) -> Floats:
         x = crept_force(curve.force, p[0], curve.peak * (1.0 + exp(p[1])), exp(p[3]), exp(p[4]))
@@ -180,7 +189,9 @@ def _fit(curve: LoadingCurve) -> _Fit:
             xtol=1e-6,
         )
 
-    best = min((best_from(np.array([*at, *TAILS])) for at in STARTS), key=lambda found: found.cost)
+    best = min(
+        (best_from(np.array([*at, *tails[0]])) for at in STARTS), key=lambda found: found.cost
+    )
     excess = float(np.mean(deviation(best.x) ** 2) - np.mean(curve.error**2))
     misfit = max(excess, 0.0) ** 0.5 / curve.drop
     error = np.hypot(curve.error, max(MODEL, SHARED * misfit) * curve.drop)

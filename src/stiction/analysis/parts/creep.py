@@ -100,8 +100,7 @@ def section(found: Analysis) -> Section:
 
 def _knows_both(found: Analysis) -> bool:
     """Return whether the fit of creep has the stiffness of both springs."""
-    known = found.record.position is not None and found.record.stiffness_across is not None
-    return known or isinstance(found.source, Trajectory)
+    return found.record.stiffness_across is not None or isinstance(found.source, Trajectory)
 
 
 def _of_both(found: Analysis) -> str:
@@ -125,7 +124,7 @@ def _true(found: Analysis) -> str:
 def _end(found: Analysis) -> str:
     """Return the event that ends the stick phases, in words."""
     last = np.inf if found.curves is None else float(found.curves["slip_time"][-1])
-    if found.curves is not None and last >= found.record.time[-1]:
+    if found.regime.kind == STUCK or (found.curves is not None and last >= found.record.time[-1]):
         return "the end"
     if found.curves is not None and found.curves.sizes["phase"] > 1:
         return "slip"

@@ -346,6 +346,17 @@ def test_far_turned_the_angle_is_that_of_the_run():
     assert "before the spring is loaded" in text
 
 
+@pytest.mark.parametrize("duration", [0.8, 1.8])
+def test_a_run_that_ends_before_its_slip_shows_no_divergence(duration):
+    """It diverged "with the exponent 0.009 +- 0.101", counted from the end of the run."""
+    run = st.simulate(st.presets.nakano_popov_2020(), duration, sample_rate=5e3)
+    found = st.analyse(run)
+    assert found.divergence is None
+    assert found.missing["divergence"] == "not determined: no slip ends the creep"
+    assert " before the end it creeps" in str(found)
+    assert found.misalignment.interval[0] < run.slider.phi < found.misalignment.interval[1]
+
+
 def test_what_rests_before_slip_implies_no_angle():
     """Across hardly stiffer than along, the mass rests: no limit of an angle follows from that."""
     rig = {"mass": 0.5, "k_x": 5e3, "k_y": 1.5e4, "phi": "12 deg", "normal_load": 15}

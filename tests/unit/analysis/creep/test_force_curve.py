@@ -11,9 +11,14 @@ RATE = 2e3
 PAPER = st.presets.nakano_popov_2020()
 
 
-def measure(phi: float, noise: float = 0.0, stiffness: float = 1.0) -> st.Record:
-    """Return what a load cell sees of the paper's rig at phi (deg), its stiffness misstated."""
-    slider = PAPER.replace(phi=f"{phi} deg")
+def measure(
+    phi: float, noise: float = 0.0, stiffness: float = 1.0, across: float = 1e4
+) -> st.Record:
+    """Return what a load cell sees of the paper's rig at phi (deg), its stiffness misstated.
+
+    The spring across is stiffer by a factor.
+    """
+    slider = PAPER.replace(phi=f"{phi} deg", k_y=across * PAPER.k_x)
     run = st.simulate(slider, 6.0, sample_rate=RATE)
     force = run.data["spring_x"].values
     hiss = noise * np.random.default_rng(3).standard_normal(len(force))
@@ -35,6 +40,17 @@ def test_a_force_alone_implies_the_misalignment(phi: float, noise: float, stiffn
     assert low < radians(phi) < high
     assert found.phi_error < 0.3 * found.phi
     assert found.stiffness == pytest.approx(PAPER.k_x, rel=0.02)
+
+
+def test_a_stated_stiffness_across_is_used() -> None:
+    """Its order of magnitude was assumed, whatever the record stated."""
+    record = measure(1.0, across=1e3)
+    stated = record.model_copy(update={"stiffness_across": 1e3 * PAPER.k_x})
+    assumed, known = (st.analysis.misalignment_from_force(each) for each in (record, stated))
+    assert known.interval[0] < radians(1.0) < known.interval[1]
+    assert known.phi_error < 0.8 * assumed.phi_error
+    assert "k_x/k_y" in str(st.analyse(record))
+    assert "By Eq. (7), with both springs, it implies" in str(st.analyse(stated))
 
 
 def test_what_noise_hides_is_not_determined() -> None:
