@@ -84,6 +84,7 @@ else:
 hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, include_extras=True))
 ONE, DIMENSIONLESS = {"", "1"}, "dimensionless"  # units of numbers: of xarray's, of pint's
 LARGE = 1e6  # a number below it is written without a power of ten
+ROUNDING = 1e-12  # relative: what many sums of floating-point numbers are off by
 FACTOR = 12  # digits of a factor that is exact, such as 0.45359237 of a pound
 LONGEST_QUANTITY = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
@@ -370,14 +371,14 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
 def with_error(value: float, error: float, unit: str) -> str:
     """Return a value and its standard error in one unit, to the first digit of the error.
 
-    Without an error above zero, return the value alone.
+    Without an error above zero, or beyond that of rounding, return the value alone.
 
     Examples
     --------
     >>> with_error(0.97763, 0.0048, "N"), with_error(6.2e-5, 6e-7, "m/s"), with_error(2.0, 0.0, "N")
     ('978 ± 5 mN', '62.0 ± 0.6 µm/s', '2 N')
     """
-    if not 0.0 < error < inf or not isfinite(value):
+    if not ROUNDING * abs(value) < error < inf or not isfinite(value):
         return in_words(value, unit)
     size, name = suited_unit(max(abs(value), error), unit)
     shown = float(f"{error / size:.1g}")

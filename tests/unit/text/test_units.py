@@ -215,7 +215,7 @@ def test_less_than_the_whole_is_not_100_percent(share, text):
     [(0.9776, 0.0048, "N", "978 ± 5 mN"), (62e-6, 6.1e-7, "m/s", "62.0 ± 0.6 µm/s"),
      (1.863, 0.00071, "N", "1.8630 ± 0.0007 N"), (np.radians(1.99), np.radians(0.02), "rad",
      "1.99 ± 0.02 deg"), (0.2, 0.0, "1", "0.2"), (0.2, np.nan, "1", "0.2"),
-     (3299.0, 98.0, "1/s²", "3300 ± 100 1/s²")],
+     (3299.0, 98.0, "1/s²", "3300 ± 100 1/s²"), (1.08015179565207, 2e-14, "N", "1.08 N")],
 )  # fmt: skip
 def test_an_error_has_the_unit_of_its_value(value, error, unit, text):
     assert with_error(value, error, unit) == text

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from stiction.analysis.creep.misalignment import Misalignment
     from stiction.analysis.report import Analysis
 
-RESTING = "it rests"
+RESTING, UNKNOWN = "it rests", "its creep is not determined"
 # By `REST_SPEED`: a law with states never rests
 BARELY = "it creeps at less than a millionth of the drive's velocity"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
@@ -72,6 +72,8 @@ def section(found: Analysis) -> Section:
     lines = [f"{long} before {_end(found)} {first}; in the last {short} {last}.{several}"]
     if first == last == rests and found.regime.kind == STUCK:
         return Section("Creep", [f"None: {rests} from beginning to end."])
+    if first == last == UNKNOWN:
+        lines = [f"{UNKNOWN.capitalize()}.{several}"]
     d, phi = found.divergence, found.misalignment
     if found.record.position is None and phi is None:
         lines.append("Creep is counted from the even loading in the first half of each rise.")
@@ -159,6 +161,8 @@ def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
         most = max(value, 0.0) + SURE * error
         if most * lasts < MEASURABLE:
             return rests
+        if most > V > 0.0:  # the mass is faster than the drive in slips alone
+            return UNKNOWN
         return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
     known = with_error(value, error if error > SLIGHT * abs(value) else 0.0, "m/s")
     return f"it creeps at {known}"

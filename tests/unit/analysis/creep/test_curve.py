@@ -357,6 +357,15 @@ def test_a_run_that_ends_before_its_slip_shows_no_divergence(duration):
     assert found.misalignment.interval[0] < run.slider.phi < found.misalignment.interval[1]
 
 
+def test_creep_faster_than_the_drive_is_not_determined():
+    """Of a force in mN that was read as N "it creeps no faster than 1.962 m/s", at 1 mm/s."""
+    run = st.simulate(st.presets.nakano_popov_2020(), 4.0, sample_rate=1e3)
+    record = st.measure(run, st.Sensor(noise=1e-3), seed=1)
+    found = st.analyse(record.model_copy(update={"force": 1e3 * record.force}))
+    assert "Its creep is not determined. These are means over 2 stick phases." in str(found)
+    assert "no faster than" not in str(found)
+
+
 def test_what_rests_before_slip_implies_no_angle():
     """Across hardly stiffer than along, the mass rests: no limit of an angle follows from that."""
     rig = {"mass": 0.5, "k_x": 5e3, "k_y": 1.5e4, "phi": "12 deg", "normal_load": 15}
