@@ -2,7 +2,7 @@
 The friction vector turns in its circle
 =======================================
 
-The tip of the friction force over the first two seconds. It runs along the circle of radius μ₀W
+The tip of the friction force over the first 2.2 seconds. It runs along the circle of radius μ₀W
 from across the drive to along it. Inside the circle it lies while the mass rests, as in the first
 11 ms, and in the slip, where friction is weaker.
 """

@@ -14,6 +14,12 @@ from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
+    from stiction.system.slider import Slider
+
+TWO_AXES = (
+    "Here coefficients are of the force along the drive, elsewhere in this report of k_x u_x. "
+    "State cell_angle to have them along one axis."
+)
 
 
 def find(found: Analysis) -> Any:
@@ -49,5 +55,14 @@ def _first(source: Trajectory | Record, names: tuple[str, ...]) -> Any:
 
 def section(found: Analysis) -> Section | None:
     """Return its section."""
-    its = found.parts["procedure"]
-    return None if its is None else its.section
+    its, source = found.parts["procedure"], found.source
+    if its is None:
+        return None
+    shown: Section = its.section
+    if isinstance(source, Trajectory) and _reads_along_two_axes(source.slider):
+        shown = shown._replace(sentences=[*shown.sentences, TWO_AXES])
+    return shown
+
+
+def _reads_along_two_axes(slider: Slider) -> bool:
+    return slider.cell_angle is None and slider.misalignment != 0.0
