@@ -41,6 +41,7 @@ LOW, HIGHER, FEWEST_MEANS = 0.1, 1.2, 4
 # Standard deviations of white noise: by so much, and no more, the mean of peaks is too high where
 # each peak is sought among some samples; 0.4 in the median of random records
 ABOVE = 0.5
+FALLS = 10.0  # standard deviations of noise, whose range over a million means is that
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
 # Kinds of motion whose kinetic friction is the mean of peaks and troughs
 SWINGING = (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR)
@@ -192,7 +193,16 @@ def _find_break_away(
     at, reason = _first_peak(forces, -(-min(until, end) * len(forces) // end), noise)
     if at is None:
         return None, reason
-    return _break_away(force, forces, at, noise, load), ""
+    size, first = -(-len(force) // len(forces)), at * len(force) // len(forces)
+    rough = noise * size**0.5  # of a sample
+    last = first + 3 * size
+    if len(cycles):
+        last = _first_fall(without_spikes(force[:last]), cycles, rough, size)
+        first = min(first, last)
+    begin = max(0, first - 2 * size)
+    wanted = (rough / max(SHARP * float(np.ptp(forces)), TINY)) ** 2
+    width = int(min(max(wanted, 1.0), size))
+    return _break_away(force, begin, last, width, rough, load), ""
 
 
 def _means(force: Floats) -> tuple[Floats, float]:
@@ -258,29 +268,44 @@ def _is_within(forces: Floats) -> bool:
     return bool(rise[np.argmax(rise > 0.5 * rise.max()) :].min() <= 0.0)
 
 
-def _break_away(force: Floats, forces: Floats, at: int, noise: float, load: Floats) -> Measured:
-    """Return the largest force near a maximum, averaged as much as the noise requires."""
-    size, first = -(-len(force) // len(forces)), at * len(force) // len(forces)
-    begin = max(0, first - 2 * size)
-    near = without_spikes(force)[begin : first + 3 * size]
-    rough = noise * size**0.5  # of a sample
-    wanted = (rough / max(SHARP * float(np.ptp(forces)), TINY)) ** 2
-    width = int(min(max(wanted, 1.0), size))
+def _first_fall(force: Floats, cycles: CycleTable, rough: float, size: int) -> int:
+    """Return where a force falls for the first time by more than its noise, (n,) if nowhere.
+
+    A cycle may be as short as a mean of `size` samples. So the means are as short as the noise of
+    a sample, `rough` (N), allows; no cycle begins before that fall.
+    """
+    fall = max(cycles.least, min(PEAK * float(np.ptp(force)), 0.5 * cycles.median("drop")))
+    width = int(min(max((FALLS * rough / fall) ** 2, 1.0), size))
+    count = max(len(force) // width, 1)
+    means = part_means(force, count)
+    highest = np.maximum.accumulate(means)
+    rise = highest - means[0]
+    fallen = np.flatnonzero((highest - means > fall) & (rise > 0.5 * rise[-1]))
+    return int(part_starts(len(force), count)[fallen[0]]) if len(fallen) else len(force)
+
+
+def _break_away(
+    force: Floats, begin: int, end: int, width: int, rough: float, load: Floats
+) -> Measured:
+    """Return the largest force from a sample to another, averaged over some samples.
+
+    `rough` is the noise of a sample, N.
+    """
+    near = without_spikes(force)[begin : end + 2 * width]
     smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
-    error = float(np.hypot(rough / width**0.5, _peak_excess(smooth, width)))
-    largest = float(smooth.max())
-    under = float(load[begin + int(np.argmax(smooth)) + width // 2])
+    top = int(np.argmax(smooth[: max(end - begin - width // 2, 1)]))
+    error = float(np.hypot(rough / width**0.5, _peak_excess(smooth, top, width)))
+    largest, under = float(smooth[top]), float(load[begin + top + width // 2])
     return Measured(largest, error, np.nan, largest / under, error / under)
 
 
-def _peak_excess(values: Floats, step: int) -> float:
-    """Return the largest excess of a peak over its largest value, from values a step apart.
+def _peak_excess(values: Floats, top: int, step: int) -> float:
+    """Return the largest excess of a peak over its value at `top`, from values a step apart.
 
     A rounded peak of uniform curvature lies below the intersection of the lines that continue its
     sides. A corner bends more than twice as much as its sides; it lies below the rise, continued by
     one step.
     """
-    top = int(np.argmax(values))
     at = np.clip(top + step * np.arange(-2, 3), 0, len(values) - 1)
     before, rise, fall, after = np.diff(values[at]) * (1.0, 1.0, -1.0, -1.0)
     if rise + fall > 2.0 * min(before - rise, after - fall):

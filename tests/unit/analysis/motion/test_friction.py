@@ -1,5 +1,7 @@
 """Friction coefficients are force over load at the same instant."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -68,7 +70,7 @@ def test_a_short_first_loading_is_seen_in_a_long_record(cycles):
     """It took less than one of the 400 means, and the record seemed to begin loaded."""
     time = np.arange(0.0, 1.0 + 0.05 * cycles, 2e-3)
     saw = 1.7 + 0.3 * ((time - 0.17) % 0.05) / 0.05
-    force = np.where(time < 0.2, 10.0 * time, saw)
+    force = np.where(time < 0.201, 10.0 * time, saw)
     noise = 1e-3 * np.random.default_rng(1).standard_normal(len(time))
     friction = st.analyse(st.Record(time=time, force=force + noise, normal_load=10.0)).friction
     assert friction.break_away.force == pytest.approx(2.0, abs=0.02)
@@ -98,3 +100,23 @@ def test_peaks_that_a_converter_rounds_alike_are_not_known_without_error():
     force = step * np.round((1.713 + 0.25 * (TIME / 0.5 % 1.0)) / step)
     found = st.analyse(st.Record(time=TIME, force=force, normal_load=10.0)).friction
     assert found.static.error == pytest.approx(step / 12.0**0.5, rel=0.05)
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.02])
+def test_the_first_break_away_is_before_the_first_cycle(noise):
+    """Cycles are as short as two means of the record, and the first peaks are lower than others."""
+    first, size, loading, slip = 8.0, 100, 1000, 10
+    peaks = np.minimum(first + 0.4 * np.arange(200), 10.0)
+    force = [np.linspace(0.0, first, loading, endpoint=False)]
+    for peak, following in pairwise(peaks):
+        force += [
+            np.linspace(peak, 0.8 * peak, slip, endpoint=False),
+            np.linspace(0.8 * peak, following, size - slip, endpoint=False),
+        ]
+    force = np.concatenate(force)
+    force += noise * np.random.default_rng(1).standard_normal(len(force))
+    found = st.analyse(st.Record(time=1e-3 * np.arange(len(force)), force=force))
+    broke, start = found.friction.break_away, found.cycles["start"].values[0]
+    assert abs(broke.force - first) < 3.0 * broke.error
+    assert broke.error < 0.02 * first
+    assert start == pytest.approx(1e-3 * (loading + slip), abs=2e-3)
