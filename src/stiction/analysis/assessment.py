@@ -10,6 +10,7 @@ from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
+from stiction.analysis.motion.doubts.clipping import without_cut_off
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
     turns_round,
@@ -93,6 +94,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     unreal = why_no_friction(friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)
+    whole, friction = friction, without_cut_off(friction, record, cycles.part(~apart))
     other = other_velocity(stated, cycles)
     if other.any() and record.position is None:
         cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
@@ -101,6 +103,9 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     if (turns or unreal) and len(cycles):
         names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
         missing |= dict.fromkeys(names, turns or unreal)
+    for name in ("static", "kinetic"):
+        if getattr(whole, name) is not None and getattr(friction, name) is None:
+            missing[f"mu_{name}"] = friction.missing[name]
     told = cycles.blank(missing)
     return Assessment(told, told.part(~apart), sticking, friction, stated, doubts, missing)
 

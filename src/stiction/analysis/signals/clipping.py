@@ -6,12 +6,14 @@ import numpy as np
 
 from stiction.arrays import Floats
 
-FLAT = 4  # times as many samples at the largest value as at any other, and at least so many
+# Times as many samples at the largest value as at any other, in a row, and at least so many; or in
+# all, of which two are in a row. Of a sine in steps, the outer one has 2.4 times as many at most
+FLAT = 4
 TIMES = 3  # that a signal stays at its least value: at rest it does so once
 
 
 def flat_ends(values: Floats) -> list[tuple[str, float, int]]:
-    """Return at which ends of its range a signal stays for longer than elsewhere.
+    """Return at which ends of its range a signal stays for longer, or more often, than elsewhere.
 
     Each by its name, "largest" or "least" in magnitude, with its value and the most samples in a
     row there.
@@ -25,10 +27,14 @@ def flat_ends(values: Floats) -> list[tuple[str, float, int]]:
     top, bottom = each == turned.max(), each == turned.min()
     if (top | bottom).all():
         return []
-    flat = lasts >= max(FLAT, FLAT * int(lasts[~top & ~bottom].max()) + 1)
+    others = ~top & ~bottom
+    flat = lasts >= max(FLAT, FLAT * int(lasts[others].max()) + 1)
+    _, kind = np.unique(each[others], return_inverse=True)
+    usual = FLAT * int(np.bincount(kind, lasts[others]).max())
     ends = (("largest", top, 1), ("least", bottom, TIMES))
     return [
         (name, way * float(each[end][0]), int(lasts[end].max()))
         for name, end, least in ends
         if np.count_nonzero(flat & end) >= least
+        or (np.count_nonzero(end) >= TIMES and lasts[end].max() > 1 and lasts[end].sum() > usual)
     ]

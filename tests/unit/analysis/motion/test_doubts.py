@@ -656,3 +656,16 @@ def test_slip_speeds_between_samples_are_not_those_of_samples(law):
         else:
             assert unseen.all()
             assert not shown
+
+
+@pytest.mark.parametrize("per_cycle", [8, 1000])
+def test_friction_is_not_given_of_peaks_that_are_cut_off(per_cycle) -> None:
+    """Peaks of 2 N were 1.7 N, with an error of nearly nothing; few samples stay at the end."""
+    time = np.arange(0.0, 60.0, 2.0 / per_cycle + 1e-5)
+    force = sawtooth(time / 2.0) + 1e-3 * np.random.default_rng(1).normal(size=len(time))
+    found = st.analyse(st.Record(time=time, force=np.minimum(force, 1.7), normal_load=10.0))
+    assert "peaks are cut off, static and kinetic" in " ".join(found.warnings)
+    assert found.friction.static is None
+    assert found.friction.kinetic is None
+    assert found.friction.missing["kinetic"].endswith("N or more")
+    assert "cut off" in found.missing["mu_kinetic"]

@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.doubts.clipping import doubt_clipping
 from stiction.analysis.motion.doubts.cycles import (
     doubt_cycles_apart,
     doubt_drops_in_noise,
@@ -33,7 +34,6 @@ from stiction.analysis.motion.metadata import (
 )
 from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import ACROSS, Record, across_force
-from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -76,7 +76,7 @@ def warnings(
     found = [
         *_doubt_load(record),
         *_implausible_friction(record, friction, cycles),
-        *_doubt_clipping(record),
+        *doubt_clipping(record),
         *doubt_mean_period(cycles),
         *doubt_loading(cycles),
         *doubt_cycles_apart(cycles),
@@ -179,20 +179,6 @@ def _mains(kind: str, cycles: CycleTable) -> Iterator[str]:
         yield (
             f"The force swings at {in_words(frequency, 'Hz')}, as the mains do. Record it with the "
             "drive at rest: if it swings then, that is hum, and the mass slides steadily."
-        )
-
-
-def _doubt_clipping(record: Record) -> Iterator[str]:
-    """Doubt a force that stays at exactly its largest or least value for longer than elsewhere."""
-    then = {
-        "largest": "peaks are cut off, static coefficients and drops are too small, and what seems "
-        "to creep there may rest",
-        "least": "troughs are cut off, drops are too small and kinetic coefficients too large",
-    }
-    for name, value, longest in flat_ends(record.force):
-        yield (
-            f"The force stays at exactly {in_words(value, 'N')} for up to {longest} samples, its "
-            f"{name} value: if that is the end of the load cell's range, {then[name]}."
         )
 
 

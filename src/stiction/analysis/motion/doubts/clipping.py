@@ -1,0 +1,60 @@
+"""Doubts about a force that is cut off at the ends of the load cell's range."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.friction import Friction
+from stiction.analysis.record import Record
+from stiction.analysis.signals.clipping import flat_ends
+from stiction.text.units import in_words
+
+SURE = 3.0  # errors of a break-away, by which it may be lower than the end of the range
+FEW = 0.05  # of the cycles: if fewer are cut off, means over all of them hardly change
+ENDS = {"largest": "peaks", "least": "troughs"}
+SHOWN = {
+    "largest": "static and kinetic coefficients and drops are too small, and what seems to creep "
+    "there may rest",
+    "least": "drops are too small and kinetic coefficients too large",
+}
+
+
+def doubt_clipping(record: Record) -> Iterator[str]:
+    """Doubt a force that stays at exactly its largest or least value for longer than elsewhere."""
+    for name, value, longest in flat_ends(record.force):
+        yield (
+            f"The force stays at exactly {in_words(value, 'N')} for up to {longest} samples, its "
+            f"{name} value: if that is the end of the load cell's range, {ENDS[name]} are cut off, "
+            f"{SHOWN[name]}."
+        )
+
+
+def without_cut_off(friction: Friction, record: Record, cycles: CycleTable) -> Friction:
+    """Return the friction without what peaks and troughs do not show that are cut off."""
+    cut = {name: value for name, value, _ in flat_ends(record.force)}
+    end, broke = cut.get("largest"), friction.break_away
+    if end is not None and broke is not None and broke.force + SURE * broke.error >= end:
+        reason = f"the peak is cut off: it is {in_words(broke.force, 'N')} or more"
+        friction = friction._replace(
+            break_away=None, missing=friction.missing | {"break_away": reason}
+        )
+    cut = {name: value for name, value in cut.items() if _is_reached(record, cycles, value)}
+    what = f"the {' and '.join(ENDS[name] for name in cut)} are cut off"
+    if "largest" in cut and friction.static is not None:
+        least = in_words(friction.static.force, "N")
+        friction = friction.without_static(f"{what}: it is {least} or more")
+    if cut and friction.kinetic is not None:
+        bounds = {"largest": "more", "least": "less"}
+        bound = f": it is {in_words(friction.kinetic.force, 'N')} or {bounds[next(iter(cut))]}"
+        friction = friction.without_kinetic(what + bound * (len(cut) == 1))
+    return friction
+
+
+def _is_reached(record: Record, cycles: CycleTable, value: float) -> bool:
+    """Return whether the force has a value in more than a few of its cycles."""
+    there = record.time[record.force == value]
+    begin, end = (np.searchsorted(there, cycles[name]) for name in ("start", "trough_time"))
+    return bool(np.count_nonzero(end > begin) > FEW * len(cycles))
