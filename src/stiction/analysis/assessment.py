@@ -11,6 +11,7 @@ from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import without_cut_off
+from stiction.analysis.motion.doubts.sampling import with_smear
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
     turns_round,
@@ -124,7 +125,7 @@ def _friction(
         first = clean.before(levels(clean)[0].end)
         several = "the force stays at several levels, each with its own: see the parts"
         return friction_of(first, regime, usual).without_kinetic(several)
-    friction = friction_of(clean, regime, usual)
+    friction = with_smear(friction_of(clean, regime, usual), clean, usual)
     if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)
     return friction.without_kinetic(turns) if turns else friction

@@ -99,6 +99,13 @@ class Friction(NamedTuple):
         """Return the same without static friction, for a reason."""
         return self._replace(static=None, missing=self.missing | {"static": reason})
 
+    def with_errors(self, **further: float) -> Friction:
+        """Return the same with a further error (N) of each that is known, by its name."""
+        known = {name: getattr(self, name) for name in further}
+        return self._replace(
+            **{name: each.with_error(further[name]) for name, each in known.items() if each}
+        )
+
     def without_any(self, reason: str) -> Friction:
         """Return none of them, for a reason."""
         return Friction(None, None, None, dict.fromkeys(self._fields[:3], reason))

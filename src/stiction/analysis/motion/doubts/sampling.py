@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import inf
+from math import hypot, inf
 
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import FEWEST_PER_FALL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
+from stiction.recording.sensor import low_pass
 from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -25,6 +27,12 @@ FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillatio
 # Periods of the cut-off in a fall of the force: with more, creep before a slip comes out to a tenth
 # or two, drops to 0.3 %; with one, drops to 7 % and slip speeds to a third (Butterworth, order 4)
 SHARP = 5.0
+# Of the rise from sample to sample: so far, on average, peaks are above the last sample before a
+# sudden fall. Of a fall of two samples they are by half of that, and so on: it begins slowly
+BETWEEN = 0.5
+# Periods of the cut-off, after which a filter has forgotten; samples of each; times its cut-off,
+# from which on another filter does nothing beside it
+MEMORY, FINE, ALONE = 10.0, 40.0, 30.0
 
 
 def doubt_times(record: Record) -> Iterator[str]:
@@ -138,7 +146,49 @@ def doubt_filter(record: Record, cycles: CycleTable) -> Iterator[str]:
     if sensor is not None and fall * sensor.cut_off < SHARP:
         yield (
             f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
-            f"slower than {in_words(sensor.cut_off, 'Hz')}: drops, slip speeds and the creep just "
-            "before a slip are those of the smeared force. "
+            f"slower than {in_words(sensor.cut_off, 'Hz')}: peaks, troughs, slip speeds and the "
+            "creep just before a slip are those of the smeared force. "
             f"Filter at {in_words(2.0 * SHARP / fall, 'Hz')} or more."
         )
+
+
+def with_smear(friction: Friction, record: Record, cycles: CycleTable) -> Friction:
+    """Return the friction with the errors of peaks and troughs between samples, or in a filter.
+
+    What lowers peaks raises troughs, but by less or by more: of the middle half of it is an error.
+    """
+    if not len(cycles):
+        return friction
+    rate = record.sample_rate
+    lasts = max(_usual_fall(cycles) * rate - 1.0, 1.0)  # samples: a fall seems to last one more
+    between = BETWEEN / lasts * cycles.median("stick_slope") / rate
+    peak, trough = _smear(record, cycles)
+    static = hypot(peak, between)
+    kinetic = hypot(0.5 * max(peak, trough), 0.25 * between)
+    return friction.with_errors(break_away=peak, static=static, kinetic=kinetic)
+
+
+def _smear(record: Record, cycles: CycleTable) -> tuple[float, float]:
+    """Return what a stated filter does to peaks and troughs between straight lines, N.
+
+    The lines are those of the cycles, but for their falls, which are smeared already: a period of
+    the cut-off, in quadrature, is what a sudden one takes.
+    """
+    sensor = (record.sensors or {}).get("force")
+    if sensor is None or not sensor.filters:
+        return 0.0, 0.0
+    slowest = sensor.cut_off
+    filters = [each for each in sensor.filters if each.cut < ALONE * slowest]
+    rate = FINE * max(each.cut for each in filters)
+    period, drop = cycles.median("period"), cycles.median("drop")
+    fall = max(_usual_fall(cycles) ** 2 - slowest**-2, rate**-2) ** 0.5
+    lasts = np.array([period - fall, fall])
+    seen = np.minimum(lasts, MEMORY / slowest)  # of rise and fall
+    gains = np.array([drop, -drop]) * seen / lasts
+    count = int(np.ceil(MEMORY / slowest / seen.sum()))
+    corners, forces = (
+        np.cumsum([0.0, *np.tile(each, count), 0.5 * each[0]]) for each in (seen, gains)
+    )
+    time = np.arange(0.0, corners[-1], 1.0 / rate)
+    last = low_pass(np.interp(time, corners, forces), filters, rate)[time >= corners[-4]]
+    return float(abs(forces[-3] - last.max())), float(abs(forces[-2] - last.min()))
