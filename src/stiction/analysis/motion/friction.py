@@ -172,7 +172,7 @@ def _kinetic(
     kind = regime.kind
     if comes_to_rest(record.slip_speed) and kind != STUCK:
         return None, "the mass comes to rest"
-    if "turns" in regime.evidence:
+    if "turns" in regime.evidence or "loads_on" in regime.evidence:
         return None, "it is not determined whether the mass slides"
     if kind in (STEADY, SETTLING, TRANSVERSE) or (kind == UNDETERMINED and slid):
         return _sliding(record, slides, kind, relative), ""

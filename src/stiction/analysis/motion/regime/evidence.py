@@ -91,6 +91,11 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "change": ("the force changes by {} from beginning to end", _force),
     "span": ("it spans {}, averaged over a 32nd of the time", _force),
     "scatter": ("it scatters by {} about that", _force),
+    "loads_on": (
+        "it begins unloaded, changes by {}, and does not settle: the record may show one slip "
+        "only, or a part of a cycle",
+        _force,
+    ),
     "wanders": (
         "it wanders by {}, too smoothly for noise: either friction changes, or cycles are longer "
         "than the record shows",

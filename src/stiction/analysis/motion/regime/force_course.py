@@ -6,7 +6,15 @@ from math import inf
 
 import numpy as np
 
-from stiction.analysis.motion.course import BEGINS_UNLOADED, Course, course, final_fall, lone_fall
+from stiction.analysis.motion.changes.sliding import sliding
+from stiction.analysis.motion.course import (
+    BEGINS_UNLOADED,
+    PER_QUARTER,
+    Course,
+    course,
+    final_fall,
+    lone_fall,
+)
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.regime.band import (
@@ -31,7 +39,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Line, beat_frequency, narrow_lines, of_mains
-from stiction.analysis.signals.robust import largest_magnitude
+from stiction.analysis.signals.robust import MEANS_OF_RECORD, largest_magnitude, part_means
 from stiction.analysis.signals.turning_points import CLEAR
 
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
@@ -151,10 +159,26 @@ def _steady(
         return Regime(STEADY, sure, evidence)
     wanders = max(SMOOTH * evidence["scatter"], VARIES * abs(float(np.mean(found.force))))
     if evidence["span"] > wanders:
+        slow = abs(evidence.get("rate_over_drive", inf)) < SLOW
+        if not slow and _loads_on(record, evidence["span"]):
+            return Regime(UNDETERMINED, 0.0, evidence | {"loads_on": evidence["span"]})
         return Regime(STEADY, 0.5 * sure, evidence | {"wanders": evidence["span"]}, STICK_SLIP)
     fall = lone_fall(record.time, found.force)
     steady = Regime(STEADY, sure, evidence | dict(zip(LONE_FALL, fall or (), strict=False)))
     return _unless_hidden(record, 0, ripple, steady)
+
+
+def _loads_on(record: Record, span: float) -> bool:
+    """Return whether a force that begins unloaded has settled nowhere.
+
+    So it is in a record of one slip, or of a part of a cycle: the mass may stick for most of it.
+    """
+    means = part_means(record.force, MEANS_OF_RECORD)
+    if abs(means[0]) > BEGINS_UNLOADED * largest_magnitude(means):
+        return False
+    slides = sliding(record)
+    later = record.force[(slides.first + slides.last) // 2 : slides.last]
+    return bool(np.ptp(part_means(later, PER_QUARTER)) > SETTLED * span)
 
 
 def _unless_hidden(record: Record, begin: int, least: float, seen: Regime) -> Regime:

@@ -774,3 +774,18 @@ def test_no_hum_is_suspected_in_a_run() -> None:
     told = str(st.analyse(st.simulate(slider, 3.35, sample_rate=1791.0)))
     assert "Oscillation\n  Seen in" in told
     assert "hum" not in told
+
+
+@pytest.mark.parametrize("course", ["one slip", "half a cycle"])
+def test_a_record_of_less_than_a_cycle_does_not_show_whether_the_mass_slides(course) -> None:
+    """It was steady sliding, with a kinetic friction, and the rate of loading was its drift."""
+    share = np.linspace(0.0, 1.0, 4000)
+    force = share - 0.4 * (share > 0.6) if course == "one slip" else np.sin(2.5 * share)
+    force = force + 1e-3 * np.random.default_rng(1).normal(size=len(share))
+    found = st.analyse(st.Record(time=10.0 * share, force=force))
+    assert found.regime.kind == "undetermined"
+    assert "does not settle" in str(found)
+    assert found.friction.kinetic is None
+    assert "drift" not in " ".join(found.warnings)
+    slides = np.minimum(force[:2400], 0.3)
+    assert st.analyse(st.Record(time=share[:2400], force=slides)).friction.kinetic is not None
