@@ -161,11 +161,22 @@ def with_smear(friction: Friction, record: Record, cycles: CycleTable) -> Fricti
         return friction
     rate = record.sample_rate
     lasts = max(_usual_fall(cycles) * rate - 1.0, 1.0)  # samples: a fall seems to last one more
-    between = BETWEEN / lasts * cycles.median("stick_slope") / rate
+    lower = BETWEEN / lasts * cycles.median("stick_slope") / rate
+    between = hypot(lower, _above_samples(record, cycles))
     peak, trough = _smear(record, cycles)
     static = hypot(peak, between)
     kinetic = hypot(0.5 * max(peak, trough), 0.25 * between)
     return friction.with_errors(break_away=peak, static=static, kinetic=kinetic)
+
+
+def _above_samples(record: Record, cycles: CycleTable) -> float:
+    """Return how far the peaks are above the largest sample of their cycle, N.
+
+    A parabola rises too far above the few samples of a corner.
+    """
+    ends = np.searchsorted(record.time, [cycles["start"], cycles["trough_time"]])
+    largest = np.maximum.reduceat(record.force, np.minimum(ends.T.ravel(), len(record) - 1))[::2]
+    return max(float(np.median(cycles["peak"] - largest)), 0.0)
 
 
 def _smear(record: Record, cycles: CycleTable) -> tuple[float, float]:
