@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, Indices
 
 # Times as many samples at the largest value as at any other, in a row, and at least so many; or in
 # all, of which two are in a row. Of a sine in steps, the outer one has 2.4 times as many at most
@@ -29,12 +29,20 @@ def flat_ends(values: Floats) -> list[tuple[str, float, int]]:
         return []
     others = ~top & ~bottom
     flat = lasts >= max(FLAT, FLAT * int(lasts[others].max()) + 1)
-    _, kind = np.unique(each[others], return_inverse=True)
-    usual = FLAT * int(np.bincount(kind, lasts[others]).max())
     ends = (("largest", top, 1), ("least", bottom, TIMES))
     return [
         (name, way * float(each[end][0]), int(lasts[end].max()))
         for name, end, least in ends
         if np.count_nonzero(flat & end) >= least
-        or (np.count_nonzero(end) >= TIMES and lasts[end].max() > 1 and lasts[end].sum() > usual)
+        or (
+            np.count_nonzero(end) >= TIMES
+            and lasts[end].max() > 1
+            and lasts[end].sum() > FLAT * _most(each[others], lasts[others])
+        )
     ]
+
+
+def _most(values: Floats, lasts: Indices) -> int:
+    """Return how many samples have the most common of some values, each of which `lasts` some."""
+    _, kind = np.unique(values, return_inverse=True)
+    return int(np.bincount(kind, lasts).max())
