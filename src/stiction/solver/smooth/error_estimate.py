@@ -13,12 +13,12 @@ from typing import NamedTuple
 from numpy.polynomial import Polynomial
 
 from stiction.friction.law import Vector
-from stiction.solver.accuracy import ROUNDING_OF_FORCE, Accuracy
+from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.problem import Problem
 from stiction.solver.smooth.coordinate import coordinate, slip_at
 from stiction.solver.smooth.elimination import correct_states_inside, slip_without_states
-from stiction.solver.smooth.newton import DIVERGED, correct, larger
+from stiction.solver.smooth.newton import CLOSEST, DIVERGED, correct, larger
 from stiction.solver.smooth.right_hand_side import (
     SmoothOutset,
     evaluate,
@@ -164,12 +164,13 @@ def balance(
             size = larger(correct_states_inside(d_x, d_y, w), size)
         if not size < DIVERGED:
             break
-        if size < enough or size * size < enough:
+        by_x = abs(at.s_xx * yy - at.s_xy * yx) + abs(at.s_xy * yy - at.s_yy * yx)
+        by_y = abs(at.s_xy * xx - at.s_xx * xy) + abs(at.s_yy * xx - at.s_xy * xy)
+        rounding = CLOSEST * abs(g * per) * (by_x * abs(a_x) + by_y * abs(a_y))
+        lost_in_rounding = eps == inf and sqrt(d_x * d_x + d_y * d_y) < rounding
+        if size < enough or size * size < enough or lost_in_rounding:
             d_x, d_y = (yy * lost_x - xy * lost_y) * per, (xx * lost_y - yx * lost_x) * per
             slower = at.s_xx * d_x + at.s_xy * d_y, at.s_xy * d_x + at.s_yy * d_y
-            by_x = abs(at.s_xx * yy - at.s_xy * yx) + abs(at.s_xy * yy - at.s_yy * yx)
-            by_y = abs(at.s_xy * xx - at.s_xx * xy) + abs(at.s_yy * xx - at.s_xy * xy)
-            rounding = ROUNDING_OF_FORCE * abs(g * per) * (by_x * abs(a_x) + by_y * abs(a_y))
             return Balanced(True, slip_at(eps, q_x, q_y), slower, rounding)
         at = evaluate(problem, eps, load, q_x, q_y, w, INSIDE, WANTED)
     return Balanced(False, (at.s_x, at.s_y), (0.0, 0.0), 0.0)

@@ -257,3 +257,15 @@ def test_where_no_step_is_accepted_it_ends():
     assert (code, turns) == (STEP_UNDERFLOW, 1)
     assert state.motion == state_of("fed").motion
     assert state.counts.rejected > 10
+
+
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-8])
+@pytest.mark.parametrize("V", [1e-12, 1e-11, 1e-10])
+def test_bristles_slide_as_slowly_as_plates_in_few_steps(V, rtol):
+    """In a long step rounding makes more slip than the drive: some took more than 1e6 steps."""
+    law = st.laws.LuGre(0.15, 0.2, "1 mm/s", "100 kN/m", "300 N*s/m")
+    rig = {"mass": 0.25, "k_x": 1e3, "k_y": 1e7, "phi": "0 deg", "normal_load": 10.0}
+    slider = st.Slider(**rig, friction=law, drive=st.ConstantVelocity(V))
+    run = st.simulate(slider, 6e-3 / V, sample_rate=0, rtol=rtol)
+    assert run.statistics.steps < 1000
+    assert run.samples["spring_x"][-1] == pytest.approx(0.2 * 10.0, rel=10.0 * rtol)
