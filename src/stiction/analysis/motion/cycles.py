@@ -15,6 +15,7 @@ from stiction.analysis.motion.disturbance import (
     is_beside,
     is_carried,
     is_residue,
+    is_rounding,
     is_subharmonic,
     lasts_through_loading,
     may_be_carried,
@@ -153,7 +154,7 @@ def swings(record: Record) -> Swings:
     shows while the spring is first loaded, unless the slip speed is known. So is a slower wave on
     which there is more stick-slip than is seen beside it.
     """
-    force = without_outliers(record.force)
+    read, force = record.force, without_outliers(record.force)
     if force is not record.force:
         record = record.model_copy(update={"force": force})
     found, grid = _swings(record), even_grid(record.time)
@@ -161,10 +162,10 @@ def swings(record: Record) -> Swings:
     if grid is None or lasting is not None:
         return found if lasting is None else lasting
     for _ in range(LINES):
-        carried = _cycles_on_a_wave(record, grid, found)
+        carried = _cycles_on_a_wave(record, grid, found, read)
         if carried is not None:
             return carried
-        without = _without_line(record, grid, found)
+        without = _without_line(record, grid, found, read)
         if without is None:
             break
         record, found = without
@@ -186,11 +187,12 @@ def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
     return left if sticks else None
 
 
-def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings) -> Swings | None:
+def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings, read: Floats) -> Swings | None:
     """Return stick-slip that a slower wave carries, if it does.
 
     So does the wave of a disc that turns, or of a load that varies. Where it falls as fast as the
     spring is loaded, the force does not rise while the mass sticks, and cycles would be missed.
+    `read` is the force as it was recorded (N): its converter has steps.
     """
     if record.slip_speed is not None:
         return None
@@ -199,22 +201,28 @@ def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings) -> Swings |
         if not may_be_carried(frequency, record.duration, record.force - wave, found.table):
             continue
         carried = _swings(record, wave)
-        if is_carried(frequency, record.duration, found.table, carried.table):
+        its = carried.table
+        if is_carried(frequency, record.duration, found.table, its) and not is_rounding(its, read):
             low, high = np.percentile(wave, (1.0, 99.0))
             return carried._replace(wave=float(high - low), lines=found.lines)
     return None
 
 
-def _without_line(record: Record, grid: EvenGrid, found: Swings) -> tuple[Record, Swings] | None:
+def _without_line(
+    record: Record, grid: EvenGrid, found: Swings, read: Floats
+) -> tuple[Record, Swings] | None:
     """Return record and swings without a line beside the motion, if there is one.
 
-    Lines of the mains come first: others may be the stick-slip that a slow wave carries.
+    Lines of the mains come first: others may be the stick-slip that a slow wave carries. A ramp
+    through the steps of the force as it was `read` (N) has a line, too.
     """
     lines = narrow_lines(grid, record.force)
     for line in sorted(lines, key=lambda line: not of_mains(line.frequency)):
         if any(abs(line.frequency / each.frequency - 1.0) < SAME for each in found.lines):
             continue  # what is left of a line
         rest, without = swings_without(line, record)
+        if is_rounding(without.table, read):
+            continue
         without = without._replace(lines=(*found.lines, line))
         if is_beside(line, without.table, record):
             number = line.frequency * without.table.median("period")

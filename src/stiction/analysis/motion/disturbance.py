@@ -9,6 +9,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.motion.vibration import COUPLED, OWN_PERIODS, is_irregular
 from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import (
@@ -35,6 +36,9 @@ LOADED = 0.5  # of its rise: until then the mass goes at half the drive's speed 
 SLIDES = 0.5  # of the rate of loading: afterwards the force rises more slowly, if at all
 PERIODS = 5.0  # of the line while the spring is loaded, and afterwards
 ELSEWHERE = 3.0  # times as large as beside the swings
+# Steps of a converter: the median fall that rounding makes. Without a wave it is one step, without
+# a line up to 1.50, in 482 staircases with noise up to 0.3 steps
+ROUNDED = 1.6
 RESIDUE = 0.05  # of a line's height: so much of it may be left where it was subtracted
 AS_LARGE = 0.6  # the smaller amplitude over the larger one, while it is loaded and afterwards
 
@@ -156,6 +160,17 @@ def is_residue(line: Line, table: CycleTable) -> bool:
     """Return whether swings are no larger than what may be left of a line that was subtracted."""
     drop = table["drop"]
     return len(drop) > 0 and float(np.median(drop)) < RESIDUE * line.height
+
+
+def is_rounding(table: CycleTable, force: Floats) -> bool:
+    """Return whether swings are no larger than the steps of a digitised force (N).
+
+    A force that changes evenly is a staircase. Without a slow wave, or a line of the staircase
+    itself, it is a sawtooth in which each fall is one step, beside the even change.
+    """
+    drift = (table["trough"] - table["start_force"]) / table["period"]
+    falls = table["drop"] + drift * (table["trough_time"] - table["peak_time"])
+    return len(table) > 0 and bool(np.median(falls) < ROUNDED * resolution(force))
 
 
 def lasts_through_loading(line: Line, time: Floats, force: Floats) -> bool:

@@ -664,6 +664,34 @@ def test_stick_slip_that_a_larger_wave_carries_has_all_its_cycles(number: int) -
     assert found.cycles["peak"].values == pytest.approx(with_hum, abs=0.5 * drop)
 
 
+@pytest.mark.parametrize("steps", [28.7, 40.0, 100.0])
+def test_a_staircase_of_a_converter_carries_no_cycles(steps: float) -> None:
+    """Without its even change it is a sawtooth, of drops of one step."""
+    time = np.linspace(0.0, 4.0, 4000)
+    for force in (3.0 - time, time):
+        read = np.rint(0.25 * steps * force)
+        assert len(swings(st.Record(time=time, force=read)).table) == 0
+
+
+@pytest.mark.parametrize(
+    ("steps", "part", "noise"), [(100, 0.7, 0.15), (150, 0.9, 0.2), (200, 0.97, 0.15)]
+)
+def test_a_harmonic_of_a_staircase_is_no_line(steps: int, part: float, noise: float) -> None:
+    time = np.linspace(0.0, 4.0, 3000)
+    white = noise * np.random.default_rng(1).standard_normal(len(time))
+    read = np.rint(steps * np.minimum(0.25 * time / part, 1.0) + white)
+    found = swings(st.Record(time=time, force=read))
+    assert (len(found.table), found.lines) == (0, ())
+
+
+def test_carried_stick_slip_of_two_steps_has_all_its_cycles() -> None:
+    time = np.arange(0.0, 26.0, 0.01)
+    read = np.rint(2.3 * (time % 1.0) - 2.5 * time)
+    found = swings(st.Record(time=time, force=read))
+    assert found.wave > 0.0
+    assert len(found.table) == pytest.approx(25, abs=1)
+
+
 @pytest.mark.parametrize("sample_rate", ["20 kHz", "50 kHz"])
 def test_the_bend_of_a_first_loading_is_no_cycle_on_a_wave(sample_rate: str) -> None:
     """A force microscope, whose first loading lasts for several cycles: its force tells as many."""

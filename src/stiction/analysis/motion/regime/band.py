@@ -10,10 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.robust import uniform_mean
 from stiction.analysis.signals.spectrum import spectrum
 from stiction.arrays import TINY, Floats
+from stiction.recording.noise import rounding_error
 
 PERIODS = 16  # of the vibration that a record has at least
 SUSPECTED = 5  # periods from which on a vibration is suspected, but not known
@@ -63,6 +65,9 @@ NO_HUMP = Hump(np.nan, 0.0, 0.0)
 def highest_hump(time: Floats, force: Floats, periods: int = PERIODS) -> Hump:
     """Return the highest hump of a force's spectrum, of height zero if there is none.
 
+    Nor is there one where it is no larger than the rounding of the force, which is a vibration with
+    the frequency at which an even change passes through the steps of a converter.
+
     Parameters
     ----------
     time, force : ndarray
@@ -73,7 +78,8 @@ def highest_hump(time: Floats, force: Floats, periods: int = PERIODS) -> Hump:
     grid = even_grid(time)
     if grid is None or not grid.serves or np.ptp(force) == 0.0:
         return NO_HUMP
-    step, force = grid.step, grid.on(force)
+    step, rounding = grid.step, rounding_error(force, resolution(force))
+    force = grid.on(force)
     power, width = spectrum(force)
     last = 2 * len(power) // SAMPLES
     if last <= periods:
@@ -85,11 +91,12 @@ def highest_hump(time: Floats, force: Floats, periods: int = PERIODS) -> Hump:
         np.maximum(below[b] - below[a], TINY) for a, b in ((slow, begin), (begin, end), (end, -1))
     )
     height = np.minimum(hump / slower / OVER_SLOWER, hump / faster / OVER_FASTER)
+    square = 2.0 * hump * width / (HANN * len(force))
+    height[square <= rounding**2] = 0.0
     best = int(np.argmax(height))
-    square = 2.0 * float(hump[best]) * width / (HANN * len(force))
     at = np.arange(begin[best], end[best])
     middle = float(np.average(at, weights=power[at])) * width / step
-    return Hump(middle, float(height[best]), square**0.5)
+    return Hump(middle, float(height[best]), float(square[best]) ** 0.5)
 
 
 def remaining(time: Floats, force: Floats, frequency: float) -> float:

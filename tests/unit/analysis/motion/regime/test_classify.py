@@ -527,6 +527,16 @@ def test_a_force_that_rises_from_a_load_may_be_drift() -> None:
     assert st.analysis.classify(known).confidence > 0.9
 
 
+@pytest.mark.parametrize("steps", [25.7, 40.2, 60.6])
+def test_an_even_change_through_steps_of_a_converter_does_not_vibrate(steps: float) -> None:
+    time = np.linspace(0.0, 4.0, 3000)
+    rising, falling = (
+        st.analysis.classify(st.Record(time=time, force=np.rint(0.25 * steps * force)))
+        for force in (8.0 + time, 8.0 - time)
+    )
+    assert (rising.kind, falling.kind) == ("stuck", "steady sliding")
+
+
 @pytest.mark.parametrize(("speed", "rest"), [(0.17, (0.0, 0.1)), (0.002, (0.8, 1.0))])
 def test_stick_slip_says_how_long_the_mass_rests(speed: float, rest: tuple[float, float]) -> None:
     """A soft tester at 170 mm/s sticks in each cycle, yet slides for nearly all of it."""
