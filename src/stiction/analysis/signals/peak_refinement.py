@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.turning_points import TurningPoints
 from stiction.arrays import Floats, Indices
 
@@ -86,7 +87,8 @@ def vertices(time: Floats, points: TurningPoints) -> Vertices:
     level = np.abs(slope) + np.abs(bend) < LEVEL * np.abs(values).max()
     x = np.where(level, 0.0, _top(slope, bend))
     found = Vertices(fit.middle + fit.half * x, fit.at(x))
-    return _corners_as_sampled(time, values, upward, first, last, found)
+    found = _corners_as_sampled(time, values, upward, first, last, found)
+    return _within_steps(time, points, upward, found)
 
 
 def _top(slope: Floats, bend: Floats) -> Floats:
@@ -99,11 +101,26 @@ def _top(slope: Floats, bend: Floats) -> Floats:
 
 def _within_noise(points: TurningPoints, upward: Floats) -> tuple[Indices, Indices]:
     """Return first and last sample of each top; of less than three, also both neighbours."""
+    index, n = points.index, len(points.values)
+    first, last = _as_high(points, upward, points.noise)
+    few = last - first < 2  # else the neighbour beyond a sudden fall is not a part of the top
+    first = np.where(few, np.minimum(first, np.clip(index - 1, 0, n - 3)), first)
+    return first, np.where(few, np.maximum(last, np.clip(index + 1, 2, n - 1)), last)
+
+
+def _as_high(
+    points: TurningPoints, upward: Floats, depth: float, away: int = 1
+) -> tuple[Indices, Indices]:
+    """Return first and last sample about each top, on both legs, that is at most so far below.
+
+    The legs before the first point and after the last are looked at as far as another one: that of
+    the next point `away`, which is like them if it is 2.
+    """
     index, values, n = points.index, points.values, len(points.values)
-    enough = values[index] - upward * points.noise
-    # the legs before the first point and after the last are looked at as far as the next ones
-    before = max(0, 2 * index[0] - index[1])
-    after = min(n - 1, 2 * index[-1] - index[-2])
+    enough = values[index] - upward * depth
+    legs = np.diff(index)
+    away = min(away, len(legs))
+    before, after = max(0, index[0] - legs[away - 1]), min(n - 1, index[-1] + legs[-away])
     ends = np.concatenate([[before], index, [after]])
     leg = np.repeat(np.arange(len(index) + 1), np.diff(ends))
     at = np.arange(before, after)
@@ -117,9 +134,26 @@ def _within_noise(points: TurningPoints, upward: Floats) -> tuple[Indices, Indic
     starts = ends[:-1] - before
     first = np.minimum(np.minimum.reduceat(np.where(on_top[0], at, n), starts)[:-1], index)
     last = np.maximum.reduceat(np.where(on_top[1], at, -1), starts)[1:]
-    few = last - first < 2  # else the neighbour beyond a sudden fall is not a part of the top
-    first = np.where(few, np.minimum(first, np.clip(index - 1, 0, n - 3)), first)
-    return first, np.where(few, np.maximum(last, np.clip(index + 1, 2, n - 1)), last)
+    return first, last
+
+
+def _within_steps(time: Floats, points: TurningPoints, upward: Floats, found: Vertices) -> Vertices:
+    """Place each top of equal readings of a converter by the next readings beneath it.
+
+    It divides its readings in time as it divides those, into a way up and a way down: a smooth top
+    lies in their middle, and one of a slow rise and a sudden fall at their end.
+    """
+    index, values = points.index, points.values
+    level = values[index] == values[np.minimum(index + 1, len(values) - 1)]
+    step = resolution(values) if points.width == 1 and level.any() else 0.0
+    if points.noise >= step:
+        return found
+    (first, last), (low, high) = (_as_high(points, upward, k * step, 2) for k in (0.5, 1.5))
+    rise, fall = time[first] - time[low], time[high] - time[last]
+    both = rise + fall
+    share = np.where(both > 0.0, rise, 0.5) / np.where(both > 0.0, both, 1.0)
+    placed = time[first] + share * (time[last] - time[first])
+    return Vertices(np.where(last > first, placed, found.time), found.value)
 
 
 def _corners_as_sampled(

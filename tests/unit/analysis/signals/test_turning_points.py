@@ -376,6 +376,27 @@ def test_a_corner_stays_where_it_is_sampled():
             assert (place == at) == corner
 
 
+@pytest.mark.parametrize("steps", [12.3, 30.4, 60.7])
+@pytest.mark.parametrize("noise", [0.0, 0.1])
+def test_a_top_within_a_step_of_a_converter_lies_where_the_fall_begins(steps, noise):
+    """A sawtooth is level there for 5 to 25 samples, and falls within 8."""
+    time = np.arange(6000) * 1e-3
+    rise, fall = time % 1.003 / 0.995, (1.003 - time % 1.003) / 0.008
+    white = noise * np.random.default_rng(1).standard_normal(len(time))
+    values = np.rint(steps * np.minimum(rise, fall) + white)
+    found = peak_refinement.vertices(time, turning_points.turning_points(values))
+    peaks, troughs = found.time[::2], found.time[1::2]
+    assert peaks == pytest.approx(0.995 + 1.003 * np.arange(len(peaks)), abs=1.1e-3)
+    assert troughs == pytest.approx(1.003 * np.arange(1, len(troughs) + 1), abs=1.1e-3)
+
+
+def test_a_smooth_top_lies_in_the_middle_of_a_step():
+    time = np.arange(6000) * 1e-3
+    values = np.rint(15.3 * np.sin(2.0 * np.pi * time))
+    found = peak_refinement.vertices(time, turning_points.turning_points(values))
+    assert found.time == pytest.approx(0.25 + 0.5 * np.arange(len(found.time)), abs=1.5e-3)
+
+
 def test_the_top_of_a_parabola_within_its_piece():
     slope, bend = (
         np.array([1.0, 1.0, -1.0, 3.0, 0.0, -2.0, -1e-10, 1e-8]),
