@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import degrees, inf, tan
+from math import degrees, exp, inf, pi, tan
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -25,6 +25,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
 from stiction.errors import ResultError, StictionError
+from stiction.recording.noise import rounding_error
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -38,6 +39,7 @@ SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by mo
 # angle comes out up to 10 % low; a jerk that is slow beside what friction weakens by does no harm
 JERKS, LOST = 0.2, 0.02
 AT_ONCE = 0.1  # of a stick phase: a longer rest is none between jerks
+TWO_CODES = 0.25  # steps^2: so much may peaks of one height vary, read as either of two codes
 COARSE = 0.01  # of the force's range: steps that hide creep
 BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: limits of backward creep
 
@@ -85,6 +87,8 @@ def find_creep(
         mean = attempt(missing, "creep", lambda: _mean(curves, known, record))
     if mean is not None and by_force is None:
         mean = _with_base(mean, known, record)
+    if mean is not None:
+        mean = _with_rounding(mean, known, cycles)
     if run is not None and run.slider.misalignment == 0.0:
         return CreepFound(curves, mean, None, None, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
@@ -194,6 +198,27 @@ def _with_base(mean: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
     base = (record.drive_velocity or 0.0) * abs(1.0 - record.stiffness / stated.stiffness)
     error = mean["velocity_error"]
     return mean.assign(velocity_error=error.copy(data=np.hypot(np.nan_to_num(error), base)))
+
+
+def _with_rounding(mean: xr.Dataset, record: Record, cycles: xr.Dataset) -> xr.Dataset:
+    """Return mean creep whose error has the steps of a force from which it was read.
+
+    Where all slips begin within a step, every phase is rounded at the same times before slip: the
+    scatter of the phases does not show it. The rounding of a half of a bin is the less the more
+    steps the force passes there.
+    """
+    step = resolution(record.force) if record.position is None else 0.0
+    if not step or not record.stiffness or not record.drive_velocity:
+        return mean
+    spread = max((float(cycles["peak"].std()) / step) ** 2 - TWO_CODES, 0.0)
+    alike = exp(-2.0 * pi**2 * spread)  # of the first harmonic, as in `dither_remainder`
+    lasts = (mean["begin"] - mean["end"]).values
+    loading = record.drive_velocity - mean["velocity"].values
+    passed = 0.5 * np.abs(loading) * lasts * record.stiffness / step
+    place = rounding_error(record.force, step) * alike / record.stiffness
+    rounding = 8.0**0.5 * place / lasts / np.maximum(passed, 1.0)
+    error = mean["velocity_error"]
+    return mean.assign(velocity_error=error.copy(data=np.hypot(np.nan_to_num(error), rounding)))
 
 
 def _divergence(mean: xr.Dataset, loading: float) -> Divergence:

@@ -472,6 +472,19 @@ def test_an_exponent_at_the_end_of_its_range_is_none(exponent, known):
             st.analysis.fit_divergence(curve, 10.0, lag=0.0)
 
 
+@pytest.mark.parametrize("steps", [60.4, 130.7])
+def test_steps_that_are_alike_in_all_phases_are_no_creep(steps):
+    """Regular slips of a force in steps: it was said to creep at V, with an error of a tenth."""
+    time = np.arange(6000) * 2e-3
+    phase = time % 1.0
+    force = np.rint(steps * (1.0 + np.minimum(phase / 0.988, (1.0 - phase) / 0.012))) / steps
+    found = st.analyse(
+        st.Record(time=time, force=force, stiffness=10.0, drive_velocity=0.1 / 0.988)
+    )
+    velocity, error = (found.creep[name].values for name in ("velocity", "velocity_error"))
+    assert (velocity < 3.0 * error + 0.05 * 0.1).all()
+
+
 @pytest.mark.parametrize("degrees", [20, 30])
 def test_the_implied_angle_holds_where_the_spring_across_is_hardly_stiffer(degrees):
     """Eq. (7) alone gave 36 and 43 deg, with errors of 2 and 3 deg, and F_0 = 4.6 N."""
