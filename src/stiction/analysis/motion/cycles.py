@@ -41,7 +41,8 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
 
     There is nothing to tune. Cycles stand apart from all smaller reversals of the force
     (`stiction.analysis.signals.turning_points`): noise, ripple, single wild samples and slow drift
-    are not cycles. A dip that is small beside the fall of its cycle counts as a hesitation
+    are not cycles, nor are the steps of a converter through which a force drifts. A
+    dip that is small beside the fall of its cycle counts as a hesitation
     (`stiction.analysis.motion.hesitations`), and swings that die out are a transient. Where larger
     cycles leave a long stretch free, as after a change of the load, smaller ones are sought there
     by themselves (`stiction.analysis.motion.changes.sizes`). Left out are
