@@ -22,7 +22,13 @@ from numba.core import (
 )
 
 from stiction.solver.compilation.library import EntryLibrary
-from stiction.solver.compilation.passes import KNOWN, Current, PartLowering, Remembering
+from stiction.solver.compilation.passes import (
+    KNOWN,
+    Current,
+    EntryLowering,
+    PartLowering,
+    Remembering,
+)
 
 njit: Any = decorators.njit
 Compiler: Any = compiler.Compiler
@@ -102,6 +108,17 @@ def compile_part(part: Any, signature: Any) -> Any:
 
 class EntryCompiler(Compiler):  # type: ignore[misc]
     """numba's compiler, for what calls parts."""
+
+    def define_pipelines(self) -> list[Any]:
+        """Return numba's passes, with the lowering of parts."""
+        made = super().define_pipelines()
+        for each in made:
+            each.passes = [
+                (EntryLowering if one is typed_passes.NativeLowering else one, said)
+                for one, said in each.passes
+            ]
+            each.finalize()
+        return list(made)
 
     def compile_extra(self, function: Any) -> Any:
         """Compile a Python function."""

@@ -7,7 +7,7 @@ floats is a float, and asks them anew for each sum, twice.
 from __future__ import annotations
 
 import operator
-from typing import Any
+from typing import Any, cast
 
 from numba.core import compiler_machinery, lowering, typed_passes, types
 
@@ -19,6 +19,7 @@ register_pass: Any = compiler_machinery.register_pass
 
 NUMBERS = (types.Number, types.Boolean)
 OPERATORS = frozenset(getattr(operator, name) for name in operator.__all__) | {abs, bool, max, min}
+ORDERS = {min: operator.lt, max: operator.gt}
 POWERS = {operator.pow, operator.ipow}  # numba has code of their own for constant exponents
 
 
@@ -85,17 +86,47 @@ class PartLower(Lower):  # type: ignore[misc]
         found = context.get_function(function, known)(builder, values)
         return context.cast(builder, found, signature.return_type, resty)
 
+    def lower_call(self, resty: Any, expr: Any) -> Any:
+        """Lower a call; the smallest or largest of some numbers as numba's own code does.
+
+        That is a function, compiled with the options of what calls it first: machine code would
+        depend on what was compiled before it in the process.
+        """
+        context, builder = self.context, self.builder
+        function, names = self.typeof(expr.func.name), [each.name for each in expr.args]
+        kinds, kind = [*map(self.typeof, names)], self.fndesc.calltypes[expr].return_type
+        order = ORDERS.get(cast(Any, getattr(function, "typing_key", None)))
+        if order is None or not all(isinstance(each, types.Number) for each in kinds):
+            return super().lower_call(resty, expr)
+        compared = context.typing_context.resolve_value_type(order)
+        known = compared.get_call_type(context.typing_context, (kind, kind), {})
+        is_before = context.get_function(compared, known)
+        found, *others = (
+            context.cast(builder, self.loadvar(name), each, kind)
+            for name, each in zip(names, kinds, strict=True)
+        )
+        for value in others:
+            found = builder.select(is_before(builder, (value, found)), value, found)
+        return context.cast(builder, found, kind, resty)
+
 
 @register_pass(mutates_CFG=True, analysis_only=False)
-class PartLowering(NativeLowering):  # type: ignore[misc]
-    """Lower a part into a library of its own kind, and enter it among what can be called."""
+class EntryLowering(NativeLowering):  # type: ignore[misc]
+    """Lower what calls parts, as parts are lowered."""
 
-    _name = "part_lowering"
+    _name = "entry_lowering"
 
     @property
     def lowering_class(self) -> Any:
-        """Return what lowers a part."""
+        """Return what lowers a part, or what calls it."""
         return PartLower
+
+
+@register_pass(mutates_CFG=True, analysis_only=False)
+class PartLowering(EntryLowering):
+    """Lower a part into a library of its own kind, and enter it among what can be called."""
+
+    _name = "part_lowering"
 
     def run_pass(self, state: Any) -> bool:
         """Lower."""
