@@ -15,6 +15,7 @@ from stiction.errors import DescriptionError, ResultError, Status
 from stiction.friction import states
 from stiction.names import draw, picture
 from stiction.result.file import ENDS, age, read_tables, write_result
+from stiction.result.peak import LARGER, LARGEST, largest_spring_force
 from stiction.result.table import (
     FASTER,
     FASTEST,
@@ -26,7 +27,6 @@ from stiction.result.table import (
     as_table,
     cf_attributes,
     fastest_slip,
-    largest,
     stick_table,
 )
 from stiction.storage.files import NETCDF, placeable, whole
@@ -126,11 +126,11 @@ class Trajectory:
 
     def _facts(self) -> Table:
         """Return the numbers that one looks for first."""
-        at, peak = largest(self.samples["spring_x"])
+        peak = largest_spring_force(self.samples, self.slider.k_x)
         fastest, shown = fastest_slip(self.samples)
         rows = [
-            ("largest k_x u_x", in_words(peak, "N")),
-            ("at", in_words(float(self.samples["time"][at]), "s")),
+            (LARGEST if peak.shown else LARGER, in_words(peak.force, "N")),
+            ("at", in_words(peak.time, "s")),
             (FASTEST if shown else FASTER, in_words(fastest, "m/s")),
             ("stick intervals", str(self.statistics.stick_count)),
             ("time at rest", in_words(self.statistics.time_stuck, "s")),

@@ -15,12 +15,12 @@ from stiction.errors import STATUSES
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import ellipse
 from stiction.friction.law import limit_coefficient
+from stiction.result.peak import LARGER, LARGEST, largest_spring_force
 from stiction.result.table import (
     FASTER,
     FASTEST,
     ColumnTable,
     fastest_slip,
-    largest,
     sample_table,
 )
 from stiction.simulation import automatic_times, solve
@@ -37,7 +37,8 @@ CLOSE = 4  # columns between two rests that look like one
 IN_SLIP = 48  # samples in a slip between two rests
 FINE = 4_001  # samples under the microscope
 DIGITS = 6  # of a number on the page
-WAY = ("time", "X", "Y", "slip_speed")
+PEAK_DIGITS = 4  # of a force between two samples, as on the command line
+WAY = ("time", "u_x", "v_x", "X", "Y", "slip_speed")
 Window = tuple[float, float]
 Check = Callable[[], None]  # raises if nobody waits for the answer any more
 Arrays = dict[str, np.ndarray]
@@ -217,14 +218,14 @@ def facts(
     counted = np.full(len(reached), True) if times is None else np.isin(reached, times)
     counted[-1] = True  # where it ended
     counts = solution.counts
-    at, peak = largest(table["spring_x"][counted])
-    fastest, shown = fastest_slip({name: table[name][counted] for name in WAY})
+    seen = {name: table[name][counted] for name in WAY}
+    peak, (fastest, shown) = largest_spring_force(seen, slider.k_x), fastest_slip(seen)
     slow, fast = slider.natural_frequencies
     A = theory.damping_number_of(slider, nominal_velocity(slider.motion))
     duration = float(solution.times[-1] - solution.times[0]) or 1.0
     listed: list[tuple[str, float, str]] = [
-        ("largest k_x u_x", peak, "N"),
-        ("  at", float(reached[counted][at]), "s"),
+        (LARGEST if peak.shown else LARGER, peak.force, "N"),
+        ("  at", peak.time, "s"),
         (FASTEST if shown else FASTER, fastest, "m/s"),
         ("u_x at the end", float(table["u_x"][-1]), "m"),
         ("u_y at the end", float(table["u_y"][-1]), "m"),
@@ -248,4 +249,4 @@ def text_of(value: float, unit: str) -> str:
         return f"{int(value)}"
     if unit == "%":
         return f"{value:.4g} %"
-    return in_words(value, unit, DIGITS)
+    return in_words(value, unit, PEAK_DIGITS if unit == "N" else DIGITS)

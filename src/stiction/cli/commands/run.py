@@ -81,7 +81,7 @@ def compare_with_published(preset: str, result: Trajectory) -> None:
 def report_lines(result: Trajectory, output: Path) -> list[str]:
     """Return the lines of text about a written run."""
     from stiction.friction.law import implausible
-    from stiction.result.table import largest
+    from stiction.result.peak import largest_spring_force
     from stiction.text.units import in_words
 
     statistics = result.statistics
@@ -89,18 +89,20 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     if not result.status.ok:
         reached = float(result.samples["time"][-1])
         lines.append(f"ended early at t = {reached:.6g} s: {result.status.value}")
-    at, peak = largest(result.samples["spring_x"])
-    load = float(result.samples["normal_load"][at])
+    peak = largest_spring_force(result.samples, result.slider.k_x)
+    load = float(result.samples["normal_load"][peak.sample])
     then = "" if result.slider.load is None else " at that time"
     mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
     count = len(result.samples["time"])
     sampled = " at start and end (sample_rate = 0)" if count <= 2 else ""
+    seen = "" if peak.shown else ", at least"
     lines += [
         f"{output}: {count} samples, stick intervals: "
         f"{statistics.stick_count}, {in_words(statistics.time_stuck, 's')} in all"
         f"{share(result)}; {statistics.steps} steps{mapped}",
-        f"largest force of the spring along x, k_x u_x{sampled}: {in_words(peak, 'N')}"
-        f"{f', {peak / load:.4g} of the normal load{then}' if load > 0.0 else ''}",
+        f"largest force of the spring along x, k_x u_x{sampled or seen}: "
+        f"{in_words(peak.force, 'N')}"
+        f"{f', {peak.force / load:.4g} of the normal load{then}' if load > 0.0 else ''}",
         f"next: stiction plot {argument(output)} --output "
         f"{argument(output.with_suffix('.png'))}, stiction analyse {argument(output)}",
     ]
