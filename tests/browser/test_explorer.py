@@ -550,6 +550,37 @@ def write_down(page):
     )
 
 
+def test_the_menus_of_tests_say_what_is_there(page):
+    """With a vibration across, the menu said "constant velocity", as did an entry below."""
+
+    def shown(table):
+        return page.value(
+            f"""(() => {{ const menu = document.querySelector("#{table}-protocol");
+            return [menu.selectedOptions[0], ...menu.options].map((each) => each.text); }})()"""
+        )
+
+    def choose(table, name):
+        page.done_after(lambda: page.tab.select_option(f"#{table}-protocol", name))
+
+    page.tab.click("#panel-a [data-view=numbers]")
+    cases = [
+        ("drive", "vibration across", "constant velocity, with a harmonic"),
+        ("drive", "harmonic", "program of 1 piece"),
+        ("drive", "reversal loops", "program of 5 pieces"),
+        ("load", "harmonic load", "constant load, with a harmonic"),
+        ("load", "load ramp", "program of 2 pieces"),
+    ]
+    for table, name, words in cases:
+        constant = f"constant {'velocity' if table == 'drive' else 'load'}"
+        if shown(table)[0] != constant:
+            choose(table, constant)
+        assert shown(table)[0] == constant
+        choose(table, name)
+        for found in (shown("drive"), shown("load")):
+            assert len(set(found[1:])) == len(found) - 1  # no two entries of one name
+        assert shown(table)[0] == words
+
+
 def test_a_map_that_cannot_be_says_of_what(page):
     """It began with "is not steady", and did not say what."""
     write_down(page)

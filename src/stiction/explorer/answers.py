@@ -208,6 +208,7 @@ def study_map(opened: Opened) -> Reply:
         NO_VALUE,
         kind_codes,
         kind_shades,
+        legend_of,
         measure_shades,
         present_kinds,
     )
@@ -222,7 +223,7 @@ def study_map(opened: Opened) -> Reply:
         named = kinds(view.data)
         shades, values = kind_shades(), kind_codes(named)
         head |= {"measure": name, "missing": NO_RESULT}
-        head["kinds"] = [(each, COLORS[each]) for each in present_kinds(named)]
+        head["kinds"] = [(legend_of(each), COLORS[each]) for each in present_kinds(named)]
     else:
         values, words = measure_in_unit(view.data, name)
         shades = measure_shades(values)

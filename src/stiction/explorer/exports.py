@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from io import BytesIO
-from pathlib import Path
+from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
+from typing import Any
 from zipfile import ZIP_DEFLATED, ZipFile
 
 from stiction.explorer.motion import Check
+from stiction.friction import Anisotropic, registered_name
+from stiction.friction.user.loading import own_table, split
 from stiction.simulation import run
 from stiction.system.description import Description
 from stiction.text.samples import with_all_values
@@ -77,6 +80,35 @@ def python_lines(description: Description) -> str:
     with with_all_values():
         calls = f"slider = {slider!r}\ninitial = {initial!r}\nsettings = {settings!r}\n"
     return (
-        f"import stiction as st\n\n{calls}"
+        f"{own_law(slider.law)}import stiction as st\n\n{calls}"
         "run = st.run(st.Description(slider, initial, settings))\nrun.plot()\n"
+    )
+
+
+def own_law(law: Any) -> str:
+    """Return the lines that make a user's law known: an import, or the law itself from a session.
+
+    Examples
+    --------
+    >>> from stiction import Coulomb
+    >>> own_law(Coulomb(0.2))
+    ''
+    """
+    if isinstance(law, Anisotropic):
+        return own_law(law.law)
+    if registered_name(law) is not None:
+        return ""
+    table = own_table(law)
+    file, kind = split(table["law"])
+    if type(law).__module__ == "__main__":  # an import would run the script anew
+        text = table.get("source", f"# define the law {kind} here")
+        return f"{text}\n\n"
+    path = PurePath(file)
+    module = ".".join(part for part in path.with_suffix("").parts if part != "..")
+    beside = f"  # of {path.name}, beside this file" if path.suffix else ""
+    if all(part.isidentifier() for part in module.split(".")):
+        return f"from {module} import {kind}{beside}\n\n"
+    return (
+        "from importlib import import_module\n\n"
+        f"{kind} = import_module({module!r}).{kind}{beside}\n\n"
     )

@@ -1,6 +1,7 @@
 """Friction tests by name, scaled to a description: the menus of drive and load.
 
-A new test is a function here and a line in `TESTS`.
+A new test is a function here and a line in `TESTS`; the first of each table is what a description
+without a program has.
 """
 
 from __future__ import annotations

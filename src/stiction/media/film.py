@@ -63,8 +63,11 @@ class Film:
     def save(self, path: str | Path) -> Path:
         """Write the film, whole or not at all; return the path."""
         target = filmable(path)
-        if target.suffix[1:].lower() != self.kind:
-            raise ResultError(f"{target}: this film is {self.kind}; name it so, or make another")
+        if (wanted := target.suffix[1:].lower()) != self.kind:
+            raise ResultError(
+                f"{target}: this film is {self.kind}; name it so, or make another: "
+                f'st.animate(run, kind="{wanted}")'
+            )
         with whole(target) as part:
             part.write_bytes(self.content)
         return target

@@ -22,6 +22,7 @@ from stiction.plotting.shades import (
     NO_VALUE,
     kind_codes,
     kind_shades,
+    legend_of,
     measure_shades,
     present_kinds,
 )
@@ -73,7 +74,7 @@ def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list
     )  # fmt: skip
     _frame(ax, x, y)
     patches = [
-        Patch(facecolor=COLORS[name], edgecolor=BLACK, linewidth=0.4, label=name)
+        Patch(facecolor=COLORS[name], edgecolor=BLACK, linewidth=0.4, label=legend_of(name))
         for name in present_kinds(kinds)
     ]
     if failed.any():
@@ -171,7 +172,8 @@ def draw_kinds(ax: Axes, x: Side, kinds: Sequence[str]) -> None:
             markeredgecolor=BLACK, color=COLORS.get(name, "white"),
         )  # fmt: skip
     _label_axis(ax, x, "x")
-    ax.set(yticks=range(len(rows)), yticklabels=rows, ylim=(len(rows) - 0.5, -0.5))
+    words = [legend_of(name) for name in rows]
+    ax.set(yticks=range(len(rows)), yticklabels=words, ylim=(len(rows) - 0.5, -0.5))
     ax.tick_params(axis="y", which="both", length=0.0)
 
 
@@ -183,7 +185,7 @@ def draw_points(ax: Axes, x: Floats, y: Floats, kinds: Sequence[str]) -> list[Li
         if here.any():
             look = {"marker": "o", "linestyle": "none", "markeredgecolor": BLACK}
             size = {"markersize": 3.2, "markeredgewidth": 0.3, "color": color}
-            made += ax.plot(x[here], y[here], **look, **size, label=name, zorder=4)  # type: ignore[arg-type]
+            made += ax.plot(x[here], y[here], **look, **size, label=legend_of(name), zorder=4)  # type: ignore[arg-type]
     return made
 
 

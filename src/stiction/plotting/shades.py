@@ -27,6 +27,7 @@ COLORS = {
     "stuck": "#8A8A8A",
     "undetermined": "#FFFFFF",
 }
+LEGENDS = {"stuck": "stuck or creeping"}  # a run may end before the creeping mass slips
 
 
 class Shades(NamedTuple):
@@ -86,6 +87,17 @@ def kind_codes(kinds: NDArray[np.object_]) -> Floats:
     for code, name in enumerate(COLORS):
         codes[kinds == name] = code
     return codes
+
+
+def legend_of(kind: str) -> str:
+    """Return the words for a kind of motion in a legend.
+
+    Examples
+    --------
+    >>> legend_of("stuck"), legend_of("settling")
+    ('stuck or creeping', 'settling')
+    """
+    return LEGENDS.get(kind, kind)
 
 
 def present_kinds(kinds: NDArray[np.object_]) -> list[str]:

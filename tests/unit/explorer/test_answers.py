@@ -2,12 +2,14 @@
 
 import json
 import re
+import sys
 import tomllib
 import zipfile
 from dataclasses import replace
 from importlib import resources
 from io import BytesIO
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -25,9 +27,12 @@ from stiction.explorer.form import form
 from stiction.explorer.protocols import TESTS, names, protocol
 from stiction.explorer.source import open_sources
 from stiction.friction import LAWS
+from stiction.friction.user.source import Text
 from stiction.presets import PRESETS
 from stiction.study.view.mapping import Map, plot_map
 from stiction.system.description import Settings
+
+EXAMPLES = Path(__file__).parents[3] / "examples"
 
 
 def free():
@@ -232,6 +237,30 @@ def test_lines_of_python_hold_all_rows_of_a_recorded_drive_and_load():
     assert scope["run"].description == description
 
 
+@pytest.mark.parametrize("name", ["mylaw.py", "my law.py", "laws/mylaw.py", "script"])
+def test_lines_of_python_know_a_users_law(tmp_path, monkeypatch, name):
+    """They named a class that nothing imported."""
+    text = (EXAMPLES / "mylaw.py").read_text() + f"# {name}\n"  # one of the same text is loaded
+    file = tmp_path / ("mylaw.py" if name == "script" else name)
+    file.parent.mkdir(exist_ok=True)
+    file.write_text(text)
+    table = (EXAMPLES / "own_law.toml").read_text().replace("mylaw.py:", f"{name}:")
+    (tmp_path / "own.toml").write_text(table.replace("script:", "mylaw.py:"))
+    description = st.Description.from_toml(tmp_path / "own.toml")
+    description = description._replace(run=Settings(duration=0.01))
+    if name == "script":
+        monkeypatch.setattr(type(description.slider.law), "__module__", "__main__")
+        monkeypatch.setattr("stiction.friction.user.loading.text_of", lambda _: Text(name, text))
+    monkeypatch.syspath_prepend(tmp_path)
+    for module in ("mylaw", "my law", "laws", "laws.mylaw"):
+        monkeypatch.delitem(sys.modules, module, raising=False)
+    scope = {"__name__": "pasted"}
+    exec(python_lines(description).replace("run.plot()", ""), scope)
+    assert scope["run"].status.ok
+    assert tuple(scope["slider"].law) == tuple(description.slider.law)
+    assert type(scope["slider"].law).__name__ == "Logarithmic"
+
+
 def test_what_is_heard_is_the_transverse_rate(description):
     ((head, arrays),) = answers({"do": "sound", "tables": tables_of(description)})
     run = st.simulate(description.slider, description.run.duration, sample_rate=head["rate"])
@@ -423,6 +452,7 @@ def test_a_study_has_the_colours_of_its_figure(finished_study, monkeypatch, meas
         legend = axes.figure.legends[0]
         words = [each.get_text() for each in legend.get_texts()][: len(head["kinds"]) + 1]
         assert words == [name for name, _ in head["kinds"]] + [head["missing"]]
+        assert "stuck or creeping" in words  # a run that ends before the first slip
     else:
         bar = next(each for each in axes.figure.axes if each is not axes)
         assert head["measure"] == bar.get_ylabel() == "peak force (N)"

@@ -89,8 +89,10 @@ export class Form {
     const fields = this.form.tables[name].filter((field) => !["program", "wave"].includes(field.kind));
     const waves = this.form.tables[name].filter((field) => field.kind === "wave");
     const tests = this.hooks.protocols[name];
-    const menu = choice(`${name}-protocol`, ["", ...tests], "", `${TITLES[name]}: protocol`);
-    menu.options[0].textContent = pieces.length ? `program of ${pieces.length} pieces` : name === "drive" ? "constant velocity" : "constant";
+    // the first is what a table without pieces and harmonics is; another program is no entry
+    const shaken = waves.some((wave) => table[wave.key]), plain = !pieces.length && !shaken;
+    const menu = choice(`${name}-protocol`, plain ? tests : ["", ...tests], plain ? tests[0] : "", `${TITLES[name]}: protocol`);
+    if (!plain) menu.options[0].textContent = (pieces.length ? `program of ${pieces.length} piece${pieces.length > 1 ? "s" : ""}` : tests[0]) + (shaken ? ", with a harmonic" : "");
     menu.onchange = () => menu.value && this.hooks.protocol(name, menu.value);
     const set = this.group(name, fields, table, [name], element("div", { className: "choose" }, menu));
     pieces.forEach((piece, index) => set.append(this.piece(name, piece, index)));
