@@ -494,6 +494,100 @@ def test_the_labels_of_ticks_are_not_cut_off_or_in_another_frame(modules):
     assert up == [54.0, 16.0]
 
 
+@pytest.mark.parametrize(
+    ("low", "high", "unit", "offset", "named"),
+    [
+        (40.001985, 40.001965, "deg", "0 = 40.00197", "µdeg"),  # reached into the axis' name
+        (-145.5, -145.3, "deg", "0 = −145.4", "deg"),
+        (1.4429026, 1.4429027, "N", "0 = 1.4429026", "nN"),
+        (3.75e-3, 3.77e-3, "m", "", "mm"),
+        (-180.0, 180.0, "deg", "", "deg"),
+        (0.0, 2e-5, "deg", "", "µdeg"),
+        (1.1, 1.45, "N", "", "N"),
+        (145e3, 145.001e3, "N/m", "0 = 145.0005 kN/m", "N/m"),
+    ],
+)
+def test_numbers_at_ticks_have_their_digits_and_their_place(
+    modules, low, high, unit, offset, named
+):
+    """A single tick at 1.2 was labelled 1; ticks at 40.00199 had no place."""
+    low, high = sorted((low, high))
+    for count in (1, 2, 3, 5):
+        made, widths = modules.value(
+            module(
+                "axis.js",
+                f"""({{ linearAxis }}) => {{
+              const axis = linearAxis({low!r}, {high!r}, {count}, "{unit}");
+              const context = document.createElement("canvas").getContext("2d");
+              context.font = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
+              return [axis, axis.ticks.map(([, label]) => context.measureText(label).width)];
+            }}""",
+            )
+        )
+        assert max(widths, default=0.0) <= 41.0  # px beside the narrowest frame
+        assert made["offset"].startswith(offset) if offset else made["offset"] == ""
+        assert made["unit"] == named
+        zero = 0.0
+        if offset:
+            digits = re.search(r"0 = (−?[\d.]+) (k|m|)", made["offset"])
+            scale = {"k": 1e3, "m": 1e-3}.get(digits[2] if unit != "m" else "", 1.0)
+            zero = float(digits[1].replace("−", "-")) * scale
+        for value, label in made["ticks"]:
+            shown = float(label.replace("−", "-")) / made["factor"]
+            assert value == pytest.approx(zero + shown, abs=1e-6 * (high - low))
+            assert low - 1e-9 * abs(low) <= value <= high + 1e-9 * abs(high)
+
+
+def test_rounding_is_not_drawn_as_motion(modules):
+    same, moved = modules.value(
+        module(
+            "axis.js",
+            "({ padded }) => [padded(2, 2 * (1 + 2e-15), 0.05), padded(2, 2 + 1e-9, 0.05)]",
+        )
+    )
+    assert same == pytest.approx([1.9, 2.1])
+    assert moved[1] - moved[0] == pytest.approx(1.1e-9, rel=1e-3)
+
+
+def test_silence_is_explained(page):
+    """Of a rig too fast to be heard, folded samples were played at any speed."""
+    words = page.value(
+        module(
+            "sound.js",
+            """({ Sound }) => {
+          const sound = Object.assign(new Sound(), { speed: 0.01, start: 0, end: 0.6 });
+          return [[0.1, 10], [0.1, 100], [0.7, 1000]].map(([t, slow]) => sound.silent(t, slow));
+        }""",
+        )
+    )
+    assert words == [
+        "too high to be heard at 1 : 10: choose 1 : 100 or slower",
+        "",
+        "the sound is that of 0 s to 600 ms",
+    ]
+    page.tab.click("#sound")
+    page.until("Boolean(stictionPage.sound.buffer)")
+    before = page.tab.inner_text("#status")
+    page.tab.select_option("#speed", "0.1")
+    assert page.tab.inner_text("#status").startswith("no sound: too high to be heard at 10 : 1")
+    page.tab.select_option("#speed", "10")
+    assert page.tab.inner_text("#status") == before
+    page.tab.click("#sound")
+
+
+def test_a_spectrum_that_cannot_be_says_why(page):
+    """It said "computing" for ever."""
+    write_down(page)
+    page.tab.click("#panel-a [data-view=spectrogram]")
+    page.until("stictionPage.spectrum")
+    page.value(
+        """(() => { const { link } = stictionPage;
+        const { id } = link.newest.get("spectrogram/0");
+        link.receive({ do: "spectrogram", lane: 0, id, error: "the run ended before it" }); })()"""
+    )
+    page.until("written.includes('the run ended before it')")
+
+
 @pytest.mark.parametrize("damping", [1e-1, 1.0, 3e3, 2e7, 5e11])
 def test_the_numbers_in_the_damping_diagram_lie_apart(modules, damping):
     boxes = modules.value(
@@ -564,11 +658,9 @@ def test_the_menus_of_tests_say_what_is_there(page):
 
     page.tab.click("#panel-a [data-view=numbers]")
     cases = [
-        ("drive", "vibration across", "constant velocity, with a harmonic"),
         ("drive", "harmonic", "program of 1 piece"),
-        ("drive", "reversal loops", "program of 5 pieces"),
+        ("drive", "vibration across", "constant velocity, with a harmonic"),
         ("load", "harmonic load", "constant load, with a harmonic"),
-        ("load", "load ramp", "program of 2 pieces"),
     ]
     for table, name, words in cases:
         constant = f"constant {'velocity' if table == 'drive' else 'load'}"

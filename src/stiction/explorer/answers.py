@@ -16,7 +16,7 @@ import numpy as np
 import stiction
 from stiction.comparison import comparable, exchange_law
 from stiction.errors import StictionError, echo
-from stiction.explorer import motion
+from stiction.explorer import motion, spectrum
 from stiction.explorer.decimation import columns_of, extremes
 from stiction.explorer.exports import NAMES, export
 from stiction.explorer.form import form
@@ -25,10 +25,11 @@ from stiction.explorer.protocols import names, protocol
 from stiction.explorer.source import Opened
 from stiction.friction import LAWS
 from stiction.linear_stability.linear import growth_rate
-from stiction.media.sound import RATE, rate_at
+from stiction.media.sound import RATE, SHORTEST_SOUND, audible_speed, rate_at
 from stiction.presets import PRESETS, find
 from stiction.system.description import Description
 from stiction.system.parameter import change_unchecked
+from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.study.view.view import View
@@ -129,34 +130,24 @@ def stability(opened: Opened, request: Request, check: Check) -> Iterator[Reply]
 
 def spectrogram(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     """Yield the spectrogram of the transverse rate: amplitudes (m/s), frequency by time."""
-    from stiction.analysis.signals.spectrum import spectrogram as transform
-
-    description = description_in(opened, request)
-    low, high = motion.span(description)
-    _, fast = description.slider.natural_frequencies
-    count = min(max(8.0 * fast * (high - low), 2_000.0), 150_000.0)
-    times = np.linspace(low, high, int(count) + 1)
-    _, table = motion.simulate(description, times, check)
-    values = table["v_y"][np.isfinite(table["v_y"])]
-    rate, width = count / (high - low), max((high - low) / 50.0, 64 * (high - low) / count)
-    found = transform(values, rate, width=width, step=width / 6.0, start=low)
-    top = int(np.searchsorted(found["frequency"].values, min(2.0 * fast, 0.5 * rate)))
-    part = found.values[: max(top, 8)]
-    head = {
-        "frequency": (0.0, float(found["frequency"][len(part) - 1])),
-        "times": (float(found["time"][0]), float(found["time"][-1])),
-    }
-    yield head, {"amplitude": part.astype(np.float32)}
+    yield spectrum.spectrogram(description_in(opened, request), check)
 
 
 def sound(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
-    """Yield the transverse rate v_y (m/s) as sound, at its true pitch."""
+    """Yield the transverse rate v_y (m/s) as sound, as slow and deep as it can be heard.
+
+    ``speed`` is time in the run over time in the sound, as of `stiction.listen`.
+    """
     description = description_in(opened, request)
     low, high = motion.span(description)
-    high = min(high, low + LOUDEST)
-    times = low + np.arange(int((high - low) * RATE)) / RATE
+    speed = audible_speed(description)
+    high = min(high, low + LOUDEST * speed)
+    if (high - low) / speed < SHORTEST_SOUND:
+        lasts, least = in_words(high - low, "s"), in_words(SHORTEST_SOUND * speed, "s")
+        raise StictionError(f"a run of {lasts} is too short to be heard; let it last {least}")
+    times = low + np.arange(int((high - low) / speed * RATE)) * (speed / RATE)
     values = rate_at(description, times, progress=lambda _: check())
-    yield {"rate": RATE, "start": low}, {"sound": values.astype(np.float32)}
+    yield {"rate": RATE, "start": low, "speed": speed}, {"sound": values.astype(np.float32)}
 
 
 def preset(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:

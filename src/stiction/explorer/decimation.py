@@ -40,7 +40,7 @@ def columns_of(times: Floats, window: tuple[float, float], count: int) -> tuple[
     return column[starts], np.append(starts, len(column)) + first
 
 
-def extremes(values: Floats, starts: Indices) -> NDArray[np.float32]:
+def extremes(values: Floats, starts: Indices) -> Floats:
     """Return the first, lowest, highest and last value of each column, (k, 4); NaN is left out.
 
     Examples
@@ -51,7 +51,7 @@ def extremes(values: Floats, starts: Indices) -> NDArray[np.float32]:
     (2, 4)
     """
     if len(starts) < 2:
-        return np.empty((0, 4), np.float32)
+        return np.empty((0, 4))
     part, first = values[: starts[-1]], starts[:-1]
     rows = (
         values[first],
@@ -59,7 +59,7 @@ def extremes(values: Floats, starts: Indices) -> NDArray[np.float32]:
         np.fmax.reduceat(part, first),
         values[starts[1:] - 1],
     )
-    return np.stack(rows, axis=1).astype(np.float32)
+    return np.stack(rows, axis=1)
 
 
 def share_stuck(sticks: Floats, window: tuple[float, float], count: int) -> NDArray[np.float32]:

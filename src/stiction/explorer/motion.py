@@ -184,8 +184,8 @@ def track(table: ColumnTable, chosen: NDArray[np.bool_]) -> Arrays:
 
 def as_track(table: ColumnTable) -> Arrays:
     """Return time, motion and forces sample by sample."""
-    samples = {name: table[name].astype(np.float32) for name in (*TRACK, "v_x", "v_y")}
-    return {"time": table["time"], **samples, "sticking": table["sticking"].astype(np.float32)}
+    samples = {name: table[name] for name in ("time", *TRACK, "v_x", "v_y")}
+    return {**samples, "sticking": table["sticking"]}
 
 
 def about(description: Description, solution: Solution, table: ColumnTable) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from matplotlib.collections import QuadMesh
 from tests.explored import an_opened
 
 import stiction as st
-from stiction.explorer import motion
+from stiction.explorer import motion, spectrum
 from stiction.explorer.answers import ANSWERS, study_map, tables_of
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.explorer.door import explore
@@ -28,6 +28,7 @@ from stiction.explorer.protocols import TESTS, names, protocol
 from stiction.explorer.source import open_sources
 from stiction.friction import LAWS
 from stiction.friction.user.source import Text
+from stiction.media.sound import LOUD
 from stiction.presets import PRESETS
 from stiction.study.view.mapping import Map, plot_map
 from stiction.system.description import Settings
@@ -60,9 +61,9 @@ def test_no_peak_is_lost():
     inside = (times >= 0.2) & (times <= 0.9)
     for place, row in zip(places, found, strict=True):
         mine = values[inside & (np.clip(column, 0, 36) == place)]
-        assert row[1] == np.float32(np.nanmin(mine))
-        assert row[2] == np.float32(np.nanmax(mine))
-        np.testing.assert_array_equal(row[[0, 3]], mine[[0, -1]].astype(np.float32))
+        assert row[1] == np.nanmin(mine)
+        assert row[2] == np.nanmax(mine)
+        np.testing.assert_array_equal(row[[0, 3]], mine[[0, -1]])
     assert len(places) == 37
 
 
@@ -88,14 +89,17 @@ def test_rests_as_frequent_as_columns_do_not_beat_with_them(description):
     assert (drawn["slip_speed"][sliding, 1] == 0.0).all()
 
 
+def microscope_tip():
+    return st.Slider(
+        mass=1e-11, k_x=0.5, k_y=40.0, phi="5 deg", normal_load=2e-8,
+        friction=st.ExponentialWeakening(mu_0=0.5, mu_inf=0.3, v_f=1e-5),
+        drive=st.ConstantVelocity(1e-6),
+    )  # fmt: skip
+
+
 def test_the_phase_portrait_holds_slips_that_are_short_beside_the_run():
     """Few samples fell in a slip of 28 us of 0.2 s: chords fanned out, of another top each."""
-    m, k_x, k_y = 1e-11, 0.5, 40.0  # of a force microscope
-    tip = st.Slider(
-        mass=m, k_x=k_x, k_y=k_y, phi="5 deg", normal_load=2e-8, drive=st.ConstantVelocity(1e-6),
-        friction=st.ExponentialWeakening(mu_0=0.5, mu_inf=0.3, v_f=1e-5),
-    )  # fmt: skip
-    description = st.Description(tip, st.Initial(), st.Settings(duration=0.05))
+    description = st.Description(microscope_tip(), st.Initial(), st.Settings(duration=0.05))
     quick, full = motion.run(description, 400, free)
     assert (quick[0]["quick"], full[0]["quick"]) == (True, False)
     run = st.run(description)
@@ -271,6 +275,79 @@ def test_what_is_heard_is_the_transverse_rate(description):
     np.testing.assert_allclose(arrays["sound"], wanted - wanted.mean(), rtol=1e-4, atol=1e-10)
 
 
+def test_what_is_too_high_to_be_heard_is_as_deep_as_of_listen():
+    """Sampled at 48 kHz, lines of 150 kHz were folded to any pitch."""
+    description = st.Description(microscope_tip(), st.Initial(), st.Settings(duration=0.02))
+    what = replace(an_opened(), description=description)
+    ((head, arrays),) = answers({"do": "sound", "tables": tables_of(description)}, what)
+    wanted = st.listen(st.run(description))
+    assert head["speed"] == wanted.speed == 0.01
+    found = arrays["sound"] / np.abs(arrays["sound"]).max() * LOUD
+    np.testing.assert_allclose(found, wanted.samples, atol=1e-5)
+    short = description._replace(run=Settings(duration=1e-5))
+    with pytest.raises(st.StictionError, match=r"10 µs is too short .*; let it last 100 µs"):
+        answers({"do": "sound", "tables": tables_of(short)}, what)
+
+
+def spectrogram_and_its_frequencies(description):
+    what = replace(an_opened(), description=description)
+    ((head, arrays),) = answers({"do": "spectrogram", "tables": tables_of(description)}, what)
+    amplitude, (first, last) = arrays["amplitude"], head["times"]
+    frequency = np.linspace(*head["frequency"], len(amplitude))
+    return amplitude, frequency, np.linspace(first, last, amplitude.shape[1])
+
+
+def test_the_spectrogram_of_a_long_run_is_not_folded():
+    """From 75 s on it had fewer than two samples in a period: 853 Hz were shown as 253 Hz."""
+    slow = st.presets.nakano_popov_2020().replace(drive=st.ConstantVelocity(20e-6))
+    for duration in (15.0, 60.0, 100.0, 1000.0):
+        description = st.Description(slow, st.Initial(), st.Settings(duration=duration))
+        amplitude, frequency, times = spectrogram_and_its_frequencies(description)
+        at = np.abs(times - 10.0).argmin()
+        start = st.simulate(slow, 15.0, sample_rate=8e3).samples
+        near = np.abs(start["time"] - times[at]) < 0.5
+        if near.sum() < 4000:  # the window lies beyond
+            continue
+        above = frequency > 100.0
+        line = frequency[above][amplitude[above, at].argmax()]
+        rate = st.analysis.spectrogram(start["v_y"][near], 8e3, width=0.5)
+        wanted = rate.sel(frequency=slice(100.0, 2e3)).mean("time").idxmax("frequency")
+        assert abs(line - float(wanted)) < 2 * frequency[1] + 2.0  # Hz: windows of 0.5 s
+
+
+def test_amplitudes_of_the_spectrogram_are_those_of_the_rate():
+    description = an_opened(duration=1.0).description
+    amplitude, frequency, times = spectrogram_and_its_frequencies(description)
+    rate, width = 64.0 * frequency[-1], 1.0 / frequency[1]
+    run = st.simulate(description.slider, 1.0, sample_rate=rate)
+    wanted = st.analysis.spectrogram(run.samples["v_y"], rate, width=width, step=width / 6)
+    known = wanted.interp(time=times, frequency=frequency).mean("time").values
+    above = frequency > 0.25 * frequency[-1]  # below is the start, which windows share differently
+    # folded is an eighth of the weakest of the lines beyond, at most
+    np.testing.assert_allclose(
+        amplitude.mean(axis=1)[above], known[above], atol=0.02 * known[above].max()
+    )
+
+
+def test_a_run_that_ends_within_the_first_window_has_no_spectrogram(description, monkeypatch):
+    monkeypatch.setattr(spectrum, "sample", lambda *_: np.zeros(20))
+    with pytest.raises(st.ResultError, match="ended before a spectrum could be taken"):
+        spectrogram_and_its_frequencies(description)
+
+
+def test_samples_under_the_microscope_have_all_digits():
+    """A slow turn of friction fell in eight steps of the spacing of single precision at 40 deg."""
+    turned = st.Slider(
+        mass=0.1, k_x=2e3, k_y=4e6, phi="40 deg", normal_load=6.0, drive=st.ConstantVelocity(1e-3),
+        friction=st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f=0.01),
+    )  # fmt: skip
+    description = st.Description(turned, st.Initial(), st.Settings(duration=4.0))
+    ((_, arrays),) = motion.fine(description, 3.5, 4e-3, free)
+    assert (np.diff(arrays["theta"]) < 0.0).all()
+    *_, (_, drawn) = motion.zoom(description, (3.5, 3.501), 600, free)
+    assert len(np.unique(drawn["psi"])) > 0.9 * drawn["psi"].size / 4
+
+
 def test_the_spectrogram_shows_the_transverse_oscillation(description):
     what = an_opened(duration=0.5)
     ((head, arrays),) = answers({"do": "spectrogram", "tables": tables_of(what.description)}, what)
@@ -321,7 +398,7 @@ def test_a_record_lies_over_a_description(tmp_path):
     asked = {"do": "measured", "window": [0.0, 2e-3], "run": [0.0, 5.0], "columns": 16}
     ((head, arrays),) = answers(asked, what)
     assert head["origin"] == "measured"
-    assert arrays["spring_x"].max() == np.float32(7e-3)
+    assert arrays["spring_x"].max() == pytest.approx(7e-3, rel=1e-15)
     assert open_sources([record]).description.slider == st.presets.nakano_popov_2020()
 
 

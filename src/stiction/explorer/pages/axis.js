@@ -1,17 +1,42 @@
 // Axes of plots: linear and logarithmic, with their ticks.
 
-import { RANGES, plain, prefixed, tickText, ticks } from "./quantity.js";
+import { textWidth } from "./drawing.js";
+import { RANGES, plain, prefixed, ticks } from "./quantity.js";
 
-// Linear axis from low to high (SI), shown with the prefix that suits it.
+const ROUNDING = 1e-13; // of values: what differs by less is the same, but for rounding
+const FAR = 20; // ranges from zero: there an axis has an offset
+const WIDEST = 38; // px of a number at a tick, as narrow as beside the narrowest plot
+
+// The ends of values with a margin on both sides, a share of their range.
+export function padded(low, high, share) {
+  const size = Math.max(Math.abs(low), Math.abs(high)), same = !(high - low > ROUNDING * size);
+  const margin = same ? share * size || 1 : share * (high - low);
+  return [low - margin, high + margin];
+}
+
+// Linear axis from low to high (SI), shown with the prefix that suits it. Numbers too wide for their
+// place, or with too many digits, are counted from an offset.
 export function linearAxis(low, high, count, unit = "") {
   if (!(high > low)) [low, high] = [low - 0.5 * (Math.abs(low) || 1), low + 0.5 * (Math.abs(low) || 1)];
-  const [factor, prefix] = unit && unit !== "deg" && unit !== "1" ? prefixed(Math.max(Math.abs(low), Math.abs(high))) : [1, ""];
-  const values = ticks(low * factor, high * factor, count);
-  return {
-    low, high, factor, unit: prefix + unit,
-    place: (value) => (value - low) / (high - low),
-    ticks: values.map((value) => [value / factor, tickText(value, values)]),
-  };
+  const named = unit && unit !== "1";
+  const [factor, prefix] = named && unit !== "deg" ? prefixed(Math.max(Math.abs(low), Math.abs(high))) : [1, ""];
+  const axis = { low, high, place: (value) => (value - low) / (high - low), factor, unit: prefix + unit, offset: "", ticks: labelled(low, high, count, factor, 0) };
+  const wide = axis.ticks.some(([, label]) => label.includes("e") || textWidth(label) > WIDEST);
+  return wide && named ? { ...axis, ...shifted(low, high, count, unit, factor, prefix) } : axis;
+}
+
+function labelled(low, high, count, factor, offset) {
+  return ticks((low - offset) * factor, (high - offset) * factor, count).map(([value, label]) => [offset + value / factor, label]);
+}
+
+// Ticks from a value in the middle on that has few digits; from zero on, if that is not far.
+function shifted(low, high, count, unit, outer, prefix) {
+  const span = high - low, far = Math.max(Math.abs(low), Math.abs(high)) > FAR * span;
+  const exponent = Math.floor(Math.log10(0.5 * span * outer)), digit = 10 ** exponent;
+  const words = (Math.round((0.5 * (low + high) * outer) / digit) * digit).toFixed(Math.min(Math.max(0, -exponent), 99));
+  const offset = far ? Number(words) / outer : 0, reach = Math.max(high - offset, offset - low);
+  const [factor, own] = reach > 0.05 && unit === "deg" ? [1, ""] : prefixed(reach);
+  return { factor, unit: own + unit, offset: far ? `0 = ${words.replace("-", "−")} ${prefix}${unit}` : "", ticks: labelled(low, high, count, factor, offset) };
 }
 
 // Axis of cells of equal width, one for each value (SI).

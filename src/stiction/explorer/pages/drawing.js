@@ -125,6 +125,13 @@ export function text(context, words, x, y, { color = INK, align = "left", font =
   context.font = FONT;
 }
 
+// The width of words in CSS pixels.
+export function textWidth(words) {
+  textWidth.ruler ??= document.createElement("canvas").getContext("2d");
+  textWidth.ruler.font = FONT;
+  return textWidth.ruler.measureText(words).width;
+}
+
 // Words in which an underscore begins an index: "k_x u_x".
 export function symbols(context, words, x, y, { color = INK, align = "left", halo = false, size = 13 } = {}) {
   const parts = words.split(/(_\w+)/).filter(Boolean).map((part) => (part[0] === "_" ? [part.slice(1), true] : [part, false]));
@@ -160,4 +167,10 @@ export function frame(context, box, xs, ys) {
     text(context, label, left - 4, beside, { align: "right", color: SOFT });
   }
   return { x, y };
+}
+
+// What the ticks of a frame are counted from, over its curves.
+export function offsets(context, { left, top, width, height }, xs, ys) {
+  if (ys.offset) text(context, ys.offset, left + 7, top + 9, { color: SOFT, halo: true });
+  if (xs.offset) text(context, xs.offset, left + width - 7, top + height - 9, { align: "right", color: SOFT, halo: true });
 }

@@ -29,6 +29,7 @@ const player = new Player((what) => {
   $("play").setAttribute("aria-label", player.playing ? "Pause" : "Play");
   if (player.playing) sound.play(player.t, player.slow);
   else sound.stop();
+  tellSilence();
   if (what !== "again") lookCloser();
 });
 const sound = new Sound();
@@ -126,7 +127,8 @@ function show(answer, asked) {
   if (!view) series.show("b", answer);
   for (const panel of panels) panel.refresh();
   const sticks = answer.facts.find((each) => each.name === "stick intervals"), rest = answer.facts.find((each) => each.name === "time at rest");
-  say(answer.ok ? `${sticks.text} stick interval${sticks.text === "1" ? "" : "s"}, ${rest.text} at rest` : `ended early: ${answer.status}`, !answer.ok);
+  data.summary = [answer.ok ? `${sticks.text} stick interval${sticks.text === "1" ? "" : "s"}, ${rest.text} at rest` : `ended early: ${answer.status}`, !answer.ok];
+  say(...data.summary);
   page.shown = { asked, quick: answer.quick, arrived: performance.now() };
   page.redraw = asked;
   if (view) zoom(view, false);
@@ -174,7 +176,12 @@ function askViews() {
   const all = JSON.stringify(state.tables);
   if (wanted.includes("spectrogram") && page.spectrum !== all) {
     page.spectrum = all;
-    link.ask({ do: "spectrogram", tables: state.tables }, (answer) => { data.spectrogram = answer; refresh(); }, () => {});
+    data.spectrogramError = null;
+    link.ask({ do: "spectrogram", tables: state.tables }, (answer) => { data.spectrogram = answer; refresh(); }, (answer) => {
+      data.spectrogramError = reason(answer);
+      page.spectrum = null;
+      refresh();
+    });
   }
   const rest = structuredClone(state.tables), V = data.own?.V ?? 0;
   delete rest.slider.phi;
@@ -222,7 +229,7 @@ function lookCloser(anew = false) {
     page.micro = new Track(answer.arrays);
     page.at = answer.at;
     microscope.show(page.micro);
-  }, () => {});
+  }, (answer) => { page.looking = 0; failed(answer); });
 }
 
 const ahead = (micro) => (micro.end >= player.end - 1e-12 ? Infinity : micro.end - player.t);
@@ -321,7 +328,18 @@ function askSound() {
   link.ask({ do: "sound", tables: state.tables }, (answer) => {
     sound.load(answer);
     if (player.playing) sound.play(player.t, player.slow);
+    tellSilence();
   }, failed);
+}
+
+let silence = "";
+
+// Say why nothing is heard, where it was asked for.
+function tellSilence() {
+  const why = sound.on && sound.buffer ? sound.silent(player.t, player.slow) : "";
+  if (why) say(`no sound: ${why}`, true);
+  else if (silence) say(...data.summary);
+  silence = why;
 }
 
 function takeAway(kind) {

@@ -1,7 +1,7 @@
 // A few periods of the fast oscillation about the present time: slip speed and direction of friction.
 
-import { linearAxis } from "./axis.js";
-import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, text } from "./drawing.js";
+import { linearAxis, padded } from "./axis.js";
+import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, offsets, text, textWidth } from "./drawing.js";
 import { quantity } from "./quantity.js";
 
 const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
@@ -36,18 +36,19 @@ export class Microscope {
       let low = Infinity, high = -Infinity;
       for (const value of values) { if (value < low) low = value; if (value > high) high = value; }
       if (least !== null) [low, high] = [least, Math.max(high, SLOWEST)];
-      const margin = 0.07 * (high - low) || 1e-2 * Math.abs(high) || 1;
-      const axis = linearAxis(least === null ? low - margin : low, high + margin, room / 24, unit);
+      const [under, over] = padded(low, high, 0.07), axis = linearAxis(least ?? under, over, room / 24, unit);
       this.rests(context, box);
       const { x, y } = frame(context, box, i ? t : { ...t, ticks: t.ticks.map(([at]) => [at, ""]) }, axis);
       curve(context, time.length, (k) => [x(time[k] - middle), y(values[k])], color, 1.4);
+      offsets(context, box, {}, axis);
       context.save();
       context.translate(9, box.top + room / 2);
       context.rotate(-Math.PI / 2);
       text(context, `${name} (${axis.unit})`, 0, 0, { color, align: "center" });
       context.restore();
     });
-    text(context, t.unit, LEFT - 6, height - 12, { color: SOFT, align: "right" });
+    const [[at, first]] = t.ticks, beside = LEFT + inner * t.place(at) - textWidth(first) / 2 - 4; // not over the first number
+    text(context, t.unit, Math.min(LEFT - 6, beside), height - 12, { color: SOFT, align: "right" });
   }
 
   // Shade the rests.

@@ -45,7 +45,7 @@ export function symbol(key) {
 
 export const SYMBOLS = { mass: "m", normal_load: "W", velocity: "V", duration: "duration" };
 
-// Values at which an axis has ticks, and how many digits they need.
+// Values at which an axis has ticks, with the digits that their step needs.
 export function ticks(low, high, count) {
   const rough = (high - low) / Math.max(count, 1);
   if (!(rough > 0) || !isFinite(rough)) return [];
@@ -53,12 +53,11 @@ export function ticks(low, high, count) {
   const far = (each) => Math.abs(Math.log(each / rough));
   const step = [1, 2, 5, 10].map((each) => each * unit).reduce((a, b) => (far(b) < far(a) ? b : a));
   const found = [];
-  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
+  for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push([i * step, tickText(i * step, step)]);
   return found;
 }
 
-export function tickText(value, among) {
-  const step = among.length > 1 ? among[1] - among[0] : Math.abs(value) || 1;
+function tickText(value, step) {
   if (step < 1e-9) return value === 0 ? "0" : value.toExponential(0).replace("-", "−");
   const places = Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)));
   const text = value.toFixed(places);

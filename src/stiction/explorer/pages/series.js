@@ -1,7 +1,7 @@
 // The time series of Fig. 3: strips over a common time, each curve as what a column of pixels holds.
 
-import { linearAxis, logAxis } from "./axis.js";
-import { BLUE, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SKY, SOFT, curve, frame, line, symbols, text } from "./drawing.js";
+import { linearAxis, logAxis, padded } from "./axis.js";
+import { BLUE, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SKY, SOFT, curve, frame, line, offsets, symbols, text } from "./drawing.js";
 import { quantity } from "./quantity.js";
 
 const LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34, GAP = 5;
@@ -54,6 +54,7 @@ export class Series {
       context.clip();
       this.curves(context, strip, x, y);
       context.restore();
+      offsets(context, box, {}, axis);
       this.words(context, strip, axis, box);
       this.boxes.push({ box, x });
       top += box.height + GAP;
@@ -82,8 +83,7 @@ export class Series {
       const top = 10 ** Math.ceil(Math.log10(Math.max(high, 1e-12)) + 0.02);
       return logAxis(Math.max(Math.min(10 ** Math.floor(Math.log10(least || top)), top / 100), top * 1e-8), top, strip.unit, box.height / 16);
     }
-    const margin = 0.06 * (high - low) || 0.05 * Math.abs(high) || 1;
-    return linearAxis(low - margin, high + margin, box.height / 22, strip.unit);
+    return linearAxis(...padded(low, high, 0.06), box.height / 22, strip.unit);
   }
 
   // Shade each column by the share of its time in which the mass is at rest.

@@ -1,7 +1,7 @@
 // The views at the side: numbers, phase portrait, damping diagram, spectrogram, stability map, study.
 
-import { barAxis, cellAxis, linearAxis, logAxis, power } from "./axis.js";
-import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, curve, frame, line, symbols, text, widthOf } from "./drawing.js";
+import { barAxis, cellAxis, linearAxis, logAxis, padded, power } from "./axis.js";
+import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, curve, frame, line, offsets, symbols, text, widthOf } from "./drawing.js";
 import { element } from "./form.js";
 import { plain, quantity } from "./quantity.js";
 
@@ -44,8 +44,8 @@ class PhasePortrait {
     const parts = [[data.pinned, "#444b53", 0.5], [data, GREEN, 1]].filter(([each]) => each?.track);
     const ends = parts.flatMap(([each]) => [extent(each.track.columns.u_x).map((u) => u * each.scene.k[0]), extent(each.track.columns.V_X)]);
     const xs = [0, 2].flatMap((i) => ends[i] ?? []), ys = [1, 3].flatMap((i) => ends[i] ?? []);
-    const pad = (low, high) => [low - 0.05 * (high - low || 1e-9), high + 0.05 * (high - low || 1e-9)];
-    this.axes = { xs: linearAxis(...pad(Math.min(...xs), Math.max(...xs)), 5, "N"), ys: linearAxis(...pad(Math.min(...ys), Math.max(...ys)), 5, "m/s") };
+    const around = (ends) => padded(Math.min(...ends), Math.max(...ends), 0.05);
+    this.axes = { xs: linearAxis(...around(xs), 5, "N"), ys: linearAxis(...around(ys), 5, "m/s") };
     this.to = frame(context, box, this.axes.xs, this.axes.ys);
     for (const [each, color, alpha] of parts) {
       const { u_x: u, V_X: v } = each.track.columns, stiff = each.scene.k[0];
@@ -53,6 +53,7 @@ class PhasePortrait {
       curve(context, u.length, (i) => [this.to.x(stiff * u[i]), this.to.y(v[i])], color);
       context.globalAlpha = 1;
     }
+    offsets(context, box, this.axes.xs, this.axes.ys);
     below(context, width, height, `spring force k_x u_x (${this.axes.xs.unit})`);
     beside(context, height, `velocity X′ (${this.axes.ys.unit})`);
     this.k = k;
@@ -132,6 +133,7 @@ class Spectrogram {
   still(context, width, height, data) {
     const found = data.spectrogram;
     this.to = null;
+    if (data.spectrogramError) return note(context, width, height, wrapped(data.spectrogramError));
     if (!found) return note(context, width, height, "computing …");
     const box = BOX(width, height), { amplitude } = found.arrays, [rows, columns] = amplitude.shape;
     context.drawImage(shaded(amplitude, rows, columns), box.left, box.top, box.width, box.height);
