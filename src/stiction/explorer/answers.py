@@ -145,7 +145,8 @@ def sound(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     if (high - low) / speed < SHORTEST_SOUND:
         lasts, least = in_words(high - low, "s"), in_words(SHORTEST_SOUND * speed, "s")
         raise StictionError(f"a run of {lasts} is too short to be heard; let it last {least}")
-    times = low + np.arange(int((high - low) / speed * RATE)) * (speed / RATE)
+    count = int((high - low) / speed * RATE)
+    times = low + np.arange(count, dtype=np.float64) * (speed / RATE)
     values = rate_at(description, times, progress=lambda _: check())
     yield {"rate": RATE, "start": low, "speed": speed}, {"sound": values.astype(np.float32)}
 

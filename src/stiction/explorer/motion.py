@@ -35,6 +35,7 @@ PER_COLUMN = 16  # samples in a column of pixels while a slider moves
 FEWEST_SAMPLES, MOST_SAMPLES = 4_000, 24_000  # samples of the whole run then
 CLOSE = 4  # columns between two rests that look like one
 IN_SLIP = 48  # samples in a slip between two rests
+QUICK, EXACT = np.float32, np.float64  # numbers while a slider moves, and then
 FINE = 4_001  # samples under the microscope
 DIGITS = 6  # of a number on the page
 PEAK_DIGITS = 4  # of a force between two samples, as on the command line
@@ -104,7 +105,7 @@ def run(description: Description, columns: int, check: Check) -> Iterator[Reply]
         }
         drawn = curves(table, solution.sticks, window, columns)
         if number == 0 or len(within):  # else the page animates what it has
-            drawn |= track(table, np.isin(table["time"], moving))
+            drawn |= track(table, np.isin(table["time"], moving), QUICK if quick else EXACT)
         yield head, drawn
 
 
@@ -177,9 +178,12 @@ def dense(rests: NDArray[np.bool_]) -> NDArray[np.bool_]:
     return np.asarray(rests | (between & close), np.bool_)
 
 
-def track(table: ColumnTable, chosen: NDArray[np.bool_]) -> Arrays:
-    """Return the chosen samples, with which the apparatus is animated."""
-    return {f"track_{name}": values[chosen] for name, values in as_track(table).items()}
+def track(table: ColumnTable, chosen: NDArray[np.bool_], kind: type[np.floating[Any]]) -> Arrays:
+    """Return the chosen samples, with which the apparatus is animated, as numbers of a kind."""
+    samples = as_track(table)
+    time = samples.pop("time")[chosen]
+    drawn = {f"track_{name}": values[chosen].astype(kind) for name, values in samples.items()}
+    return {"track_time": time, **drawn}
 
 
 def as_track(table: ColumnTable) -> Arrays:

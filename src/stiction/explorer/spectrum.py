@@ -17,6 +17,7 @@ from stiction.text.units import in_words
 SHOWN, SAMPLED = 2.0, 8.0  # of the highest frequency: what is shown, and the rate of samples
 FEWEST, MOST = 2_000, 150_000  # samples of a run that is sampled throughout
 WIDTHS, STEPS, SHORTEST = 50, 6, 64  # windows beside each other, steps of one, samples of one
+ROUNDING = 8.0 * np.finfo(np.float64).eps  # of an elongation: smaller steps are none
 APART, LENGTH = 300, 1_024  # windows of a longer run, samples of one
 
 
@@ -46,7 +47,8 @@ def spectrogram(description: Description, check: Check) -> Reply:
         rate, windows, length, hop = SAMPLED * highest, APART, LENGTH, LENGTH
         starts = np.linspace(low, high - length / rate, windows)
         times = (starts[:, np.newaxis] + np.arange(length + 1) / rate).ravel()
-    rates = mean_rates(sample(description, times, check), rate, len(times) // windows)
+    elongation = sample(description, times, check)
+    rates = mean_rates(elongation, rate, len(times) // windows)
     if len(rates) < length:
         lasts = in_words(length / rate, "s")
         raise ResultError(f"the run ended before a spectrum could be taken, which lasts {lasts}")
@@ -55,6 +57,7 @@ def spectrogram(description: Description, check: Check) -> Reply:
     top = max(int(np.searchsorted(frequency, SHOWN * highest)), SHORTEST // 8)
     loss = np.sinc(frequency[:top] / rate)  # of a mean over a step
     amplitude = found.values[:top] / loss[:, np.newaxis]
+    amplitude[amplitude < ROUNDING * np.max(abs(elongation)) * rate] = 0.0
     middles = found["time"].values
     if windows > 1:
         middles = starts[: amplitude.shape[1]] + 0.5 * length / rate

@@ -125,12 +125,11 @@ export function text(context, words, x, y, { color = INK, align = "left", font =
   context.font = FONT;
 }
 
+const ruler = document.createElement("canvas").getContext("2d");
+ruler.font = FONT;
+
 // The width of words in CSS pixels.
-export function textWidth(words) {
-  textWidth.ruler ??= document.createElement("canvas").getContext("2d");
-  textWidth.ruler.font = FONT;
-  return textWidth.ruler.measureText(words).width;
-}
+export const textWidth = (words) => ruler.measureText(words).width;
 
 // Words in which an underscore begins an index: "k_x u_x".
 export function symbols(context, words, x, y, { color = INK, align = "left", halo = false, size = 13 } = {}) {
