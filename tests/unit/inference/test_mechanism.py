@@ -535,6 +535,13 @@ def test_a_claim_of_static_friction_names_the_rate_and_state_that_is_like_it():
     assert "direct effect" not in " ".join(odds_with().sentences())
 
 
+def test_a_claim_of_rotation_does_not_exclude_a_static_peak_beside_it():
+    sure = np.array([0.02, 0.95, 0.03])
+    static = odds_with(probabilities=sure, by_halves=np.array([sure, sure]))
+    assert "a static coefficient of its own beside the rotation" in str(odds_with())
+    assert "of its own" not in str(static)
+
+
 def test_mechanisms_that_were_not_compared_are_named():
     assert "LuGre" in " ".join(odds_with(absent=("LuGre",)).sentences())
     only = odds_with(names=(ROTATION, "LuGre", RATE_AND_STATE))

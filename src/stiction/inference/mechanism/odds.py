@@ -190,6 +190,11 @@ class Odds(Report):
                 "across the drive: a friction limit that is an ellipse looks like another "
                 "misalignment."
             )
+        if self.decision == ROTATION:
+            found.append(
+                "Not excluded: a static coefficient of its own beside the rotation, which was not "
+                "simulated; where it is small it does not show."
+            )
         if self.decision in (LUGRE, RATE_AND_STATE):
             found.append(
                 "Not excluded: a Stribeck curve with a static peak on a misaligned rig, which is "
