@@ -41,7 +41,7 @@ Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0
 SURE = 2.0  # standard errors beyond which a - b has a sign
-DIFFERENT = 0.01  # probability of steps that differ as much by chance
+DIFFERENT = 1e-3  # probability of steps that differ as much by chance
 
 
 @dataclass(frozen=True)
@@ -139,7 +139,7 @@ class VelocitySteps(SectionReport):
     @property
     def section(self) -> Section:
         """The steps in words and as a table."""
-        sentences = [self._a_minus_b(), *self._trend(), *self.fitted]
+        sentences = [self._a_minus_b(), *self._trend(), *self.fitted, *self._differing()]
         if self.stiffness < STIFF:
             sentences.append(
                 f"The rig is not stiff, k D_c/(b W) = {self.stiffness:.3g}: its spring shapes the "
@@ -167,6 +167,18 @@ class VelocitySteps(SectionReport):
         where = few if len(known) < len(self.steps) else ""
         value = f"{mean:+.4f} ± {number_text(error, '.1g')}"
         return f"Steady friction {way}: a - b = {value} on average{where}."
+
+    def _differing(self) -> list[str]:
+        """Return which fitted parameters are not those of one law, in a sentence, if any is."""
+        fits = {name: (name, f"{name}_error") for name in ("a", "b", "D_c")}
+        names = [name for name, its in fits.items() if not _alike(self.steps, *its)]
+        if not names:
+            return []
+        verb = "differ" if len(names) > 1 else "differs"
+        return [
+            f"{in_list(names)} {verb} from step to step by more than the errors: a curve has no "
+            "inertia, and one law may not hold at all speeds."
+        ]
 
     def _trend(self) -> list[str]:
         """Return how friction changes with the travel, in a sentence, if it does."""
@@ -209,6 +221,17 @@ def common_value(steps: Sequence[VelocityStep]) -> CommonValue:
     return CommonValue(
         float(found[0]), sqrt(variance if alike else variance * square / free), alike
     )
+
+
+def _alike(steps: Sequence[VelocityStep], value: str, error: str) -> bool:
+    """Return whether a fitted parameter is the same in all steps, within its errors."""
+    pairs = np.array([(getattr(each, value), getattr(each, error)) for each in steps])
+    values, errors = pairs[np.isfinite(pairs).all(axis=1)].T
+    if len(values) < 2 or not errors.all():
+        return True
+    weights = errors**-2.0
+    square = float(weights @ (values - weights @ values / weights.sum()) ** 2)
+    return bool(chdtrc(len(values) - 1, square) > DIFFERENT)
 
 
 HEADINGS = ("from", "to", "a - b", "±", "law", "a", "±", "b", "±", "D_c", "±")

@@ -541,3 +541,12 @@ def test_a_trend_that_all_steps_share_cancels():
     ]  # fmt: skip
     assert common_value(steps).value == pytest.approx(size, abs=1e-9)
     assert common_value(steps).error == pytest.approx(own, rel=1e-3)  # 2 steps with one level
+
+
+def test_parameters_that_are_not_those_of_one_law_are_named():
+    """At a step to a high speed inertia counts: a was off by nine errors, without a word."""
+    fits = [(0.0100, 1e-5, 0.015, 1e-4), (0.0101, 1e-5, 0.0151, 1e-4)]
+    steps = [replace(ONE, a=a, a_error=da, b=b, b_error=db) for a, da, b, db in fits]
+    assert "a differs from step to step" in str(VelocitySteps((*steps,), np.nan))
+    alike = (steps[0], replace(steps[1], a=0.01001))
+    assert "from step to step" not in str(VelocitySteps(alike, np.nan))
