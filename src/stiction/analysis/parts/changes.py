@@ -63,8 +63,8 @@ def section(found: Analysis) -> Section | None:
     headings = ("from", "to", "cycles", *(COLUMNS[name][1] for name in names))
     lines = [
         "The period of the cycles changes: each part has means of its own. The velocity is the "
-        "rate of loading over the stiffness; static friction is that of the peaks, kinetic that "
-        "of the middles between peaks and troughs."
+        "rate of loading over the stiffness, that of the drive less that of the creep; static "
+        "friction is that of the peaks, kinetic that of the middles between peaks and troughs."
     ]
     return Section("Parts", lines, Table(headings, rows))
 
