@@ -41,10 +41,12 @@ export class Microscope {
       const { x, y } = frame(context, box, i ? t : { ...t, ticks: t.ticks.map(([at]) => [at, ""]) }, axis);
       curve(context, time.length, (k) => [x(time[k] - middle), y(values[k])], color, 1.4);
       offsets(context, box, {}, axis);
+      const words = `${name} (${axis.unit})`, fits = Math.min(1, room / textWidth(words)); // not over those of the next
       context.save();
       context.translate(9, box.top + room / 2);
       context.rotate(-Math.PI / 2);
-      text(context, `${name} (${axis.unit})`, 0, 0, { color, align: "center" });
+      context.scale(fits, fits);
+      text(context, words, 0, 0, { color, align: "center" });
       context.restore();
     });
     const [[at, first]] = t.ticks, beside = LEFT + inner * t.place(at) - textWidth(first) / 2 - 4; // not over the first number
