@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from io import BytesIO
+from keyword import iskeyword
 from pathlib import Path, PurePath
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -106,7 +107,7 @@ def own_law(law: Any) -> str:
     path = PurePath(file)
     module = ".".join(part for part in path.with_suffix("").parts if part != "..")
     beside = f"  # of {path.name}, beside this file" if path.suffix else ""
-    if all(part.isidentifier() for part in module.split(".")):
+    if all(part.isidentifier() and not iskeyword(part) for part in module.split(".")):
         return f"from {module} import {kind}{beside}\n\n"
     return (
         "from importlib import import_module\n\n"

@@ -44,7 +44,8 @@ def spectrogram(description: Description, check: Check) -> Reply:
         length = max(count // WIDTHS, SHORTEST)
         times, hop = np.linspace(low, high, count + 1), length // STEPS
     else:
-        rate, windows, length, hop = SAMPLED * highest, APART, LENGTH, LENGTH
+        rate, length, hop = SAMPLED * highest, LENGTH, LENGTH
+        windows = min(APART, int((high - low) * rate) // (length + 1))  # beside each other
         starts = np.linspace(low, high - length / rate, windows)
         times = (starts[:, np.newaxis] + np.arange(length + 1) / rate).ravel()
     elongation = sample(description, times, check)

@@ -205,7 +205,7 @@ def _find_break_away(
     last = first + 3 * size
     if len(cycles):
         last = _first_fall(without_spikes(force[:last]), cycles, rough, size)
-        first = min(first, last)
+        first = min(first, int(np.argmax(without_spikes(force[:last]))))
     begin = max(0, first - 2 * size)
     wanted = (rough / max(SHARP * float(np.ptp(forces)), TINY)) ** 2
     width = int(min(max(wanted, 1.0), size))
@@ -281,7 +281,8 @@ def _first_fall(force: Floats, cycles: CycleTable, rough: float, size: int) -> i
     A cycle may be as short as a mean of `size` samples. So the means are as short as the noise of
     a sample, `rough` (N), allows; no cycle begins before that fall.
     """
-    fall = max(cycles.least, min(PEAK * float(np.ptp(force)), 0.5 * cycles.median("drop")))
+    drop = cycles.median("drop")
+    fall = max(cycles.least, min(PEAK * float(np.ptp(force)), 0.5 * drop), 0.25 * drop)
     width = int(min(max((FALLS * rough / fall) ** 2, 1.0), size))
     count = max(len(force) // width, 1)
     means = part_means(force, count)

@@ -211,11 +211,11 @@ def common_value(steps: Sequence[VelocityStep]) -> CommonValue:
     if not own.max() > 0.0:  # a run, or unknown
         return CommonValue(float(values.mean()), hypot(own.max(), float(shares.mean())), True)
     weights = 1.0 / np.maximum(own, LEAST_ERROR * own.max())
-    rows = np.vstack([np.stack([weights, weights * shares], axis=1), [0.0, 1.0]])
+    shared = min(len(sure), 2)  # steps that steady friction between two of them counts in
+    rows = np.vstack([np.stack([weights, weights * shares], axis=1), [0.0, sqrt(shared)]])
     wanted = np.append(weights * values, 0.0)
     found = np.linalg.lstsq(rows, wanted)[0]
     square = float(np.sum((wanted - rows @ found) ** 2))
-    shared = min(len(sure), 2)  # steps that steady friction between two of them counts in
     variance, free = shared * np.linalg.inv(rows.T @ rows)[0, 0], len(sure) - 1
     alike = bool(free == 0 or chdtrc(free, square) > DIFFERENT)
     return CommonValue(

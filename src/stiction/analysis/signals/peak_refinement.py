@@ -11,6 +11,7 @@ from stiction.analysis.signals.turning_points import TurningPoints
 from stiction.arrays import Floats, Indices
 
 ROUNDING = 1e-9  # a slope less than this part of the bend is none
+LOPSIDED = 0.5  # of its readings beneath: so many more lie on one side of a top that falls suddenly
 LEVEL = 1e-12  # of the largest value: less is neither slope nor bend, as of a force that is clipped
 
 
@@ -153,7 +154,8 @@ def _within_steps(time: Floats, points: TurningPoints, upward: Floats, found: Ve
     both = rise + fall
     share = np.where(both > 0.0, rise, 0.5) / np.where(both > 0.0, both, 1.0)
     placed = time[first] + share * (time[last] - time[first])
-    return Vertices(np.where(last > first, placed, found.time), found.value)
+    lopsided = abs(rise - fall) > LOPSIDED * both  # else the parabola's is better
+    return Vertices(np.where((last > first) & lopsided, placed, found.time), found.value)
 
 
 def _corners_as_sampled(

@@ -96,7 +96,8 @@ class PartLower(Lower):  # type: ignore[misc]
         function, names = self.typeof(expr.func.name), [each.name for each in expr.args]
         kinds, kind = [*map(self.typeof, names)], self.fndesc.calltypes[expr].return_type
         order = ORDERS.get(cast(Any, getattr(function, "typing_key", None)))
-        if order is None or not all(isinstance(each, types.Number) for each in kinds):
+        numbers = not expr.vararg and all(isinstance(each, types.Number) for each in kinds)
+        if order is None or not numbers:
             return super().lower_call(resty, expr)
         compared = context.typing_context.resolve_value_type(order)
         known = compared.get_call_type(context.typing_context, (kind, kind), {})

@@ -154,3 +154,47 @@ def test_a_stated_filter_is_an_error_of_friction(cut):
     for each, true in ((found.friction.static, 2.0), (found.friction.kinetic, 1.5)):
         assert abs(each.force - true) < 2.0 * each.error < 0.6
     assert analysis_of_cycles(100.3, 0.3, st.Sensor(filter="40 Hz")).friction.kinetic.error < 0.01
+
+
+@pytest.mark.parametrize("samples", [18, 40, 80])  # of a cycle
+@pytest.mark.parametrize("count", [12, 25])
+def test_a_first_break_away_before_a_slow_fall(samples, count):
+    """It was read on the flank behind its peak: 0.8999 +- 0.0001 for 0.9084 N."""
+    time = np.arange(samples * (count + 6)) / samples
+    since = time - 6.0
+    swing = 0.013 * (1.0 - 0.4 * np.exp(-np.maximum(since, 0.0) / 2.0))
+    force = np.where(since < 0.0, 0.15 * time, 0.9 + swing * np.sin(2.0 * np.pi * since))
+    force += 1e-4 * np.random.default_rng(0).standard_normal(len(time))
+    true = force[(since > 0.0) & (since < 0.5)].max()
+    found = st.analyse(st.Record(time=time, force=force)).friction.break_away
+    assert found.force == pytest.approx(true, abs=3.0 * found.error)
+    assert found.error < 1e-3
+
+
+def sawtooth(samples, count, begin=2.0):
+    """Return a loading to a first peak, and falls by 1 N from 2 N in a tenth of each cycle."""
+    time = np.arange(int(samples * count)) / samples
+    share = time % 1.0
+    fall = 0.5 + 0.5 * np.cos(np.pi * (share - 0.9) / 0.1)
+    force = 1.0 + np.where(share < 0.9, share / 0.9, fall)
+    early = time < 1.0
+    return np.append(time[early], time + 1.0), np.append((begin * time)[early], force)
+
+
+def test_a_first_peak_below_the_end_of_the_range_is_known():
+    """Later peaks are cut off, it is not; within its error it might have been, it said."""
+    time, force = sawtooth(30, 40.3, begin=1.7)
+    found = st.analyse(st.Record(time=time, force=np.minimum(force, 1.8))).friction
+    assert found.break_away.force == pytest.approx(1.7 * 29 / 30, abs=1e-6)
+    assert found.static is None
+    assert "the peaks are cut off: it is 1.8 N or more" in found.missing["static"]
+
+
+def test_errors_of_peaks_between_samples():
+    """Half of the rise within a sample over what a fall of three has more than one; a quarter."""
+    time, force = sawtooth(30, 40.3)
+    found = st.analyse(st.Record(time=time[30:], force=force[30:])).friction
+    rise = 1.0 / 0.9 / 30
+    assert found.static.error == pytest.approx(0.0210, abs=0.001)
+    assert rise / 4.0 < found.static.error < rise
+    assert found.kinetic.error == pytest.approx(0.0059, abs=0.001)

@@ -550,3 +550,11 @@ def test_parameters_that_are_not_those_of_one_law_are_named():
     assert "a differs from step to step" in str(VelocitySteps((*steps,), np.nan))
     alike = (steps[0], replace(steps[1], a=0.01001))
     assert "from step to step" not in str(VelocitySteps(alike, np.nan))
+
+
+def test_the_error_of_the_trend_counts_once():
+    """Of five steps whose trends add up its variance was doubled, as if two shared a level."""
+    own, share = 1e-5, 1e-3
+    error = np.hypot(own, share)
+    steps = [replace(ONE, a_minus_b=1e-3, a_minus_b_error=error, trend_share=share)] * 5
+    assert common_value(steps).error == pytest.approx(share, rel=0.01)

@@ -68,7 +68,7 @@ def test_operators_keep_the_types_that_numba_gives_them():
 
 def ends(a, b, c):
     """Return the smallest and the largest of some numbers."""
-    return min(a, b, c), max(a, b, c), min(b, a), max(c, b)
+    return min(a, b, c), max(a, b, c), min(b, a), max(*(c, b))
 
 
 @pytest.mark.skipif(jit.INTERPRETED, reason="nothing is compiled")

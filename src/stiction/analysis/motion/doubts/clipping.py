@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import inf
 
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.motion.friction import Friction
+from stiction.analysis.motion.friction import Friction, Measured
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.text.units import in_words
@@ -36,7 +37,7 @@ def without_cut_off(friction: Friction, record: Record, cycles: CycleTable) -> F
     """Return the friction without what peaks and troughs do not show that are cut off."""
     cut = {name: value for name, value, _ in flat_ends(record.force)}
     end, broke = cut.get("largest"), friction.break_away
-    if end is not None and broke is not None and broke.force + SURE * broke.error >= end:
+    if end is not None and broke is not None and _breaks_at(record, cycles, broke, end):
         reason = f"the peak is cut off: it is {in_words(broke.force, 'N')} or more"
         friction = friction._replace(
             break_away=None, missing=friction.missing | {"break_away": reason}
@@ -51,6 +52,13 @@ def without_cut_off(friction: Friction, record: Record, cycles: CycleTable) -> F
         bound = f": it is {in_words(friction.kinetic.force, 'N')} or {bounds[next(iter(cut))]}"
         friction = friction.without_kinetic(what + bound * (len(cut) == 1))
     return friction
+
+
+def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: float) -> bool:
+    """Return whether the first break-away may be a value, which the force had until its trough."""
+    until = cycles["start"][0] if len(cycles) else inf
+    near = broke.force + SURE * broke.error >= end
+    return near and bool((record.force[record.time <= until] == end).any())
 
 
 def _is_reached(record: Record, cycles: CycleTable, value: float) -> bool:
