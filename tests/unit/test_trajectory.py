@@ -297,3 +297,14 @@ def test_samples_are_a_mapping(run):
     assert "ux" not in run.samples
     with pytest.raises(KeyError, match="unknown column 'ux'; did you mean 'u_x'"):
         run.samples["ux"]
+
+
+def test_a_largest_force_that_samples_cannot_show_is_a_lower_bound():
+    """The sample is that next to the peak; one whose cubic is off by 5e-3 hides more than that."""
+    time = np.arange(7.0)
+    samples = {"time": time, "u_x": 1.0 - 0.1 * (time - 3.3) ** 2, "v_x": -0.2 * (time - 3.3)}
+    found = largest_spring_force(samples, 2.0)
+    assert (found.time, found.force) == pytest.approx((3.3, 2.0))
+    assert (found.sample, found.shown) == (3, True)
+    samples["u_x"] = samples["u_x"] + np.where(time == 2.0, 5e-3, 0.0)
+    assert not largest_spring_force(samples, 2.0).shown

@@ -529,6 +529,8 @@ def test_steps_that_differ_are_not_said_to_be_alike():
     assert not found.alike
     assert 1e-3 < found.error < 2e-3  # as they scatter, not as they are known
     assert "depends on speed differently" in str(VelocitySteps((*steps,), np.nan))
+    by_chance = [replace(ONE, a_minus_b=x * 1.4e-5, a_minus_b_error=1e-5) for x in (-1, 1)]
+    assert common_value(by_chance).alike  # chi^2 of 3.9, beyond which 5 % lie
 
 
 def test_a_trend_that_all_steps_share_cancels():

@@ -152,6 +152,14 @@ def test_what_ran_before_an_edit_is_not_kept_as_the_new_version(root, law, monke
     assert list(root.glob("*/*.code")) == kept
 
 
+def test_an_edit_whose_date_is_set_back_counts(root, law, monkeypatch):
+    monkeypatch.setattr(machine_code, "IMPORTED", law.stat().st_ctime - 3600)
+    for file in machine_code._sources():  # dated as those of a wheel may be
+        os.utime(file, (0, 0))
+    assert machine_code._stale()
+    assert not machine_code.folder().is_relative_to(root)
+
+
 def test_a_file_that_is_being_exchanged_counts_as_edited(root, law, monkeypatch):
     monkeypatch.setattr(machine_code, "_sources", lambda: [law.with_name("gone.py")])
     assert fresh()(1.5) == 3.0
