@@ -170,8 +170,7 @@ class VelocitySteps(SectionReport):
 
     def _differing(self) -> list[str]:
         """Return which fitted parameters are not those of one law, in a sentence, if any is."""
-        fits = {name: (name, f"{name}_error") for name in ("a", "b", "D_c")}
-        names = [name for name, its in fits.items() if not _alike(self.steps, *its)]
+        names = [name for name in ("a", "b", "D_c") if not _alike(self.steps, name)]
         if not names:
             return []
         verb = "differ" if len(names) > 1 else "differs"
@@ -223,9 +222,9 @@ def common_value(steps: Sequence[VelocityStep]) -> CommonValue:
     )
 
 
-def _alike(steps: Sequence[VelocityStep], value: str, error: str) -> bool:
+def _alike(steps: Sequence[VelocityStep], name: str) -> bool:
     """Return whether a fitted parameter is the same in all steps, within its errors."""
-    pairs = np.array([(getattr(each, value), getattr(each, error)) for each in steps])
+    pairs = np.array([(getattr(each, name), getattr(each, f"{name}_error")) for each in steps])
     values, errors = pairs[np.isfinite(pairs).all(axis=1)].T
     if len(values) < 2 or not errors.all():
         return True
