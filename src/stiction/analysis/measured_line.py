@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import rounding_line
@@ -142,6 +143,13 @@ def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> x
     lasts = min(shortest, MEAN_OF_HAMMING / bin_width)
     height = AS_SAWTOOTH * float(cycles["drop"].median()) / np.pi
     bound = height / np.maximum(frequency * lasts, 1.0)
-    harmonic = near[:, None] & (lines.values < bound[:, None])
+    harmonic = near[:, None] & ~_with_lobe(lines.values >= bound[:, None])
     band = lines.sel(frequency=slice(low, None))
     return lines.where(~harmonic, band.median("frequency"))
+
+
+def _with_lobe(stands: np.ndarray) -> np.ndarray:
+    """Return where a line stands, and beside it: its lobe tells where between samples it is."""
+    half = int(LOBE)
+    beside = sliding_window_view(np.pad(stands, ((half, half), (0, 0))), 2 * half + 1, axis=0)
+    return np.asarray(beside.any(axis=-1))

@@ -157,6 +157,24 @@ def test_noise_has_no_line():
     assert found["frequency"].attrs["units"] == "Hz"
 
 
+@pytest.mark.parametrize("number", range(20))
+def test_a_line_beside_a_harmonic_of_the_cycles_keeps_its_frequency(number: int):
+    """The harmonic's samples of the spectrum are those of the line's lobe, too."""
+    draw = np.random.default_rng([7, number])
+    ends = np.cumsum(draw.uniform(0.95, 1.05, 20))
+    time = np.arange(0.0, ends[-1], 1e-3)
+    corners = np.stack([ends - draw.uniform(0.02, 0.1), ends]).T.ravel()
+    force = 2.0 + np.interp(time, corners, np.tile([1.0, 0.0], len(ends)))
+    hum = draw.uniform(11.0, 350.0)
+    force += 10.0 ** draw.uniform(-1.5, -0.5) * np.sin(2.0 * pi * hum * time)
+    record = st.Record(time=time, force=force + 1e-3 * draw.normal(size=len(time)))
+    cycles = st.analysis.find_cycles(record)
+    heard = st.analysis.strongest_line(record, low=10.0, cycles=cycles)
+    errors = ((heard["frequency"] - hum) / heard["frequency_error"]).values
+    assert np.isfinite(errors).sum() > 20
+    assert np.nanmax(np.abs(errors)) < 3.0
+
+
 def test_what_has_no_spectrum_is_refused():
     uneven = np.cumsum(np.where(np.arange(100) % 20, 1.0, 9.0))
     with pytest.raises(st.ResultError, match="of the time lies in gaps"):
