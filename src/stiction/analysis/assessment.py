@@ -30,6 +30,7 @@ from stiction.analysis.motion.metadata import (
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.analysis.record import Record
+from stiction.analysis.signals.clipping import flat_ends
 from stiction.trajectory import Trajectory
 
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
@@ -86,16 +87,17 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     none, apart = cycles.part(slice(0)), cycles_apart(cycles)
     friction = _friction(record, found, cycles.part(~apart), regime, turns)
     drift = shown_drift(record, regime.kind, cycles)
-    stated = compare_metadata(record, regime.kind, cycles, drift)
+    ends = flat_ends(record.force)
+    stated = compare_metadata(record, regime.kind, cycles, drift, ends)
     alike = none if turns else cycles  # those of two strokes are none
-    doubts = warnings(record, regime.kind, alike, friction, stated, drift)
+    doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
     off = error_of_zero(record, cycles, drift)
     if off and friction.kinetic is not None and record.load_variation() <= VARIES:
         friction = friction._replace(kinetic=friction.kinetic.with_error(off))
     unreal = why_no_friction(friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)
-    whole, friction = friction, without_cut_off(friction, record, cycles.part(~apart))
+    whole, friction = friction, without_cut_off(friction, record, cycles.part(~apart), ends)
     other = other_velocity(stated, cycles)
     if other.any() and record.position is None:
         cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)

@@ -14,7 +14,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
-from stiction.analysis.signals.clipping import flat_ends
+from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import (
     correlation_time,
     error_of_few,
@@ -87,7 +87,11 @@ class StatedQuantity(NamedTuple):
 
 
 def compare_metadata(
-    record: Record, kind: str, cycles: CycleTable, drift: Drift | None
+    record: Record,
+    kind: str,
+    cycles: CycleTable,
+    drift: Drift | None,
+    ends: Sequence[FlatEnd],
 ) -> tuple[StatedQuantity, ...]:
     """Return all that a record shows of its apparatus, beside what is stated.
 
@@ -101,9 +105,11 @@ def compare_metadata(
         The cycles of the record.
     drift : Drift or None
         Of the force, if it shows one.
+    ends : sequence of FlatEnd
+        At which the force is cut off: there a fall seems to begin too early.
     """
     found = (
-        _stiffness_over_mass(record, kind, cycles),
+        None if ends else _stiffness_over_mass(record, kind, cycles),
         *_loading_rates(record, kind, cycles, drift),
         _drive_velocity(record),
         _normal_load(record),
@@ -201,8 +207,8 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
     if not len(cycles) or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
     falls = cycles["trough_time"] - cycles["peak_time"]
-    if float(np.median(falls)) * record.sample_rate < FEWEST_PER_FALL or flat_ends(record.force):
-        return None  # where peaks are cut off, a fall seems to begin too early
+    if float(np.median(falls)) * record.sample_rate < FEWEST_PER_FALL:
+        return None
     periods, how = cycles["period"], BY_SLIPS
     rests = float(np.median(periods)) > RESTED * 2.0 * float(np.median(falls))
     swings = periods if kind == HARMONIC and not rests else 2.0 * falls

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from stiction.arrays import Floats, Indices
@@ -12,12 +14,20 @@ FLAT = 4
 TIMES = 3  # that a signal stays at its least value: at rest it does so once
 
 
-def flat_ends(values: Floats) -> list[tuple[str, float, int]]:
-    """Return at which ends of its range a signal stays for longer, or more often, than elsewhere.
+class FlatEnd(NamedTuple):
+    """An end of a signal's range at which it stays.
 
-    Each by its name, "largest" or "least" in magnitude, with its value and the most samples in a
-    row there.
+    By its name, "largest" or "least" in magnitude, with its value, in the unit of the signal, and
+    the most samples in a row there.
     """
+
+    name: str
+    value: float
+    longest: int
+
+
+def flat_ends(values: Floats) -> list[FlatEnd]:
+    """Return the ends of its range at which a signal stays longer or more often than elsewhere."""
     way = 1.0 if values.max(initial=0.0) >= -values.min(initial=0.0) else -1.0
     turned = way * values
     if not len(turned):
@@ -31,7 +41,7 @@ def flat_ends(values: Floats) -> list[tuple[str, float, int]]:
     flat = lasts >= max(FLAT, FLAT * int(lasts[others].max()) + 1)
     ends = (("largest", top, 1), ("least", bottom, TIMES))
     return [
-        (name, way * float(each[end][0]), int(lasts[end].max()))
+        FlatEnd(name, way * float(each[end][0]), int(lasts[end].max()))
         for name, end, least in ends
         if np.count_nonzero(flat & end) >= least
         or (

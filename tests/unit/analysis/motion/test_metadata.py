@@ -210,7 +210,7 @@ def test_the_cut_off_of_a_sensor_counts_too():
         stiffness_across=1e5,  # 225 Hz
         sensors={"force": st.Sensor(bandwidth="100 Hz")},
     )
-    its = compare_metadata(record, "none", st.analysis.find_cycles(record), None)
+    its = compare_metadata(record, "none", st.analysis.find_cycles(record), None, ())
     (each,) = (x for x in its if x.agrees is False)
     assert each.found == 100.0
 
@@ -304,5 +304,5 @@ def test_slips_of_rate_and_state_do_not_contradict_the_mass(number):
     record = record.model_copy(update={"mass": mass, "stiffness": k})
     found = st.analyse(record)
     assert found.regime.kind == "stick-slip"
-    its = compare_metadata(found.record, found.regime.kind, found.cycles, None)
+    its = compare_metadata(found.record, found.regime.kind, found.cycles, None, ())
     assert all(each.agrees is not False for each in its if each.quantity == SWING)

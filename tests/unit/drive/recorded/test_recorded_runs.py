@@ -307,7 +307,7 @@ def test_analyses_take_the_drive_velocity_from_the_table():
     assert velocity == pytest.approx(V, rel=0.02)
     found = st.analyse(run)
     assert found.regime.kind == "stick-slip"
-    its = compare_metadata(found.record, found.regime.kind, found.cycles, None)
+    its = compare_metadata(found.record, found.regime.kind, found.cycles, None, ())
     (rate,) = (each for each in its if each.quantity == LOADING_RATE)
     assert rate.agrees
     assert rate.stated == pytest.approx(slider.k_x * velocity, rel=1e-12)

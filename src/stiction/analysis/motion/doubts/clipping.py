@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from math import inf
 
 import numpy as np
@@ -10,7 +10,7 @@ import numpy as np
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction, Measured
 from stiction.analysis.record import Record
-from stiction.analysis.signals.clipping import flat_ends
+from stiction.analysis.signals.clipping import FlatEnd
 from stiction.text.units import in_words
 
 SURE = 3.0  # errors of a break-away, by which it may be lower than the end of the range
@@ -23,9 +23,9 @@ SHOWN = {
 }
 
 
-def doubt_clipping(record: Record) -> Iterator[str]:
+def doubt_clipping(ends: Sequence[FlatEnd]) -> Iterator[str]:
     """Doubt a force that stays at exactly its largest or least value for longer than elsewhere."""
-    for name, value, longest in flat_ends(record.force):
+    for name, value, longest in ends:
         yield (
             f"The force stays at exactly {in_words(value, 'N')} for up to {longest} samples, its "
             f"{name} value: if that is the end of the load cell's range, {ENDS[name]} are cut off, "
@@ -33,9 +33,11 @@ def doubt_clipping(record: Record) -> Iterator[str]:
         )
 
 
-def without_cut_off(friction: Friction, record: Record, cycles: CycleTable) -> Friction:
-    """Return the friction without what peaks and troughs do not show that are cut off."""
-    cut = {name: value for name, value, _ in flat_ends(record.force)}
+def without_cut_off(
+    friction: Friction, record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]
+) -> Friction:
+    """Return the friction without what peaks and troughs do not show that are cut off at ends."""
+    cut = {each.name: each.value for each in ends}
     end, broke = cut.get("largest"), friction.break_away
     if end is not None and broke is not None and _breaks_at(record, cycles, broke, end):
         reason = f"the peak is cut off: it is {in_words(broke.force, 'N')} or more"

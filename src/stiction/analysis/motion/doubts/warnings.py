@@ -34,6 +34,7 @@ from stiction.analysis.motion.metadata import (
 )
 from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import ACROSS, Record, across_force
+from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -67,16 +68,18 @@ def warnings(
     friction: Friction,
     stated: Sequence[StatedQuantity],
     drift: Drift | None,
+    ends: Sequence[FlatEnd],
 ) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first.
 
-    `stated` is what was compared, `drift` that of the force, if it shows one.
+    `stated` is what was compared, `drift` that of the force, if it shows one, `ends`
+    where it is cut off.
     """
     wrong = {each.quantity: each for each in stated if each.agrees is False}
     found = [
         *_doubt_load(record),
         *_implausible_friction(record, friction, cycles),
-        *doubt_clipping(record),
+        *doubt_clipping(ends),
         *doubt_mean_period(cycles),
         *doubt_loading(cycles),
         *doubt_cycles_apart(cycles),
