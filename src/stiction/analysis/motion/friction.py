@@ -195,29 +195,23 @@ def _find_break_away(
         before, first = np.searchsorted(time, [cycles["start"][0], cycles["trough_time"][0]])
         until = max(FEWEST_SAMPLES, int(first) + 1)
         end = min(end, max(until, MEANS_OF_RECORD // LOADING * int(before)))
-    force = force[:end]
-    forces, noise = _means(force)
+    smooth = without_spikes(force[:end])
+    forces = part_means(smooth, MEANS_OF_RECORD)
+    typical = float(np.median(np.diff(part_starts(end, MEANS_OF_RECORD), append=end)))
+    noise = white_noise(force[:end], order=2) / typical**0.5  # of a mean
     at, reason = _first_peak(forces, -(-min(until, end) * len(forces) // end), noise)
     if at is None:
         return None, reason
-    size, first = -(-len(force) // len(forces)), at * len(force) // len(forces)
+    size, first = -(-end // len(forces)), at * end // len(forces)
     rough = noise * size**0.5  # of a sample
     last = first + 3 * size
     if len(cycles):
-        last = _first_fall(without_spikes(force[:last]), cycles, rough, size)
-        first = min(first, int(np.argmax(without_spikes(force[:last]))))
+        last = _first_fall(smooth[:last], cycles, rough, size)
+        first = min(first, int(np.argmax(smooth[:last])))
     begin = max(0, first - 2 * size)
     wanted = (rough / max(SHARP * float(np.ptp(forces)), TINY)) ** 2
     width = int(min(max(wanted, 1.0), size))
-    return _break_away(force, begin, last, width, rough, load), ""
-
-
-def _means(force: Floats) -> tuple[Floats, float]:
-    """Return means over equal parts of a force, and the noise of each (N)."""
-    forces = part_means(without_spikes(force), MEANS_OF_RECORD)
-    size = float(np.median(np.diff(part_starts(len(force), MEANS_OF_RECORD), append=len(force))))
-    noise = white_noise(force, order=2) / size**0.5
-    return forces, noise
+    return _break_away(smooth, begin, last, width, rough, load), ""
 
 
 def _first_peak(forces: Floats, until: int, noise: float) -> tuple[int | None, str]:
@@ -295,11 +289,11 @@ def _first_fall(force: Floats, cycles: CycleTable, rough: float, size: int) -> i
 def _break_away(
     force: Floats, begin: int, end: int, width: int, rough: float, load: Floats
 ) -> Measured:
-    """Return the largest force from a sample to another, averaged over some samples.
+    """Return the largest of a force without spikes from a sample to another, averaged over some.
 
     `rough` is the noise of a sample, N.
     """
-    near = without_spikes(force)[begin : end + 2 * width]
+    near = force[begin : end + 2 * width]
     smooth = np.convolve(near, np.full(width, 1.0 / width), "valid")
     top = int(np.argmax(smooth[: max(end - begin - width // 2, 1)]))
     error = float(np.hypot(rough / width**0.5, _peak_excess(smooth, top, width)))
