@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.protocols.common_mean import common_mean
 from stiction.analysis.protocols.friction_test import ConstantStretch, FrictionTest
 from stiction.analysis.protocols.settling import SettledPart, settled_part
 from stiction.analysis.signals.correlated_noise import CorrelatedNoise, noise_about
@@ -15,7 +16,6 @@ from stiction.arrays import Floats, Indices
 SLOPE = 12.0**0.5  # error of a rise in a straight line, over that of its mean
 TAIL_MEAN = 0.5  # mean of what is left of an evolution in a part, over its first value, at most
 SURE = 3.0  # standard errors beyond which there is a trend
-LEAST_ERROR = 1e-6  # of the largest error: a slope without noise has not all the weight
 SCATTERED = 3.0  # times the scatter by chance: slopes of stretches with more are not alike
 
 
@@ -40,20 +40,14 @@ def common_trend(slopes: Floats, errors: Floats) -> TravelTrend:
     """Return the trend that stretches have in common.
 
     Where their slopes scatter by more than their errors tell, the trend varies, and its error is
-    that of a single one (R. DerSimonian & N. Laird, Control. Clin. Trials 7, 177 (1986)).
+    that of a single one.
     """
     known = np.isfinite(slopes) & np.isfinite(errors)
     if not known.any():
         return TravelTrend()
-    unit = float(errors[known].max()) or 1.0  # of errors: weights are those over it
-    slopes, weights = slopes[known], np.maximum(errors[known] / unit, LEAST_ERROR) ** -2.0
-    total, free = float(weights.sum()), len(slopes) - 1
-    slope = float(weights @ slopes) / total
-    square, varies = float(weights @ (slopes - slope) ** 2) / unit**2, 0.0
-    others = total - float(weights @ weights) / total  # nothing if one has all the weight
-    if square > SCATTERED * free and others > 0.0:
-        varies = unit**2 * (square - free) / others
-    return TravelTrend(slope, sqrt(unit**2 / total + varies))
+    found = common_mean(slopes[known], errors[known])
+    varies = found.variance_between if found.square > SCATTERED * found.free else 0.0
+    return TravelTrend(found.value, sqrt(found.error**2 + varies))
 
 
 NO_TREND, NO_NOISE = TravelTrend(), CorrelatedNoise()

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import exp, hypot, isnan, log, nan, sqrt
+from math import exp, hypot, isnan, log, nan
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc
 
+from stiction.analysis.protocols.common_mean import common_mean
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
     FrictionTest,
@@ -22,7 +22,6 @@ from stiction.analysis.protocols.inversion.rig_and_clock import say_rig_and_cloc
 from stiction.analysis.protocols.inversion.spring_slider import Law, SpringSlider
 from stiction.analysis.protocols.inversion.step import StepData
 from stiction.analysis.protocols.steady_levels import (
-    LEAST_ERROR,
     SteadyLevels,
     TravelTrend,
     steady_levels,
@@ -41,7 +40,6 @@ Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0
 SURE = 2.0  # standard errors beyond which a - b has a sign
-DIFFERENT = 1e-3  # probability of steps that differ as much by chance
 
 
 @dataclass(frozen=True)
@@ -199,8 +197,7 @@ class CommonValue(NamedTuple):
 def common_value(steps: Sequence[VelocityStep]) -> CommonValue:
     """Return the mean of a - b, weighted by errors; where steps differ, so says its error.
 
-    The trend is common to all: one more unknown, zero within its error (weighted least squares; of
-    steps that are not alike the error is scaled by Birge's ratio, Phys. Rev. 40, 207 (1932)).
+    The trend is common to all: one more unknown, zero within its error.
     """
     sure = [each for each in steps if not isnan(each.a_minus_b_error)] or steps
     values = np.array([each.a_minus_b for each in sure])
@@ -209,28 +206,16 @@ def common_value(steps: Sequence[VelocityStep]) -> CommonValue:
     own = np.sqrt(np.maximum(errors**2 - shares**2, 0.0))
     if not own.max() > 0.0:  # a run, or unknown
         return CommonValue(float(values.mean()), hypot(own.max(), float(shares.mean())), True)
-    weights = 1.0 / np.maximum(own, LEAST_ERROR * own.max())
-    shared = min(len(sure), 2)  # steps that steady friction between two of them counts in
-    rows = np.vstack([np.stack([weights, weights * shares], axis=1), [0.0, sqrt(shared)]])
-    wanted = np.append(weights * values, 0.0)
-    found = np.linalg.lstsq(rows, wanted)[0]
-    square = float(np.sum((wanted - rows @ found) ** 2))
-    variance, free = shared * np.linalg.inv(rows.T @ rows)[0, 0], len(sure) - 1
-    alike = bool(free == 0 or chdtrc(free, square) > DIFFERENT)
-    return CommonValue(
-        float(found[0]), sqrt(variance if alike else variance * square / free), alike
-    )
+    # steady friction between two steps counts in both
+    found = common_mean(values, own, shares, times=min(len(sure), 2))
+    return CommonValue(found.value, found.scaled_error, found.alike)
 
 
 def _alike(steps: Sequence[VelocityStep], name: str) -> bool:
     """Return whether a fitted parameter is the same in all steps, within its errors."""
     pairs = np.array([(getattr(each, name), getattr(each, f"{name}_error")) for each in steps])
     values, errors = pairs[np.isfinite(pairs).all(axis=1)].T
-    if len(values) < 2 or not errors.all():
-        return True
-    weights = errors**-2.0
-    square = float(weights @ (values - weights @ values / weights.sum()) ** 2)
-    return bool(chdtrc(len(values) - 1, square) > DIFFERENT)
+    return len(values) < 2 or not errors.all() or common_mean(values, errors).alike
 
 
 HEADINGS = ("from", "to", "a - b", "±", "law", "a", "±", "b", "±", "D_c", "±")
