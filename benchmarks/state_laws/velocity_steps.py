@@ -23,7 +23,7 @@ from stiction.analysis.protocols.inversion.spring_slider import (
     SpringSlider,
     course_after_a_step,
 )
-from stiction.analysis.protocols.velocity_steps import VelocitySteps
+from stiction.analysis.protocols.step_findings import VelocitySteps
 
 V, LOAD, MU = 1e-6, 100.0, 0.6  # m/s, N, 1: of steady sliding before the first step
 MOST_SAMPLES = 40_000

@@ -8,7 +8,7 @@ from stiction import plotting
 from stiction.analysis.protocols.healing import Healing
 from stiction.analysis.protocols.hysteresis import Hysteresis, Loop
 from stiction.analysis.protocols.load_dependence import LoadDependence
-from stiction.analysis.protocols.velocity_steps import VelocityStep, VelocitySteps
+from stiction.analysis.protocols.step_findings import VelocityStep, VelocitySteps
 from stiction.analysis.protocols.yaw import ApparentFriction
 
 

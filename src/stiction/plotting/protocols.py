@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from stiction.analysis.protocols.healing import Healing
     from stiction.analysis.protocols.hysteresis import Hysteresis
     from stiction.analysis.protocols.load_dependence import LoadDependence
-    from stiction.analysis.protocols.velocity_steps import VelocitySteps
+    from stiction.analysis.protocols.step_findings import VelocitySteps
     from stiction.analysis.protocols.yaw import ApparentFriction
 
 REACH = 8.0  # D_c of slip that are drawn

@@ -19,7 +19,7 @@ from stiction.analysis.protocols.inversion.fit import invert, unknown
 from stiction.analysis.protocols.inversion.rig_and_clock import say_rig_and_clock
 from stiction.analysis.protocols.inversion.spring_slider import SpringSlider, course_after_a_step
 from stiction.analysis.protocols.inversion.step import StepData, onset, step_problem
-from stiction.analysis.protocols.velocity_steps import (
+from stiction.analysis.protocols.step_findings import (
     VelocityStep,
     VelocitySteps,
     common_value,
