@@ -1,6 +1,7 @@
 """The tree: rooms stay small, and what benchmarks import is there."""
 
 import ast
+import os
 import re
 import tomllib
 from collections import Counter
@@ -25,6 +26,10 @@ REPLACED = re.compile(
 )
 # decorators describe the function below them; laws of users, stored in results, have `settled`
 CONTRACTS = {"compiled", "inlined", "settled", "disturbed"}
+STRAY = re.compile(r".+(\.(orig|rej|bak|swp|swo|tmp)|~)")  # what patches and editors leave
+ROOMS = (*TREES, "docs", "examples", "packaging", "paper", ".github")
+BUILT = {"__pycache__", "_build", "auto_gallery", "generated", "backreferences", "libraries"}
+EMPTY = {"__init__.py", "py.typed"}
 BENCHMARKS = sorted((ROOT / "benchmarks").rglob("*.py"))
 
 
@@ -92,3 +97,30 @@ def test_a_mutant_that_is_known_to_be_equivalent_is_one_of_a_line_that_is_there(
     known = tomllib.loads((ROOT / "benchmarks/mutation/equivalent.toml").read_text("utf-8"))
     texts = {row["file"]: (ROOT / row["file"]).read_text("utf-8") for row in known["mutant"]}
     assert [row for row in known["mutant"] if row["before"] not in texts[row["file"]]] == []
+
+
+def files():
+    """Yield all files but those that are built, whether or not they are under version control."""
+    yield from (path for path in ROOT.iterdir() if path.is_file())
+    for tree in ROOMS:
+        for room, within, names in os.walk(ROOT / tree):
+            within[:] = set(within) - BUILT
+            yield from (Path(room, name) for name in names)
+
+
+def is_stray(path):
+    """Return whether a patch or an editor left a file, or one that was to be written is empty."""
+    return bool(STRAY.fullmatch(path.name)) or not (path.stat().st_size or path.name in EMPTY)
+
+
+def test_no_stray_file_is_left():
+    """A copy that a patch had left beside a module was committed."""
+    assert [str(path.relative_to(ROOT)) for path in files() if is_stray(path)] == []
+
+
+@pytest.mark.parametrize("name", ["a.py.orig", "a.py.rej", "a.bak", "a.md~", ".a.py.swp", "a.py"])
+def test_a_stray_file_is_found(name, tmp_path):
+    path = tmp_path / name
+    path.write_text("x = 1\n" * (name != "a.py"))
+    assert is_stray(path)
+    assert not is_stray(Path(__file__))
