@@ -41,6 +41,7 @@ LOW, HIGHER, FEWEST_MEANS = 0.1, 1.2, 4
 # Standard deviations of white noise: by so much, and no more, the mean of peaks is too high where
 # each peak is sought among some samples; 0.4 in the median of random records
 ABOVE = 0.5
+FIRST = 1.0 / 3.0  # of the median fall, at least, is the first one
 FALLS = 10.0  # standard deviations of noise, whose range over a million means is that
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
 # Kinds of motion whose kinetic friction is the mean of peaks and troughs
@@ -230,7 +231,7 @@ def _first_peak(forces: Floats, until: int, noise: float) -> tuple[int | None, s
             "the force stays at a lower level before its first peak, as where the load changes "
             "while the mass slides: analyse the part before that change by itself"
         )
-    fall = np.maximum(STANDS_OUT * noise, PEAK * rise)
+    fall = np.maximum(FALLS * noise, PEAK * rise)
     fallen = np.flatnonzero((highest - forces > fall) & risen)
     if not len(fallen):
         least = f"{percent(PEAK)} of its rise"
@@ -275,8 +276,7 @@ def _first_fall(force: Floats, cycles: CycleTable, rough: float, size: int) -> i
     A cycle may be as short as a mean of `size` samples. So the means are as short as the noise of
     a sample, `rough` (N), allows; no cycle begins before that fall.
     """
-    drop = cycles.median("drop")
-    fall = max(cycles.least, min(PEAK * float(np.ptp(force)), 0.5 * drop), 0.25 * drop)
+    fall = max(cycles.least, FIRST * cycles.median("drop"))
     width = int(min(max((FALLS * rough / fall) ** 2, 1.0), size))
     count = max(len(force) // width, 1)
     means = part_means(force, count)

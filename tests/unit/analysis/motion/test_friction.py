@@ -198,3 +198,56 @@ def test_errors_of_peaks_between_samples():
     assert found.static.error == pytest.approx(0.0210, abs=0.001)
     assert rise / 4.0 < found.static.error < rise
     assert found.kinetic.error == pytest.approx(0.0059, abs=0.001)
+
+
+def loading(samples, lasts, count, *, first=1.0, gain=0.0, jerk=(0.0, 0.0), noise=0.0, seed=0):
+    """Return a record of a loading to 1 N, and of cycles by 0.3 N, the first by a part of it.
+
+    The peaks grow by a gain from cycle to cycle, up to 1.5 N. Before the first, at a part of the
+    loading, the force may fall by so much in a jerk, and recovers.
+    """
+    time = np.arange(int(samples * (lasts + count))) / samples
+    since = time - lasts
+    number, share = np.floor(since), since % 1.0
+    peak, following = (np.clip(1.0 + gain * (number + k), 1.0, 1.5) for k in (0, 1))
+    least = peak - 0.3 * np.where(number < 1, first, 1.0)
+    slip = peak - (peak - least) * np.sin(0.5 * np.pi * np.clip(share / 0.1, 0.0, 1.0)) ** 2
+    force = np.where(share < 0.1, slip, least + (following - least) * (share - 0.1) / 0.9)
+    at, fall = jerk
+    after = time - at * lasts
+    falls = np.where((after >= 0.0), fall * np.exp(-after / (0.05 * lasts)), 0.0)
+    force = np.where(since < 0.0, time / lasts - falls, force)
+    force += noise * np.random.default_rng(seed).standard_normal(len(time))
+    return st.Record(time=time, force=force)
+
+
+def assert_first_peak(record, step):
+    """Check that the break-away is the peak of 1 N, within its error and the rise in a sample."""
+    found = st.analyse(record).friction.break_away
+    assert found.force == pytest.approx(1.0, abs=3.0 * found.error + step)
+    assert found.error < 0.15
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-3, 0.01])
+@pytest.mark.parametrize("jerk", [(0.3, 0.2), (0.45, 0.15)])
+def test_a_jerk_in_the_lower_half_of_a_loading_is_no_break_away(jerk, noise):
+    assert_first_peak(loading(100, 10.0, 30, jerk=jerk, noise=noise), 1e-3)
+
+
+def test_a_jerk_that_is_small_beside_the_slips_is_no_break_away():
+    assert_first_peak(loading(100, 3.0, 30, jerk=(0.7, 0.08)), 4e-3)
+
+
+@pytest.mark.parametrize("first", [0.4, 1.0])
+@pytest.mark.parametrize("gain", [0.02, 0.05])
+def test_a_first_peak_before_higher_ones_in_the_same_mean_of_the_record(first, gain):
+    """There are two cycles in each of its 400 means."""
+    assert_first_peak(loading(40, 10.0, 400, first=first, gain=gain), 3e-3)
+
+
+@pytest.mark.parametrize(("samples", "lasts", "noise"), [(30, 40.0, 0.03), (100, 10.0, 0.06)])
+def test_noise_on_a_long_loading_is_no_break_away(samples, lasts, noise):
+    """Of 400 means some differ by six standard deviations: it was 0.56 ± 0.05 N for 1 N."""
+    for seed in range(8):
+        record = loading(samples, lasts, 30, noise=noise, seed=seed)
+        assert_first_peak(record, 1.0 / lasts / samples)
