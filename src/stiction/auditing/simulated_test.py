@@ -12,7 +12,7 @@ import numpy as np
 from stiction.analysis.creep.first_slip import first_slip_time, slips_at_once
 from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.motion.cycles import Swings, swings
+from stiction.analysis.motion.cycles import Swings, own_swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import SLOWER, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
@@ -75,8 +75,8 @@ class SimulatedTest:
 
     @cached_property
     def swings(self) -> Swings:
-        """The swings of the force."""
-        return swings(self.record)
+        """The swings of the force: drive and load are steady, so that nothing disturbs it."""
+        return own_swings(self.record)
 
     @cached_property
     def table(self) -> CycleTable:

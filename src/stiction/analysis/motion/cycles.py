@@ -158,7 +158,7 @@ def swings(record: Record) -> Swings:
     read, force = record.force, without_outliers(record.force)
     if force is not record.force:
         record = record.model_copy(update={"force": force})
-    found, grid = _swings(record), even_grid(record.time)
+    found, grid = own_swings(record), even_grid(record.time)
     lasting = _cycles_beside_a_ringing(record, found)
     if grid is None or lasting is not None:
         return found if lasting is None else lasting
@@ -181,7 +181,7 @@ def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
     if ringing is None:
         return None
     smooth = without_ringing(record.time, record.force, ringing)
-    left = _swings(record.model_copy(update={"force": smooth}))
+    left = own_swings(record.model_copy(update={"force": smooth}))
     left = left._replace(table=beside(left.table, ringing), ringing=ringing)
     enough = len(left.table) >= FEWEST_CYCLES and not left.dying
     sticks = enough and rest_share(left.table.median("rise_share")) >= STICKING
@@ -201,7 +201,7 @@ def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings, read: Float
         wave = slow_wave(grid, record.force, frequency)
         if not may_be_carried(frequency, record.duration, record.force - wave, found.table):
             continue
-        carried = _swings(record, wave)
+        carried = own_swings(record, wave)
         its = carried.table
         if is_carried(frequency, record.duration, found.table, its) and not is_rounding(its, read):
             low, high = np.percentile(wave, (1.0, 99.0))
@@ -239,14 +239,18 @@ def _without_line(
 def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
     """Return a record less a line, and its swings, of which the residue of the line is none."""
     rest = record.model_copy(update={"force": record.force - line.values})
-    found = _swings(rest)._replace(lines=(line,))
+    found = own_swings(rest)._replace(lines=(line,))
     if is_residue(line, found.table):
         found = found._replace(table=found.table.part(slice(0)), dying=False, turns=0)
     return rest, found
 
 
-def _swings(record: Record, wave: Floats | None = None) -> Swings:
-    """Return the swings of the force less a wave (N), of which the table has the whole force."""
+def own_swings(record: Record, wave: Floats | None = None) -> Swings:
+    """Return the swings of the force as it is: no line in it is taken for a disturbance.
+
+    So in a run with steady drive and load; in measured records `swings` looks for some. Of a
+    force that a `wave` (N) carries the swings are those less the wave, but tabulated with it.
+    """
     force = record.force if wave is None else record.force - wave
     points = turning_points(force)
     corners, dips, turns = find_corners(record.time, force, points)
