@@ -14,6 +14,7 @@ from stiction import theory
 from stiction.analysis.creep.curve import between_rests, bin_edges
 from stiction.analysis.creep.findings import MISSED
 from stiction.analysis.creep.misalignment import creep_velocity
+from stiction.analysis.parts import creep as creep_part
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.page.canvas import figure_of
@@ -518,3 +519,36 @@ def test_the_creep_of_two_springs_is_that_of_eq_7_where_one_is_far_stiffer():
     # along the force from the start, as the first stick leaves it: both springs load at their rates
     first = np.cos(np.arctan(np.tan(phi) / 0.5))
     assert 0.0 < float(creep_velocity(np.array([first]), phi, 0.0, 0.5)[0]) < 1.0
+
+
+@pytest.mark.parametrize(
+    ("steps", "spread", "noise"), [(60.25, 0.0, 1e-3), (60.4, 3.0, 0.0), (130.7, 3.0, 0.0)]
+)
+def test_rounding_that_slips_share_is_an_error_and_another_averages_away(steps, spread, noise):
+    """Peaks of one height, read as either of two codes, or of heights that differ by some steps."""
+    time, random = np.arange(6000) * 2e-3, np.random.default_rng(0)
+    phase = time % 1.0
+    saw = 1.0 + np.minimum(phase / 0.988, (1.0 - phase) / 0.012)
+    level = (spread * random.random(12))[time.astype(int)] + noise * random.standard_normal(6000)
+    record = st.Record(
+        time=time,
+        force=np.rint(steps * saw + level) / steps,
+        stiffness=10.0,
+        drive_velocity=0.1 / 0.988,
+    )
+    creep = st.analyse(record).creep  # the mass does not creep; a part of the last bin is slip
+    off = (creep["velocity"].values / creep["velocity_error"].values)[1:]
+    assert np.nanmax(np.abs(off)) < 2.0
+    assert np.nanmean(off**2) ** 0.5 > 0.4
+
+
+@pytest.mark.parametrize(("error", "known"), [(0.3, True), (0.45, True), (0.7, False)])
+def test_a_bound_of_creep_above_the_drive_s_velocity_says_nothing(paper_run, error, known):
+    """The mass is faster than the drive in slips alone; two errors are the bound."""
+    found = st.analyse(paper_run)
+    rests = 0.0 * found.creep["velocity"]
+    off = rests + error * paper_run.slider.drive_speed
+    hidden = found._replace(creep=found.creep.assign(velocity=rests, velocity_error=off))
+    said = " ".join(creep_part.section(hidden).sentences)
+    assert ("creeps no faster than" in said) == known
+    assert ("Its creep is not determined" in said) != known

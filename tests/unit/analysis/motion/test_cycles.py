@@ -13,6 +13,7 @@ from tests.measured import bare, read_measured
 import stiction as st
 from stiction.analysis.motion.cycle_columns import TIMES
 from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.disturbance import is_rounding
 from stiction.analysis.motion.friction import friction_of
 from stiction.analysis.motion.hesitations import remove_hesitations
 from stiction.analysis.signals.reversals import all_heights, remove_reversals, standing_out
@@ -719,3 +720,18 @@ def test_the_stiffness_of_a_run_is_by_the_speed_of_its_drive_at_each_cycle(slide
     assert slopes.max() > 2.0 * slopes.min()  # cycles at both speeds
     # creep takes 2 % of the rise, as in a steady test
     assert cycles["stiffness"].values == pytest.approx(slider.k_x, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("rises", "fall", "rounding"),
+    [(1.0, 1.5, False), (-1.0, 1.9, True), (0.0, 1.7, False), (0.2, 1.45, True)],
+)
+def test_rounding_is_told_by_falls_beside_the_even_change(rises, fall, rounding):
+    """In a fall of 0.4 s a force that rises by a step in a second hides 0.4 steps of it."""
+    time = np.arange(0.0, 60.0, 0.01)
+    share = time % 2.0
+    swing = np.where(share < 1.6, share / 1.6, (2.0 - share) / 0.4)
+    force = 70.0 + rises * time + (fall + 0.4 * rises) * swing
+    table = swings(st.Record(time=time, force=force)).table
+    assert table.median("drop") == pytest.approx(fall, rel=0.03)
+    assert is_rounding(table, np.rint(force)) == rounding
