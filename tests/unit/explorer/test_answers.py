@@ -22,7 +22,7 @@ from stiction.explorer import motion, spectrum
 from stiction.explorer.answers import ANSWERS, study_map, tables_of
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.explorer.door import explore
-from stiction.explorer.exports import NAMES, export, python_lines
+from stiction.explorer.exports import NAMES, export, own_law, python_lines
 from stiction.explorer.form import form
 from stiction.explorer.protocols import TESTS, names, protocol
 from stiction.explorer.source import open_sources
@@ -263,6 +263,8 @@ def test_lines_of_python_know_a_users_law(tmp_path, monkeypatch, name):
     assert scope["run"].status.ok
     assert tuple(scope["slider"].law) == tuple(description.slider.law)
     assert type(scope["slider"].law).__name__ == "Logarithmic"
+    law = description.slider.law
+    assert own_law(st.laws.Anisotropic(law, ratio=1.3)) == own_law(law) != ""
 
 
 def test_what_is_heard_is_the_transverse_rate(description):
@@ -287,6 +289,50 @@ def test_what_is_too_high_to_be_heard_is_as_deep_as_of_listen():
     short = description._replace(run=Settings(duration=1e-5))
     with pytest.raises(st.StictionError, match=r"10 µs is too short .*; let it last 100 µs"):
         answers({"do": "sound", "tables": tables_of(short)}, what)
+
+
+def test_of_a_long_run_a_minute_is_heard(description, monkeypatch):
+    monkeypatch.setattr(
+        "stiction.explorer.answers.rate_at", lambda _, times, **__: np.zeros(len(times))
+    )
+    for duration, heard in ((50.0, 50), (1000.0, 60)):
+        long = description._replace(run=Settings(duration=duration))
+        what = replace(an_opened(), description=long)
+        ((head, arrays),) = answers({"do": "sound", "tables": tables_of(long)}, what)
+        assert head["speed"] == 1.0
+        assert len(arrays["sound"]) == heard * head["rate"]
+
+
+@pytest.mark.parametrize("duration", [1.0, 200.0])
+def test_columns_of_the_spectrogram_are_at_the_middles_of_their_windows(
+    description, monkeypatch, duration
+):
+    """The first window begins, and the last one ends, with the run, or less than a step before."""
+    monkeypatch.setattr(spectrum, "sample", lambda _, times, __: np.sin(1e4 * times))
+    long = description._replace(run=Settings(duration=duration))
+    amplitude, frequency, times = spectrogram_and_its_frequencies(long)
+    window = 1.0 / frequency[1]
+    step = times[1] - times[0]
+    assert amplitude.shape[1] > 10
+    assert times[0] == pytest.approx(0.5 * window, rel=0.01)
+    assert -0.01 * window <= duration - 0.5 * window - times[-1] < 1.01 * step
+
+
+def test_rounding_of_the_elongation_is_not_in_the_spectrogram(description, monkeypatch):
+    """A mass that rests has none; an oscillation of a thousand roundings has one."""
+    least = np.spacing(1.0)
+
+    def still(_, times, __):
+        return 1.0 + least * np.random.default_rng(1).integers(-1, 2, len(times))
+
+    monkeypatch.setattr(spectrum, "sample", still)
+    amplitude, *_ = spectrogram_and_its_frequencies(description)
+    assert not amplitude.any()
+    monkeypatch.setattr(
+        spectrum, "sample", lambda _, times, __: 1.0 + 1e3 * least * np.sin(3e3 * times)
+    )
+    amplitude, *_ = spectrogram_and_its_frequencies(description)
+    assert amplitude.any()
 
 
 def spectrogram_and_its_frequencies(description):
