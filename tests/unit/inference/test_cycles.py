@@ -165,23 +165,35 @@ def test_wild_samples_make_no_difference_to_a_fit():
     assert np.abs(found.force - expected.force).max() < 6e-3  # three deviations of a reading
 
 
-def simulated_record(cycles: int, block: int = 1, /, **noise: Noise):
+def simulated_record(cycles: int, block: int = 1, number: int = 0, /, **noise: Noise):
     """Return a simulated record of so many cycles with this noise, and the time between samples."""
     slider = slider_of(0.6)
     cycle = 0.6 * slider.F_0 / (slider.k_x * slider.drive_speed)
     conditions = Conditions(1e-4, 10.0, 0.0, cycle / 200.0, cycles, cycle, noise, 0.0, block)
     its = plan(slider, {"phi": Uniform(0.01, 0.02), "jitter": Uniform(0.01, 0.02)}, [conditions])
-    return next(draw(its, 0, 1)[1]), conditions.step
+    return next(draw(its, number, 1)[1]), conditions.step
+
+
+def noise_seen(cycles: int, block: int, noise: Noise) -> Noise:
+    """Return the medians of what nine such records show: a single one may be off by a factor."""
+    seen = []
+    for number in range(9):
+        made, step = simulated_record(cycles, block, number, force=noise)
+        force, white = made.channels["force"], Noise(noise.error)
+        seen.append(with_lasting_noise(white, force, made.cycles, step, block))
+    level, lasting, lasts = np.median([(x.level, x.lasting, x.lasts) for x in seen], axis=0)
+    return Noise(level, lasting=lasting, lasts=lasts)
 
 
 def test_noise_that_lasts_is_seen_in_records_and_simulations_alike():
     """Of 146 records with such noise, 0.5 % of friction for 80 ms, phi held in 48 %."""
-    made, step = simulated_record(20, force=Noise(0.01, lasting=0.03, lasts=0.54))
-    found = with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step, 1)
-    assert found.lasting == pytest.approx(0.03, rel=0.3)
+    lasting = Noise(0.01, lasting=0.03, lasts=0.54)
+    found = noise_seen(20, 1, lasting)
+    assert 0.9 < found.lasting / lasting.lasting < 1.4  # it is rounded up by a quarter at most
     assert found.level < 0.015
-    assert 0.26 < found.lasts < 1.1  # to a factor of two
+    assert 0.7 < found.lasts / lasting.lasts < 1.5  # times tried are a factor of 1.4 apart
     assert found.error == pytest.approx(np.hypot(found.level, found.lasting))
+    made, step = simulated_record(20, force=lasting)
     rounded = Noise(0.02, quantisation=0.1)  # its rounding may be what lasts
     assert with_lasting_noise(rounded, made.channels["force"], made.cycles, step, 1) is rounded
     made, step = simulated_record(20, force=Noise(0.02))
@@ -194,10 +206,9 @@ def test_noise_that_lasts_is_seen_in_records_and_simulations_alike():
 def test_noise_that_lasts_is_simulated_as_it_is_seen(block, samples):
     """Means of eight readings were taken for readings: 5 samples came out as 12."""
     lasting = Noise(0.01, lasting=0.03, lasts=samples * 0.18)
-    made, step = simulated_record(34, block, force=lasting)
-    found = with_lasting_noise(Noise(0.02), made.channels["force"], made.cycles, step, block)
-    assert found.lasting == pytest.approx(0.03, rel=0.35)
-    assert 0.5 < found.lasts / lasting.lasts < 2.0
+    found = noise_seen(34, block, lasting)
+    assert 0.9 < found.lasting / lasting.lasting < 1.4
+    assert 0.7 < found.lasts / lasting.lasts < 1.5
 
 
 def test_a_record_is_observed_with_the_noise_that_lasts():
