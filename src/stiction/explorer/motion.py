@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from math import isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,15 @@ Arrays = dict[str, np.ndarray]
 Reply = tuple[dict[str, Any], Arrays]
 
 
+class Drawn(NamedTuple):
+    """A run that was sampled for a picture."""
+
+    solution: Solution
+    table: ColumnTable
+    animated: np.ndarray | None  # times at which the apparatus is animated, s; None: as before
+    quick: bool  # whether a better picture follows
+
+
 def simulate(
     description: Description, times: np.ndarray, check: Check
 ) -> tuple[Solution, ColumnTable]:
@@ -83,30 +92,60 @@ def pictures(whole: np.ndarray, window: Window, columns: int) -> list[np.ndarray
     return [np.union1d(there, np.linspace(low, high, quick))]
 
 
-def run(description: Description, columns: int, check: Check) -> Iterator[Reply]:
-    """Yield the whole run twice: at once as far as the page needs it, then with every peak."""
-    window, whole = span(description), automatic_times(description)
-    first, *more = pictures(whole, window, columns)
+def draw(
+    description: Description, window: Window, columns: int, check: Check
+) -> Iterator[tuple[Drawn, Arrays]]:
+    """Yield a run for a picture of a window, and its curves: quick, then with every peak."""
+    first, *more = pictures(automatic_times(description), window, columns)
     solution, table = simulate(description, first, check)
-    within = slip_times(solution.sticks, first)
+    within = slip_times(during(solution.sticks, window), first)
     moving = np.union1d(first, within)  # times at which the apparatus is animated
     later = [np.union1d(each, moving) for each in more]
     if len(within) and not later:
         later = [moving]
     for number, times in enumerate([first, *later]):
-        quick = number < len(later)
         if number > 0:
             solution, table = simulate(description, times, check)
+        animated = moving if number == 0 or len(within) else None
+        drawn = Drawn(solution, table, animated, number < len(later))
+        yield drawn, curves(table, solution.sticks, window, columns)
+
+
+def run(description: Description, columns: int, check: Check) -> Iterator[Reply]:
+    """Yield the whole run twice: at once as far as the page needs it, then with every peak."""
+    window, whole = span(description), automatic_times(description)
+    for (solution, table, animated, quick), drawn in draw(description, window, columns, check):
         head = {
             **about(description, solution, table),
             "facts": facts(description, solution, table, None if quick else whole),
             "window": window,
             "quick": quick,
         }
-        drawn = curves(table, solution.sticks, window, columns)
-        if number == 0 or len(within):  # else the page animates what it has
-            drawn |= track(table, np.isin(table["time"], moving), QUICK if quick else EXACT)
+        if animated is not None:
+            chosen = np.isin(table["time"], animated)
+            drawn |= track(table, chosen, QUICK if quick else EXACT)
         yield head, drawn
+
+
+def zoom(description: Description, window: Window, columns: int, check: Check) -> Iterator[Reply]:
+    """Yield the curves of a window."""
+    for part, drawn in draw(description, window, columns, check):
+        yield {"window": window, "quick": part.quick}, drawn
+
+
+def during(sticks: np.ndarray, window: Window) -> np.ndarray:
+    """Return the stick intervals (n, 2) between which the slips of a window lie, s.
+
+    Examples
+    --------
+    >>> during(np.array([[0.0, 1.0], [2.0, 3.0], [4.0, 5.0], [6.0, 7.0]]), (3.5, 4.5))
+    array([[2., 3.],
+           [4., 5.]])
+    """
+    low, high = window
+    first = int(np.searchsorted(sticks[:, 0], low, side="right")) - 1
+    last = int(np.searchsorted(sticks[:, 1], high, side="left"))
+    return sticks[max(first, 0) : last + 1]
 
 
 def slip_times(sticks: np.ndarray, times: np.ndarray) -> np.ndarray:
@@ -124,15 +163,6 @@ def slip_times(sticks: np.ndarray, times: np.ndarray) -> np.ndarray:
     if count < 3:
         return np.zeros(0)
     return np.unique(np.linspace(starts[short], ends[short], count))
-
-
-def zoom(description: Description, window: Window, columns: int, check: Check) -> Iterator[Reply]:
-    """Yield the curves of a window."""
-    parts = pictures(automatic_times(description), window, columns)
-    for number, times in enumerate(parts, 1):
-        solution, table = simulate(description, times, check)
-        drawn = curves(table, solution.sticks, window, columns)
-        yield {"window": window, "quick": number < len(parts)}, drawn
 
 
 def fine(description: Description, time: float, width: float, check: Check) -> Iterator[Reply]:

@@ -112,6 +112,35 @@ def test_the_phase_portrait_holds_slips_that_are_short_beside_the_run():
     assert speeds[inside].max() == pytest.approx(top, rel=0.01)
 
 
+@pytest.mark.parametrize("window", [(0.0, 2.0), (1.0, 1.9), (1.395, 1.43)])
+def test_a_part_of_a_run_shows_the_slips_of_the_whole(window):
+    """A zoomed view, and a pinned run, had no spike where a slip of 6 us lay."""
+    slider = st.Slider(
+        mass=0.365, k_x=507.0, k_y=3187.0, phi="5.4 deg", normal_load=27.7, c_x=0.027,
+        friction=st.laws.HyperbolicWeakening(mu_0=0.594, mu_inf=0.178, v_h=4.8e-3, mu_static=0.771),
+        drive=st.protocols.DriveProgram(
+            velocity=-2.6e-4,
+            program=[
+                st.protocols.Constant(value=-5.2e-4, duration=0.4),
+                st.protocols.Ramp(to=2.6e-4, duration=1.0),
+                st.protocols.Hold(),
+            ],
+        ),
+    )  # fmt: skip
+    description = st.Description(slider, st.Initial(), st.Settings(duration=2.0))
+    *_, (_, whole) = motion.run(description, 600, free)
+    *_, (head, drawn) = motion.zoom(description, window, 600, free)
+    assert head["quick"] is False
+    time = (whole["column"] + 0.5) * 2.0 / 600
+    inside = (time > 1.39) & (time < 1.43)
+    assert whole["slip_speed"][inside, 2].max() > 1e-4
+    time = window[0] + (drawn["column"] + 0.5) * (window[1] - window[0]) / 600
+    there = (time > 1.39) & (time < 1.43)
+    for name in ("slip_speed", "friction"):
+        wanted = whole[name][inside, 2].max()
+        assert drawn[name][there, 2].max() == pytest.approx(wanted, rel=0.02), name
+
+
 def test_the_better_track_holds_the_first_one(description):
     """Between thousands of short slips the long ones were left out."""
     long = description._replace(run=Settings(duration=3.0))
