@@ -205,6 +205,52 @@ def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(modules):
             assert math.isfinite(place), field
 
 
+def test_the_form_stays_under_the_hand(page):
+    """The slider of what was not set yet was replaced by the first movement, and the focus lost."""
+
+    def open_all():
+        page.value("document.querySelectorAll('details').forEach((more) => (more.open = true))")
+
+    open_all()
+    page.row("slider.c_x").scroll_into_view_if_needed()
+    box = page.row("slider.c_x").locator("input[type=range]").bounding_box()
+    level = box["y"] + 0.5 * box["height"]
+    page.tab.mouse.move(box["x"] + 8, level)
+    page.tab.mouse.down()
+    asked = page.value("stictionPage.asked")
+    for share in (0.1, 0.8):
+        page.tab.mouse.move(box["x"] + 8 + share * (box["width"] - 16), level)
+        page.until(f"{SHOWN} && stictionPage.shown.asked > {asked}")
+        asked = page.value("stictionPage.asked")
+    page.tab.mouse.up()
+    assert page.row("slider.c_x").locator("input[type=text]").input_value() == "63.1 N s/m"
+    page.tab.focus("#field-slider-c_y")
+    page.tab.keyboard.type("3 N s/m")
+    page.done_after(lambda: page.tab.keyboard.press("Tab"))
+    focus = "document.activeElement.id"
+    assert page.value(focus) == "field-slider-c_y-slider"
+    page.tab.focus("#drive-add")
+    page.done_after(lambda: page.tab.keyboard.press("Enter"))
+    assert page.value(focus) == "drive-add"
+    page.tab.focus("#drive-0-away")
+    page.done_after(lambda: page.tab.keyboard.press("Enter"))
+    assert page.value(focus) == "drive-protocol"
+
+
+@pytest.mark.parametrize("menu", ["preset", "export", "law", "drive-protocol"])
+def test_menus_act_on_a_choice_and_not_on_an_arrow_key(modules, menu):
+    """Each arrow key on a closed menu loaded the first preset, or opened the first export."""
+    page = modules
+    page.tab.focus(f"#{menu}")
+    before = page.value("[stictionPage.asked, stictionPage.link.count]")
+    page.tab.keyboard.press("ArrowDown")
+    page.until(f"document.querySelector('#{menu}').matches(':open')")
+    page.tab.keyboard.press("Escape")
+    page.until(f"!document.querySelector('#{menu}').matches(':open')")
+    assert page.value("[stictionPage.asked, stictionPage.link.count]") == before
+    assert page.value("document.activeElement.id") == menu
+
+
 def test_dampers_with_axes_of_their_own_are_drawn(page):
     """They are weak, so that the picture at the start changes by nothing else."""
 

@@ -62,7 +62,7 @@ def start(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     head = {
         "version": stiction.__version__,
         "name": opened.name,
-        "form": form(),
+        "form": form({name: type(each) for name, each in opened.own.items()}),
         "protocols": names(),
         "presets": [{"name": name, "shows": each.shows} for name, each in PRESETS.items()],
         "tables": tables_of(opened.description),
@@ -159,9 +159,11 @@ def preset(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
 def law(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     """Yield the tables with another friction law, comparable with the present one."""
     description, name = description_in(opened, request), str(request["name"])
-    if name not in LAWS:
-        raise StictionError(f"no law {echo(name)}; known: {', '.join(LAWS)}")
-    yield {"tables": tables_of(exchange_law(description, comparable(LAWS[name], description)))}, {}
+    own = opened.own
+    if name not in LAWS and name not in own:
+        raise StictionError(f"no law {echo(name)}; known: {', '.join((*LAWS, *own))}")
+    other = own[name] if name in own else comparable(LAWS[name], description)
+    yield {"tables": tables_of(exchange_law(description, other))}, {}
 
 
 def test(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:

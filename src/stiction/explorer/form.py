@@ -7,6 +7,7 @@ the page by itself.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from stiction.drive import DriveProgram, LoadProgram
@@ -15,15 +16,21 @@ from stiction.friction import LAWS, Anisotropic
 from stiction.system.description import Settings
 from stiction.system.initial import Initial
 from stiction.system.parameter import LEVEL_UNITS
-from stiction.system.schema import schema
+from stiction.system.schema import schema, table
 from stiction.system.slider import Apparatus
 from stiction.text.units import hints_of, unit_of
+from stiction.text.validation import fields as model_of
 
 Field = dict[str, Any]
 
 
-def form() -> dict[str, Any]:
+def form(own: Mapping[str, Any] = MappingProxyType({})) -> dict[str, Any]:
     """Return the fields of each table, of each law, and of each piece of a program.
+
+    Parameters
+    ----------
+    own : mapping of str to type, optional
+        Laws of the user, by their names.
 
     Examples
     --------
@@ -34,6 +41,8 @@ def form() -> dict[str, Any]:
     (True, True)
     """
     tables = schema()["properties"]
+    laws: dict[str, Any] = {**LAWS, **own}
+    parts = {name: table(model_of(kind), kind) for name, kind in own.items()}
     owners = {"slider": Apparatus, "drive": DriveProgram, "load": LoadProgram}
     owners |= {"initial": Initial, "run": Settings}
     return {
@@ -42,8 +51,8 @@ def form() -> dict[str, Any]:
             for name, owner in owners.items()
         },
         "laws": {
-            name: {"fields": fields(part, LAWS[name]), "meaning": first_line(LAWS[name])}
-            for name, part in choices(tables["friction"], "law").items()
+            name: {"fields": fields(part, laws[name]), "meaning": first_line(laws[name])}
+            for name, part in (choices(tables["friction"], "law") | parts).items()
         },
         "anisotropy": [
             field
@@ -74,7 +83,7 @@ def anisotropy(friction: Mapping[str, Any]) -> Any:
 
 def first_line(kind: Any) -> str:
     """Return the first line of a docstring."""
-    return str(kind.__doc__).strip().splitlines()[0]
+    return str(kind.__doc__ or kind.__name__).strip().splitlines()[0]
 
 
 def fields(table: Mapping[str, Any], owner: Any, level: str = "") -> list[Field]:

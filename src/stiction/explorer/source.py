@@ -13,6 +13,7 @@ from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
 from stiction.errors import DescriptionError, ResultError, echo
 from stiction.explorer.motion import CURVES
+from stiction.friction import Anisotropic, Law
 from stiction.friction.user.loading import Find, is_own
 from stiction.presets import nakano_popov_2020
 from stiction.system.description import Description, Settings
@@ -82,15 +83,20 @@ class Opened:
         return Description.from_dict(raw, find=self.find)
 
     @property
+    def own(self) -> dict[str, Law]:
+        """The user's law that was opened, by its name; nothing if it is none."""
+        law, table = self.description.slider.law, self.description.to_dict()["friction"]
+        law = law.law if isinstance(law, Anisotropic) else law
+        return {table["law"]: law} if is_own(table) else {}
+
+    @property
     def find(self) -> Find:
         """The finder of a user's law: it loads nothing."""
-        law = self.description.slider.law
-        own = is_own(self.description.to_dict()["friction"])
-        known = self.description.to_dict()["friction"]["law"] if own else None
+        own = self.own
 
         def find(name: str, text: str | None) -> type[Any]:
-            if name == known and text is None:
-                return type(law)
+            if name in own and text is None:
+                return type(own[name])
             message = (
                 f"{echo(name)} is a law from a file, and the page loads none; name it on the "
                 "command "

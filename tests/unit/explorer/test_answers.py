@@ -194,6 +194,24 @@ def test_the_form_has_what_the_registries_have(monkeypatch):
     assert "brand-new" in form()["laws"]
 
 
+def test_a_users_law_has_fields_and_an_entry_of_its_menu():
+    """Its sliders gave numbers without units, which were refused; it was gone from the menu."""
+    what = open_sources([EXAMPLES / "own_law.toml"])
+    ((head, _),) = answers({"do": "start"}, what)
+    (name,) = what.own
+    found = {each["key"]: each for each in head["form"]["laws"][name]["fields"]}
+    assert {key: each["unit"] for key, each in found.items()} == {"mu_0": "", "b": "", "v_c": "m/s"}
+    assert (found["b"]["low"], found["b"]["low_allowed"]) == (0, True)
+    assert (found["v_c"]["low"], found["v_c"]["low_allowed"]) == (0, False)
+    ((other, _),) = answers({"do": "law", "name": "coulomb", "tables": head["tables"]}, what)
+    ((back, _),) = answers({"do": "law", "name": name, "tables": other["tables"]}, what)
+    assert back["tables"] == head["tables"]
+    head["tables"]["friction"]["anisotropy"] = {"ratio": 0.5}
+    grained = what.read(head["tables"])
+    assert grained.slider.law.law == what.description.slider.law
+    assert replace(what, description=grained).read(head["tables"]) == grained  # opened with it
+
+
 def test_every_law_and_protocol_can_be_chosen(description):
     tables = tables_of(description)
     for name in LAWS:

@@ -18,20 +18,27 @@ export class Form {
     this.values = {};
   }
 
-  // Build the form for tables; it stays as it is if only values have changed.
+  // Build the form for tables; it stays as it is while it has the same rows, whatever their values:
+  // one that is built anew takes the slider away from under the pointer.
   show(tables) {
-    const shape = JSON.stringify(tables, (key, value) =>
-      typeof value === "object" || key === "law" || key === "piece" ? value : 0);
+    const pieces = ["drive", "load"].map((name) => (tables[name]?.program ?? []).map((each) => each.piece));
+    const shape = JSON.stringify([tables.friction.law, pieces]);
     this.tables = tables;
     if (shape !== this.shape) {
       this.shape = shape;
       const focus = document.activeElement?.id, top = this.place.scrollTop;
       this.rows.clear();
+      this.menus = [];
       this.place.replaceChildren(this.general(), ...this.groups(tables));
       this.place.scrollTop = top;
-      if (focus) document.getElementById(focus)?.focus();
+      const near = focus?.replace(/^(drive|load)-.*/, "$1-protocol"); // of a piece that is gone
+      if (focus) (document.getElementById(focus) ?? document.getElementById(near))?.focus();
     }
-    for (const row of this.rows.values()) row.write();
+    this.write();
+  }
+
+  write() {
+    for (const each of [...this.rows.values(), ...this.menus]) each.write();
   }
 
   general() {
@@ -42,60 +49,61 @@ export class Form {
 
   groups(tables) {
     const { form } = this, made = [];
-    made.push(this.group("slider", form.tables.slider, tables.slider, ["slider"]));
+    made.push(this.group("slider", form.tables.slider));
     made.push(this.friction(tables.friction));
     for (const name of ["drive", "load"]) made.push(this.program(name, tables));
-    made.push(this.group("run", form.tables.run, tables.run, ["run"]));
-    const start = form.tables.initial.filter((field) => field.kind !== "object");
-    made.push(this.group("initial", start, tables.initial ?? {}, ["initial"]));
+    made.push(this.group("run", form.tables.run));
+    made.push(this.group("initial", form.tables.initial.filter((field) => field.kind !== "object")));
     return made;
   }
 
-  group(name, fields, table, path, ...before) {
-    const set = element("fieldset", {}, element("legend", { textContent: TITLES[name] ?? name }), ...before);
+  // The fields of a table, after a menu; `also` are fields of tables in it, each with its place.
+  group(name, fields, { menu, also = [] } = {}) {
+    const set = element("fieldset", {}, element("legend", { textContent: TITLES[name] }));
+    if (menu) set.append(element("div", { className: "choose" }, menu));
     fields = fields.filter((each) => each.kind !== "tables"); // written in the file alone
     const usual = fields.filter((each) => each.required || MAIN.has(each.key));
-    const rare = fields.filter((each) => !usual.includes(each));
-    set.append(...usual.map((field) => this.row(field, [...path, field.key])));
-    if (rare.length) {
-      const more = element("details", {}, element("summary", { textContent: "more" }));
-      more.open = this.open.has(name) || rare.some((field) => table && field.key in table);
-      more.ontoggle = () => this.open[more.open ? "add" : "delete"](name);
-      more.append(...rare.map((field) => this.row(field, [...path, field.key])));
-      set.append(more);
-    }
+    const rare = fields.filter((each) => !usual.includes(each)).map((field) => [field, [name, field.key]]);
+    set.append(...usual.map((field) => this.row(field, [name, field.key])));
+    if (rare.length + also.length) set.append(this.more(name, [...rare, ...also]));
     return set;
   }
 
-  friction(table) {
-    const { laws } = this.form, known = table.law in laws;
-    const menu = choice("law", known ? Object.keys(laws) : [table.law, ...Object.keys(laws)], table.law, "Friction law");
-    menu.onchange = () => this.hooks.law(menu.value);
-    if (known) menu.title = laws[table.law].meaning;
-    const fields = known ? laws[table.law].fields : ownFields(table);
-    const set = this.group("friction", fields, table, ["friction"], element("div", { className: "choose" }, menu));
-    const details = set.querySelector("details") ?? set.appendChild(
-      element("details", {}, element("summary", { textContent: "more" })));
-    for (const field of this.form.anisotropy) {
-      const named = { ...field, required: false, label: `grain ${field.key}` };
-      details.append(this.row(named, ["friction", "anisotropy", field.key]));
-    }
-    if (table.anisotropy) details.open = true;
-    return set;
+  // What few need: folded up, until one of it has a value.
+  more(name, rare) {
+    const summary = element("summary", { textContent: "more" }), more = element("details", {}, summary);
+    summary.setAttribute("aria-label", `more: ${TITLES[name]}`);
+    more.open = this.open.has(name);
+    more.ontoggle = () => this.open[more.open ? "add" : "delete"](name);
+    more.append(...rare.map(([field, path]) => this.row(field, path)));
+    let before = false;
+    this.menus.push({ write: () => {
+      const now = rare.some(([, path]) => read(this.tables, path) !== undefined);
+      if (now && !before) more.open = true;
+      before = now;
+    } });
+    return more;
+  }
+
+  friction({ law }) {
+    const { laws } = this.form, known = Object.hasOwn(laws, law);
+    const menu = choice("law", known ? Object.keys(laws) : [law, ...Object.keys(laws)], law, "Friction law");
+    onChoice(menu, () => this.hooks.law(menu.value));
+    if (known) menu.title = laws[law].meaning;
+    const also = this.form.anisotropy.map((field) => inner(field, "grain", ["friction", "anisotropy"]));
+    return this.group("friction", known ? laws[law].fields : [], { menu, also });
   }
 
   program(name, tables) {
-    const table = tables[name] ?? {}, pieces = table.program ?? [];
-    const fields = this.form.tables[name].filter((field) => !["program", "wave"].includes(field.kind));
-    const waves = this.form.tables[name].filter((field) => field.kind === "wave");
-    const tests = this.hooks.protocols[name];
-    // the first is what a table without pieces and harmonics is; another program is no entry
-    const shaken = waves.some((wave) => table[wave.key]), plain = !pieces.length && !shaken;
-    const menu = choice(`${name}-protocol`, plain ? tests : ["", ...tests], plain ? tests[0] : "", `${TITLES[name]}: protocol`);
-    if (!plain) menu.options[0].textContent = (pieces.length ? `program of ${pieces.length} piece${pieces.length > 1 ? "s" : ""}` : tests[0]) + (shaken ? ", with a harmonic" : "");
-    menu.onchange = () => menu.value && this.hooks.protocol(name, menu.value);
-    const set = this.group(name, fields, table, [name], element("div", { className: "choose" }, menu));
-    pieces.forEach((piece, index) => set.append(this.piece(name, piece, index)));
+    const all = this.form.tables[name], pieces = tables[name]?.program ?? [];
+    const fields = all.filter((field) => !["program", "wave"].includes(field.kind));
+    const waves = all.filter((field) => field.kind === "wave");
+    const also = waves.flatMap((wave) => wave.fields.map((field) => inner(field, wave.key, [name, wave.key])));
+    const menu = choice(`${name}-protocol`, [], "", `${TITLES[name]}: protocol`);
+    onChoice(menu, () => menu.value && this.hooks.protocol(name, menu.value));
+    this.menus.push({ write: () => this.nameTest(name, waves, menu) });
+    const set = this.group(name, fields, { menu, also });
+    set.append(...pieces.map((piece, index) => this.piece(name, piece.piece, index)));
     const add = element("button", { type: "button", textContent: "add a piece", id: `${name}-add` });
     add.onclick = () => this.change((all) => {
       const own = (all[name] ??= {});
@@ -103,31 +111,35 @@ export class Form {
       if (last && last.duration === undefined && last.piece !== "free") last.duration = "1 s";
       own.program = [...(own.program ?? []), { piece: "constant", duration: "1 s" }];
     });
-    const details = set.querySelector("details") ?? set.appendChild(
-      element("details", {}, element("summary", { textContent: "more" })));
-    for (const wave of waves) {
-      for (const field of wave.fields) {
-        const named = { ...field, required: false, label: `${wave.key} ${field.key}` };
-        details.append(this.row(named, [name, wave.key, field.key]));
-      }
-      if (table[wave.key]) details.open = true;
-    }
-    details.append(add);
+    set.querySelector("details").append(add);
     return set;
   }
 
-  piece(name, piece, index) {
+  // The first test is what a table without pieces and harmonics is; another program is no entry.
+  nameTest(name, waves, menu) {
+    const tests = this.hooks.protocols[name], table = this.tables[name] ?? {}, count = table.program?.length ?? 0;
+    const shaken = waves.some((wave) => table[wave.key]), plain = !count && !shaken;
+    const words = (count ? `program of ${count} piece${count > 1 ? "s" : ""}` : tests[0]) + (shaken ? ", with a harmonic" : "");
+    if (menu.words !== words) {
+      menu.words = words;
+      menu.replaceChildren(...options(plain ? tests : ["", ...tests]));
+      if (!plain) menu.options[0].textContent = words;
+    }
+    menu.value = plain ? tests[0] : "";
+  }
+
+  piece(name, kind, index) {
     const kinds = this.form.pieces[name];
-    const menu = choice(`${name}-${index}`, Object.keys(kinds), piece.piece, `Piece ${index + 1}`);
+    const menu = choice(`${name}-${index}`, Object.keys(kinds), kind, `Piece ${index + 1}`);
     menu.onchange = () => this.change((all) => {
-      const next = { piece: menu.value };
+      const piece = all[name].program[index], next = { piece: menu.value };
       for (const field of kinds[menu.value] ?? []) {
         if (field.key in piece) next[field.key] = piece[field.key];
         else if (field.required) next[field.key] = usual(field, name, this.tables);
       }
       all[name].program[index] = next;
     });
-    const away = element("button", { type: "button", textContent: "×", title: "Remove this piece" });
+    const away = element("button", { type: "button", textContent: "×", title: "Remove this piece", id: `${name}-${index}-away` });
     away.setAttribute("aria-label", `Remove piece ${index + 1}`);
     away.onclick = () => this.change((all) => {
       all[name].program.splice(index, 1);
@@ -135,8 +147,8 @@ export class Form {
       if (name === "load" && !Object.keys(all.load).length) delete all.load;
     });
     const box = element("div", { className: "piece" }, element("div", { className: "choose" }, menu, away));
-    for (const field of kinds[piece.piece] ?? []) {
-      if (field.key === "duration" && piece.piece === "free") continue;
+    for (const field of kinds[kind] ?? []) {
+      if (field.key === "duration" && kind === "free") continue;
       box.append(this.row(field, [name, "program", index, field.key]));
     }
     return box;
@@ -158,11 +170,11 @@ export class Form {
   control(field, path, id, box) {
     const value = () => read(this.tables, path);
     if (field.kind === "choice" || field.kind === "boolean") {
-      const options = field.options ?? ["false", "true"];
-      const menu = choice(id, options, String(field.default ?? options[0]), field.meaning.replaceAll("`", ""));
+      const known = field.options ?? ["false", "true"], first = String(field.default ?? known[0]);
+      const menu = choice(id, known, first, field.meaning.replaceAll("`", ""));
       menu.onchange = () => this.put(path, field.kind === "boolean" ? menu.value === "true" : menu.value);
       box.append(menu);
-      return () => { menu.value = String(value() ?? field.default ?? options[0]); };
+      return () => { menu.value = String(value() ?? first); };
     }
     const text = element("input", { type: "text", id, spellcheck: false, placeholder: placeholder(field) });
     text.setAttribute("aria-describedby", `${id}-fault`);
@@ -176,7 +188,7 @@ export class Form {
     };
     box.append(text);
     const slides = field.kind === "number";
-    const slider = slides && element("input", { type: "range", min: 0, max: 1000, step: 1 });
+    const slider = slides && element("input", { type: "range", min: 0, max: 1000, step: 1, id: `${id}-slider` });
     if (slider) {
       slider.setAttribute("aria-label", `${field.label ?? field.key}, slider`);
       slider.dataset.slider = serverPath(path);
@@ -237,7 +249,7 @@ export class Form {
 
   setValues(values) {
     this.values = values;
-    for (const row of this.rows.values()) row.write();
+    this.write();
   }
 
   setFaults(faults) {
@@ -273,9 +285,11 @@ function labelOf(field, id) {
   return label;
 }
 
-function choice(id, options, value, label) {
+const options = (entries) => entries.map((each) => element("option", { value: each, textContent: each }));
+
+function choice(id, entries, value, label) {
   const menu = element("select", { id });
-  menu.append(...options.map((each) => element("option", { value: each, textContent: each })));
+  menu.append(...options(entries));
   menu.value = value;
   menu.setAttribute("aria-label", label);
   menu.title = label;
@@ -328,8 +342,19 @@ function usual(field, name, tables) {
   return name === "drive" ? tables.drive?.velocity ?? "1 mm/s" : tables.slider?.normal_load ?? "10 N";
 }
 
-function ownFields(table) {
-  return Object.keys(table).filter((key) => !["law", "anisotropy", "source"].includes(key)).map((key) => ({
-    key, unit: "", kind: "number", required: true, meaning: "", default: undefined,
-  }));
+// A field of a table inside another, with its place.
+function inner(field, word, path) {
+  return [{ ...field, required: false, label: `${word} ${field.key}` }, [...path, field.key]];
+}
+
+// Act on what is chosen from a menu. In one that is closed, browsers take each arrow key for a
+// choice; here it opens the menu.
+export function onChoice(menu, act) {
+  menu.onchange = act;
+  menu.onkeydown = (event) => {
+    const moves = /^(Arrow|Page)|^(Home|End|[^ ])$/.test(event.key) && !event.altKey && !event.ctrlKey && !event.metaKey;
+    if (!moves || !menu.showPicker) return;
+    event.preventDefault();
+    menu.showPicker();
+  };
 }

@@ -1,6 +1,6 @@
 // The page: it asks for a run when a parameter changes, and draws the answers frame by frame.
 
-import { Form, element } from "./form.js";
+import { Form, element, onChoice } from "./form.js";
 import { Link } from "./link.js";
 import { Microscope, spanText } from "./microscope.js";
 import { Player, SPEEDS, speedText } from "./player.js";
@@ -267,14 +267,14 @@ function listen() {
   $("undo").onclick = () => state.undo();
   $("redo").onclick = () => state.redo();
   $("reset").onclick = () => state.reset();
-  $("preset").onchange = () => {
+  onChoice($("preset"), () => {
     if ($("preset").value) replace({ do: "preset", name: $("preset").value });
     $("preset").value = "";
-  };
-  $("export").onchange = () => {
+  });
+  onChoice($("export"), () => {
     takeAway($("export").value);
     $("export").value = "";
-  };
+  });
   $("pin").onclick = pin;
   $("swap").onclick = () => {
     const pinned = data.pinned.tables;
