@@ -287,10 +287,30 @@ def test_a_fault_stands_beside_its_field_and_the_picture_stays(page):
     assert "greater than 0" in mass.locator(".fault").inner_text()
     assert "slider.mass" in page.tab.inner_text("#status")
     assert page.picture("#series-still") == picture
-    mass.locator("input[type=text]").fill("300 g")
+    invalid = "document.querySelector('#field-slider-mass').ariaInvalid"
+    assert page.value(invalid) == "true"
+    mass.locator("input[type=text]").fill("0.3000000001 kg")
     page.done_after(lambda: mass.locator("input[type=text]").press("Enter"))
     assert mass.locator(".fault").inner_text() == ""
+    assert page.value(invalid) is None
+    assert mass.locator("input").first.input_value() == "0.3000000001 kg"  # as long as one is there
+    page.tab.focus("#play")
+    assert mass.locator("input").first.input_value() == "0.3 kg"  # the unit was cut out
+    assert mass.locator("input").first.get_attribute("title") == "0.3000000001 kg"
     assert page.picture("#series-still") != picture
+
+
+def test_what_is_old_while_a_long_run_is_computed_says_so(page):
+    """Curves and numbers stood beside other parameters, and nothing said that they were old."""
+    duration = page.row("run.duration").locator("input[type=text]")
+    duration.fill("20000 s")
+    duration.press("Enter")
+    page.until("document.body.classList.contains('stale')")
+    assert page.tab.inner_text("#status") == "computing …"
+    duration.fill("200 ms")
+    page.done_after(lambda: duration.press("Enter"))
+    assert not page.value("document.body.classList.contains('stale')")
+    assert "stick intervals" in page.tab.inner_text("#status")
 
 
 def test_the_animation_runs_and_stands(page):
@@ -363,6 +383,22 @@ def test_the_address_restores_the_state(page):
     assert page.row("slider.phi").locator("input[type=text]").input_value() == "3 deg"
 
 
+def test_an_address_holds_a_record_and_no_tables_without_a_form(modules):
+    """Of 10 000 rows none was written; tables without a law left a page without a form."""
+    tables = {"slider": {}, "friction": {"law": "coulomb"}, "drive": {}}
+    wrong = [{}, {"slider": {}}, tables | {"drive": 3}, tables | {"drive": {"program": "x"}}]
+    found = modules.value(
+        module(
+            "state.js",
+            """({ encodeState, decodeState }) => {
+          const there = (tables) => decodeState(encodeState({ tables, rows: Array(3e5).fill(7) }));
+          return ALL.map((tables) => there(tables)?.rows.length ?? null);
+        }""".replace("ALL", json.dumps([tables, *wrong])),
+        )
+    )
+    assert found == [300_000, None, None, None, None]
+
+
 def test_two_runs_are_compared(page):
     picture = page.picture("#series-still")
     page.tab.click("#pin")
@@ -414,6 +450,7 @@ def test_the_oscillation_is_heard(page):
 def test_everything_is_exported(page):
     page.tab.select_option("#export", "python")
     page.tab.wait_for_selector("dialog pre")
+    assert page.tab.locator("dialog").get_attribute("aria-label") == "run.py"
     assert "st.Slider(mass=0.25" in page.tab.inner_text("dialog pre")
     page.tab.keyboard.press("Escape")
     for kind, name in (("nc", "run.nc"), ("png", "run.png")):
@@ -421,6 +458,23 @@ def test_everything_is_exported(page):
             page.tab.select_option("#export", kind)
         assert kept.value.suggested_filename == name
         assert os.path.getsize(kept.value.path()) > 1000
+
+
+def test_what_cannot_be_asked_says_why(page):
+    """Of the socket that a large request had closed it said "computing" for ever."""
+    status = "document.querySelector('#status').textContent"
+    page.value(
+        """new Promise((done) => stictionPage.link.ask(
+        { do: "zoom", lane: 1, pad: "x".repeat(2 ** 24) }, done, ({ error }) => done(error)))"""
+        ".then((said) => { document.querySelector('#status').textContent = said; })"
+    )
+    assert "too large for the page" in page.value(status)
+    page.value("stictionPage.link.socket.close()")
+    page.until(f"{status}.startsWith('the explorer was closed')")
+    page.tab.select_option("#export", "toml")
+    assert page.value(status).startswith("the explorer was closed")
+    page.tab.select_option("#preset", "den-hartog")
+    assert page.value(status).startswith("the explorer was closed")
 
 
 def test_all_is_reached_by_the_keyboard_and_named(page):
@@ -435,6 +489,12 @@ def test_all_is_reached_by_the_keyboard_and_named(page):
         " each.tabIndex < 0 && each.getAttribute('role') !== 'tab').length"
     )
     assert hidden == 0
+    clocks = page.value(
+        "[...document.querySelectorAll('#macro, #micro')].map((x) => x.ariaValueText)"
+    )
+    assert all(re.fullmatch(r"t = [\d.]+ s", words) for words in clocks)
+    live = page.value("document.querySelectorAll('output, [role=status], [aria-live]').length")
+    assert live == 1  # the status, not the clock that runs
     page.tab.focus("#panel-a [role=tab][aria-selected=true]")
     page.tab.keyboard.press("ArrowRight")
     assert page.value("document.activeElement.dataset.view") == "phase"

@@ -26,7 +26,8 @@ def explore(
 ) -> None:
     """Open the explorer in the browser: sliders for every parameter, and the motion at once.
 
-    The page is served on this machine only. It ends with Ctrl-C, or when its last page is closed.
+    The page is served on this machine only. It ends with Ctrl-C, or some seconds after its last
+    page was closed.
     In a notebook the cell is done at once, and the page is served beside the next ones.
     It needs ``stiction[explorer]``.
 

@@ -27,8 +27,8 @@ from stiction.explorer.source import Opened
 
 HOST = "127.0.0.1"
 SOCKET = "socket"
-LARGEST = 2**20  # bytes of a request
-PATIENCE = 2.0  # s between the last page that closes and the end: it may be loaded again
+LARGEST = 2**24  # bytes of a request: records of a drive are in it
+PATIENCE = 15.0  # s between the last page that closes and the end: one may come back to it
 PAGES = files("stiction.explorer").joinpath("pages")
 TYPES = {
     ".js": "text/javascript",

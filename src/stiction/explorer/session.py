@@ -116,9 +116,9 @@ class Session:
         try:
             request: Any = json.loads(text)
             kind, lane, _ = request["do"], int(request.get("lane", 0)), int(request["id"])
-        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        except (ArithmeticError, LookupError, ValueError, TypeError, AttributeError, RuntimeError):
             return
-        if kind in ANSWERS and 0 <= lane < LANES:
+        if isinstance(kind, str) and kind in ANSWERS and 0 <= lane < LANES:
             known = self._lanes.setdefault((kind, lane), Lane(self._opened, self._send))
             known.submit(request)
 

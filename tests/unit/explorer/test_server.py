@@ -124,6 +124,8 @@ def test_what_is_not_a_request_is_ignored(explorer):
     with page_of(explorer) as page:
         for text in ("", "[1]", "{}", '{"do": "shell", "id": 1}', '{"do": "run"}', "[" * 5000):
             page.send(text)
+        for values in ('"do": {}, "id": 1', '"do": [], "id": 1', '"do": "run", "id": Infinity'):
+            page.send(f"{{{values}}}")
         page.send(b"\x00\xff")
         assert ask(page, 3, do="start")[0][0]["name"] == "a test"
 
@@ -139,6 +141,14 @@ def test_it_ends_with_its_last_page(monkeypatch):
 
         until(explorer._done.is_set)
         waiting.close()
+
+
+def test_the_page_knows_how_large_a_request_may_be():
+    """It sent one that was too large, which closed the socket."""
+    text = (server.PAGES / "link.js").read_text("utf-8")
+    (power,) = re.findall(r"const LARGEST = 2 \*\* (\d+);", text)
+    assert 2 ** int(power) == server.LARGEST
+    assert server.PATIENCE >= 10.0  # s: one may have left the page by mistake
 
 
 def test_the_numbers_are_those_of_simulate(explorer):

@@ -1,6 +1,6 @@
 // The form: a slider and a number with a unit for each parameter, made from the server's schema.
 
-import { SYMBOLS, quantity, symbol } from "./quantity.js";
+import { SYMBOLS, brief, quantity, symbol } from "./quantity.js";
 import { scaleOf } from "./scale.js";
 
 const TITLES = { slider: "Apparatus", friction: "Friction", drive: "Drive", load: "Load", initial: "Start", run: "Run" };
@@ -196,10 +196,15 @@ export class Form {
       slider.onchange = () => this.slide(field, path, slider, text, true);
       box.append(slider);
     }
+    const fill = () => {
+      const words = shown(value()), here = document.activeElement === text, visible = here ? words : brief(words);
+      text.title = visible === words ? "" : words;
+      if (text.value !== visible && !(text.edited && here)) text.value = visible; // nobody's words are taken away
+    };
+    text.onfocus = text.onblur = fill;
     return () => {
-      const its = value(), words = shown(its);
-      const typing = text.edited && document.activeElement === text; // nobody's words are taken away
-      if (text.value !== words && !typing) text.value = words;
+      const its = value();
+      fill();
       if (!slider) return;
       const spoken = text.value || placeholder(field);
       if (slider.ariaValueText !== spoken) slider.ariaValueText = spoken;
@@ -257,6 +262,7 @@ export class Form {
     this.faulty = faults.length > 0;
     for (const { box, fault } of this.rows.values()) {
       box.classList.remove("faulty");
+      box.querySelector("input, select").ariaInvalid = null;
       fault.textContent = "";
     }
     const rest = [];
@@ -264,6 +270,7 @@ export class Form {
       const row = this.rows.get(path);
       if (!row) { rest.push(path ? `${path}: ${message}` : message); continue; }
       row.box.classList.add("faulty");
+      row.box.querySelector("input, select").ariaInvalid = "true";
       row.fault.textContent = message;
       const details = row.box.closest("details");
       if (details) details.open = true;

@@ -12,6 +12,7 @@ import { State, decodeState } from "./state.js";
 import { Track } from "./track.js";
 import { Panel } from "./views.js";
 
+const COMPUTING = "computing …";
 const $ = (id) => document.getElementById(id);
 const data = {}; // of the run that is shown, for the views
 const page = {
@@ -35,13 +36,38 @@ const player = new Player((what) => {
 const sound = new Sound();
 const link = new Link((now) => {
   if (now === "open") link.ask({ do: "start" }, begin, failed);
-  else say("the explorer was closed; start it again with: stiction explore", true);
+  else say(now, true);
 });
 Object.assign(page, { sound, link, window: null });
 
 function say(words, bad = false) {
-  $("status").textContent = words;
+  $("status").textContent = $("status").title = words;
   $("status").classList.toggle("bad", bad);
+}
+
+// While what was asked for takes long, what stands is of the parameters before.
+const awaited = new Set();
+let late;
+
+function expect(what) {
+  awaited.add(what);
+  late ??= setTimeout(() => {
+    document.body.classList.add("stale");
+    if (page.shown) say(COMPUTING);
+  }, 300);
+}
+
+function arrived(what) {
+  if (!awaited.delete(what) || awaited.size) return;
+  clearTimeout(late);
+  late = undefined;
+  document.body.classList.remove("stale");
+  if ($("status").textContent === COMPUTING) tellRun();
+}
+
+function tellRun() {
+  const [words, bad] = data.summary;
+  say(words + (state.address === "" ? "; too large for a link" : ""), bad);
 }
 
 function failed(answer) {
@@ -60,12 +86,10 @@ function begin(answer) {
   for (const slow of SPEEDS) $("speed").append(element("option", { value: slow, textContent: speedText(slow) }));
   const linked = decodeState(location.hash);
   state = new State(answer.tables, changed);
-  if (linked?.tables) state.tables = linked.tables;
-  player.slow = SPEEDS.includes(linked?.slow) ? linked.slow : 10;
-  player.t = Number(linked?.t) || NaN;
-  view = Array.isArray(linked?.window) ? linked.window : null;
-  page.wide = Number(linked?.wide) || null;
-  $("speed").value = player.slow;
+  state.written = () => state.address === "" && !awaited.size && data.summary && tellRun();
+  if (linked) state.tables = linked.tables;
+  player.t = NaN;
+  resume(linked);
   form = new Form($("parameters"), answer.form, {
     change: (tables, done) => state.set(tables, done),
     law: (name) => replace({ do: "law", name, tables: state.tables }),
@@ -81,6 +105,17 @@ function begin(answer) {
   listen();
   changed();
   requestAnimationFrame(frame);
+}
+
+// Take time, speed and window from a link.
+function resume(linked) {
+  const numbers = (values) => values.every(Number.isFinite);
+  player.slow = SPEEDS.includes(linked?.slow) ? linked.slow : 10;
+  if (numbers([linked?.t])) player.t = linked.t;
+  view = Array.isArray(linked?.window) && linked.window.length === 2 && numbers(linked.window) ? linked.window : null;
+  page.window = view;
+  page.wide = numbers([linked?.wide]) && linked.wide > 0 ? linked.wide : null;
+  $("speed").value = player.slow;
 }
 
 function replace(request) {
@@ -107,8 +142,12 @@ function later() {
 function ask() {
   page.asked = performance.now();
   const asked = page.asked;
-  link.ask({ do: "run", tables: state.tables, columns: series.columns }, (answer) => show(answer, asked), failed);
   if (!page.shown) say("computing; the first run of a law may compile it, which takes some seconds");
+  expect("run");
+  link.ask({ do: "run", tables: state.tables, columns: series.columns }, (answer) => show(answer, asked), (answer) => {
+    arrived("run");
+    failed(answer);
+  });
 }
 
 function show(answer, asked) {
@@ -128,10 +167,11 @@ function show(answer, asked) {
   for (const panel of panels) panel.refresh();
   const sticks = answer.facts.find((each) => each.name === "stick intervals"), rest = answer.facts.find((each) => each.name === "time at rest");
   data.summary = [answer.ok ? `${sticks.text} stick interval${sticks.text === "1" ? "" : "s"}, ${rest.text} at rest` : `ended early: ${answer.status}`, !answer.ok];
-  say(...data.summary);
+  tellRun();
   page.shown = { asked, quick: answer.quick, arrived: performance.now() };
   page.redraw = asked;
   if (view) zoom(view, false);
+  arrived("run");
   if (answer.quick) return; // a slider may still be on its way
   compare();
   lookCloser(true);
@@ -151,11 +191,21 @@ function zoom(window, write = true) {
     view = span > 0.999 * (end - start) ? null : [low, low + span];
   } else view = null;
   page.window = view;
-  if (!view) series.show("b", whole);
-  else link.ask({ do: "zoom", tables: state.tables, window: view, columns: series.columns }, (answer) => {
-    series.show("b", answer);
-    compare();
-  }, failed);
+  if (view) {
+    expect("zoom");
+    link.ask({ do: "zoom", tables: state.tables, window: view, columns: series.columns }, (answer) => {
+      if (!view) return; // all is shown again
+      series.show("b", answer);
+      arrived("zoom");
+      compare();
+    }, (answer) => {
+      arrived("zoom");
+      failed(answer);
+    });
+  } else {
+    series.show("b", whole);
+    arrived("zoom");
+  }
   if (write) remember();
   compare();
 }
@@ -248,7 +298,9 @@ function frame(time) {
   for (const each of [scene, series, microscope, ...panels]) if (each.view !== null) each.layers.draw(now, key);
   if (document.activeElement !== $("macro") || player.playing) change($("macro"), "value", Math.round((1e5 * (t - player.start)) / (player.end - player.start || 1)));
   if (page.micro) change($("micro"), "value", Math.round((4000 * (t - page.micro.start)) / (page.micro.end - page.micro.start || 1)));
-  change($("clock"), "textContent", clock(t, player.end, player.slow >= 100 ? 6 : 4));
+  const words = clock(t, player.end, player.slow >= 100 ? 6 : 4);
+  change($("clock"), "textContent", words);
+  if (!player.playing) for (const id of ["macro", "micro"]) change($(id), "ariaValueText", words); // else it is spoken on and on
   page.frames = player.frames.length;
   page.drawn = (page.drawn ?? 0) + 1;
   if (page.redraw) { // when the curves of a request have been drawn
@@ -296,7 +348,10 @@ function listen() {
   addEventListener("keydown", key);
   addEventListener("hashchange", () => {
     const linked = decodeState(location.hash);
-    if (linked?.tables && location.hash.slice(1) !== state.address) state.set(linked.tables);
+    if (!linked || location.hash.slice(1) === state.address) return;
+    resume(linked);
+    linked.views?.forEach?.((name, i) => panels[i]?.choose(name));
+    state.set(linked.tables);
   });
 }
 
@@ -338,7 +393,7 @@ let silence = "";
 function tellSilence() {
   const why = sound.on && sound.buffer ? sound.silent(player.t, player.slow) : "";
   if (why) say(`no sound: ${why}`, true);
-  else if (silence) say(...data.summary);
+  else if (silence) tellRun();
   silence = why;
 }
 
@@ -368,6 +423,7 @@ function tell(name, words) {
   save.onclick = () => keep(name, new TextEncoder().encode(words));
   close.onclick = () => box.close();
   box.onclose = () => box.remove();
+  box.setAttribute("aria-label", name);
   box.append(copy, " ", save, " ", close);
   document.body.append(box);
   box.showModal();

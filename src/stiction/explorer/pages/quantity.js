@@ -14,6 +14,12 @@ export function plain(value, digits = 4) {
   return text.includes("e") ? text.replace("e+", "e") : text;
 }
 
+// A quantity in words, with no more digits than a field has room for.
+export function brief(words) {
+  const [, number, unit] = /^([-+]?[\d.]+(?:e[-+]?\d+)?)([^\d,]*)$/i.exec(words) ?? [];
+  return number?.replace(/\D/g, "").length > 6 ? plain(Number(number), 6) + unit : words;
+}
+
 export function quantity(value, unit, digits = 4) {
   if (unit === "rad") return `${plain((value * 180) / Math.PI, digits)} deg`;
   if (BARE.has(unit) || !(unit in RANGES)) return `${plain(value, digits)} ${unit}`.trim();

@@ -1,6 +1,7 @@
 // What the page shows, its history, and its address, which holds it all.
 
 const MOST = 200;
+const LONGEST = 1e6; // letters of an address; browsers take one to two million
 
 export class State {
   constructor(tables, changed) {
@@ -43,22 +44,34 @@ export class State {
   write() {
     clearTimeout(this.timer); // browsers allow few changes of the address a second
     this.timer = setTimeout(() => {
-      this.address = encodeState({ tables: this.tables, ...this.extra });
+      const address = encodeState({ tables: this.tables, ...this.extra });
+      this.address = address.length > LONGEST ? "" : address;
       history.replaceState(null, "", `#${this.address}`);
+      this.written?.();
     }, 250);
   }
 }
 
 export function encodeState(state) {
   const bytes = new TextEncoder().encode(JSON.stringify(state));
-  return btoa(String.fromCharCode(...bytes)).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+  return btoa(Array.from(bytes, (each) => String.fromCharCode(each)).join("")).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 }
 
 export function decodeState(text) {
   try {
     const letters = atob(text.replace(/^#/, "").replaceAll("-", "+").replaceAll("_", "/"));
-    return JSON.parse(new TextDecoder().decode(Uint8Array.from(letters, (x) => x.charCodeAt(0))));
+    const state = JSON.parse(new TextDecoder().decode(Uint8Array.from(letters, (x) => x.charCodeAt(0))));
+    return isForm(state.tables) ? state : null;
   } catch {
     return null;
   }
+}
+
+// Whether there are tables that a form can be made of, right or wrong.
+function isForm(tables) {
+  const isTable = (each) => Object.prototype.toString.call(each) === "[object Object]";
+  const { slider, friction, drive, load = {} } = tables;
+  const programs = [drive, load].map((each) => each.program ?? []);
+  return [...Object.values(tables), slider, friction, drive].every(isTable) && typeof friction.law === "string"
+    && programs.every((each) => Array.isArray(each) && each.every(isTable));
 }

@@ -330,6 +330,7 @@ export class Panel {
   }
 
   choose(name) {
+    if (!Object.hasOwn(this.tabs, name)) name = "numbers"; // of a link
     this.name = name;
     this.view = VIEWS[name] ? new VIEWS[name]() : null;
     this.numbers.hidden = Boolean(this.view);
