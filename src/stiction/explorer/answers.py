@@ -148,6 +148,8 @@ def sound(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     count = int((high - low) / speed * RATE)
     times = low + np.arange(count, dtype=np.float64) * (speed / RATE)
     values = rate_at(description, times, progress=lambda _: check())
+    if not values.any():
+        raise StictionError("no sound: nothing oscillates along y in this run")
     yield {"rate": RATE, "start": low, "speed": speed}, {"sound": values.astype(np.float32)}
 
 

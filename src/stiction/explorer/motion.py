@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from math import isfinite
+from math import isfinite, isnan, nan
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,10 +11,11 @@ from numpy.typing import NDArray
 
 from stiction import theory
 from stiction.drive.program import nominal_velocity
-from stiction.errors import STATUSES
+from stiction.errors import STATUSES, StictionError
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import ellipse
 from stiction.friction.law import limit_coefficient
+from stiction.linear_stability.linear import growth_rate
 from stiction.result.peak import LARGER, LARGEST, largest_spring_force
 from stiction.result.table import (
     FASTER,
@@ -26,6 +27,7 @@ from stiction.result.table import (
 from stiction.simulation import automatic_times, solve
 from stiction.solver.integrate import Solution
 from stiction.system.description import Description
+from stiction.system.slider import Slider
 from stiction.system.tensors import dampers_askew
 from stiction.text.units import in_words
 
@@ -39,7 +41,6 @@ QUICK, EXACT = np.float32, np.float64  # numbers while a slider moves, and then
 FINE = 4_001  # samples under the microscope
 DIGITS = 6  # of a number on the page
 PEAK_DIGITS = 4  # of a force between two samples, as on the command line
-WAY = ("time", "u_x", "v_x", "X", "Y", "slip_speed")
 Window = tuple[float, float]
 Check = Callable[[], None]  # raises if nobody waits for the answer any more
 Arrays = dict[str, np.ndarray]
@@ -162,7 +163,9 @@ def slip_times(sticks: np.ndarray, times: np.ndarray) -> np.ndarray:
     count = min(MOST_SAMPLES // max(int(short.sum()), 1), IN_SLIP)
     if count < 3:
         return np.zeros(0)
-    return np.unique(np.linspace(starts[short], ends[short], count))
+    # closer at both ends: a slip that begins with a step of the drive is fastest there
+    share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, count))[:, None]
+    return np.unique(starts[short] + share * (ends[short] - starts[short]))
 
 
 def fine(description: Description, time: float, width: float, check: Check) -> Iterator[Reply]:
@@ -247,13 +250,17 @@ def about(description: Description, solution: Solution, table: ColumnTable) -> d
 def facts(
     description: Description, solution: Solution, table: ColumnTable, times: np.ndarray | None
 ) -> list[dict[str, Any]]:
-    """Return the numbers of a run: name, value in SI and as text; extremes are those at `times`."""
+    """Return the numbers of a run: name, value in SI and as text.
+
+    The largest force is that at `times`, as `simulate` has it; the fastest slip is that of all
+    samples, which hold slips between two of these.
+    """
     reached, slider = table["time"], description.slider
     counted = np.full(len(reached), True) if times is None else np.isin(reached, times)
     counted[-1] = True  # where it ended
     counts = solution.counts
-    seen = {name: table[name][counted] for name in WAY}
-    peak, (fastest, shown) = largest_spring_force(seen, slider.k_x), fastest_slip(seen)
+    seen = {name: table[name][counted] for name in ("time", "u_x", "v_x")}
+    peak, (fastest, shown) = largest_spring_force(seen, slider.k_x), fastest_slip(table)
     slow, fast = slider.natural_frequencies
     A = theory.damping_number_of(slider, nominal_velocity(slider.motion))
     duration = float(solution.times[-1] - solution.times[0]) or 1.0
@@ -274,7 +281,17 @@ def facts(
     return [
         {"name": name, "value": value, "unit": unit, "text": text_of(value, unit)}
         for name, value, unit in listed
-    ]
+    ] + [steady_sliding(slider)]
+
+
+def steady_sliding(slider: Slider) -> dict[str, Any]:
+    """Return whether steady sliding is stable, by the growth rate of a small disturbance."""
+    try:
+        growth = growth_rate(slider)
+    except StictionError:
+        growth = nan
+    words = "there is none" if isnan(growth) else "unstable" if growth > 0.0 else "stable"
+    return {"name": "steady sliding", "value": growth, "unit": "1/s", "text": words}
 
 
 def text_of(value: float, unit: str) -> str:

@@ -20,8 +20,10 @@ from stiction.drive.procedures import (
 )
 from stiction.errors import StictionError, echo
 from stiction.system.description import Description
+from stiction.text.units import in_words
 
 SPEED = 1e-3  # m/s, where the drive stands
+LONGEST = 1e3  # durations of the run in which the drive must load its spring
 SLIDES = 1.5  # times the loading: by then the mass slides, after its creep too
 
 
@@ -58,9 +60,21 @@ def neat(value: float) -> float:
 
 
 def loading(description: Description) -> float:
-    """Return how long the drive loads the softer spring until the mass slides, s."""
+    """Return how long the drive loads the softer spring until the mass slides, s.
+
+    Raises
+    ------
+    StictionError
+        If that is far longer than the run.
+    """
     slider = description.slider
-    return slider.F_0 / (min(slider.k_x, slider.k_y) * abs(speed(description)))
+    takes = slider.F_0 / (min(slider.k_x, slider.k_y) * abs(speed(description)))
+    if takes > LONGEST * description.run.duration:
+        raise StictionError(
+            f"the drive takes {in_words(takes, 's')} to load the spring until the mass slides, "
+            "too long for this test; raise stiffness or velocity, or let the run last longer"
+        )
+    return takes
 
 
 def steps(description: Description) -> DriveProgram:

@@ -28,6 +28,7 @@ from stiction.explorer.protocols import TESTS, names, protocol
 from stiction.explorer.source import open_sources
 from stiction.friction import LAWS
 from stiction.friction.user.source import Text
+from stiction.linear_stability.linear import growth_rate
 from stiction.media.sound import LOUD
 from stiction.presets import PRESETS
 from stiction.study.view.mapping import Map, plot_map
@@ -128,7 +129,10 @@ def test_a_part_of_a_run_shows_the_slips_of_the_whole(window):
         ),
     )  # fmt: skip
     description = st.Description(slider, st.Initial(), st.Settings(duration=2.0))
-    *_, (_, whole) = motion.run(description, 600, free)
+    *_, (head, whole) = motion.run(description, 600, free)
+    facts = {each["name"]: each["value"] for each in head["facts"]}
+    # it begins where the drive steps to 260 um/s; the numbers said "at least 389 nm/s"
+    assert facts["largest slip speed"] == pytest.approx(2.6e-4, rel=0.01)
     *_, (head, drawn) = motion.zoom(description, window, 600, free)
     assert head["quick"] is False
     time = (whole["column"] + 0.5) * 2.0 / 600
@@ -240,6 +244,15 @@ def test_the_mass_slides_before_a_test_begins(name):
     run = st.simulate(found.slider, first, sample_rate=100.0)
     assert run.samples["X"][-1] > run.samples["X"][-2] > 0.0
     assert run.samples["V_X"][-1] == pytest.approx(1e-3, rel=0.1)
+
+
+def test_a_test_that_would_never_begin_is_refused():
+    """The menu gave runs of 30 years, which were refused where they were computed."""
+    soft = st.presets.nakano_popov_2020().replace(k_x="1 uN/m")
+    with pytest.raises(st.StictionError, match=r"63\.38 yr to load the spring"):
+        protocol(
+            st.Description(soft, st.Initial(), st.Settings(duration=5)), "drive", "reversal loops"
+        )
 
 
 def test_every_preset_can_be_chosen():
@@ -380,6 +393,26 @@ def test_rounding_of_the_elongation_is_not_in_the_spectrogram(description, monke
     )
     amplitude, *_ = spectrogram_and_its_frequencies(description)
     assert amplitude.any()
+
+
+def test_a_run_without_a_transverse_oscillation_has_no_sound(description):
+    """Zeros were played, and nothing said why nothing was heard."""
+    plain = description._replace(slider=description.slider.replace(phi="0 deg"))
+    with pytest.raises(st.StictionError, match="nothing oscillates along y"):
+        answers({"do": "sound", "tables": tables_of(plain)})
+
+
+def test_the_numbers_say_whether_steady_sliding_is_stable(description):
+    """For those who do not see the map."""
+    programs = [st.protocols.DriveProgram(velocity=1e-3, program=[st.protocols.Hold(duration=1)])]
+    for drive in (st.ConstantVelocity("1 mm/s"), st.ConstantVelocity("1 m/s"), *programs):
+        slider = description.slider.replace(drive=drive)
+        *_, (head, _) = motion.run(description._replace(slider=slider), 50, free)
+        (fact,) = [each for each in head["facts"] if each["name"] == "steady sliding"]
+        if drive in programs:
+            assert fact["text"] == "there is none"
+        else:
+            assert fact["text"] == ("stable" if growth_rate(slider) < 0.0 else "unstable")
 
 
 def spectrogram_and_its_frequencies(description):

@@ -384,7 +384,11 @@ function askSound() {
     sound.load(answer);
     if (player.playing) sound.play(player.t, player.slow);
     tellSilence();
-  }, failed);
+  }, (answer) => {
+    sound.stop();
+    sound.buffer = undefined; // of the run before
+    failed(answer);
+  });
 }
 
 let silence = "";
