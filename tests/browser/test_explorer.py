@@ -526,6 +526,10 @@ def test_a_smaller_window_scrolls_and_keeps_its_curves(page, size):
     page.until("stictionPage.settled")
     assert page.value("document.documentElement.scrollWidth") <= width
     assert page.value("document.querySelector('#series-still').clientHeight") >= 5 * 55
+    page.tab.click("#pin")  # with one more button beside the status
+    status = "document.querySelector('#status')"
+    assert page.value(f"{status}.scrollHeight <= {status}.clientHeight")  # nothing is cut off
+    assert page.value(f"{status}.title === {status}.textContent")
     beside = page.value(
         """[...document.querySelectorAll('header *, #transport *, .row *, canvas')]
         .filter((each) => {
@@ -557,6 +561,25 @@ def test_tooltips_are_plain_words_and_one_stick_is_one_interval(page):
     duration.fill("10 ms")
     page.done_after(lambda: duration.press("Enter"))
     assert page.tab.inner_text("#status").startswith("1 stick interval, ")
+
+
+def test_letters_have_contrast(modules):
+    """Those of k_y had 2.05 : 1 on the floor, and the ring about what is focused 2.25 : 1."""
+
+    def light(color):
+        parts = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+        linear = [x / 12.92 if x <= 0.03928 else ((x + 0.055) / 1.055) ** 2.4 for x in parts]
+        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+
+    known = modules.value(module("drawing.js", "({ ...all }) => all"))
+    ground = light(known["FLOOR"])  # darker than the paper
+    for name in ("INK", "SOFT", "BLUE", "RED", "GREEN", "ORANGE", "PURPLE", "GREY"):
+        color = known["LETTERS"].get(known[name], known[name])
+        assert (ground + 0.05) / (light(color) + 0.05) >= 4.5, name
+    modules.tab.focus("#series")
+    modules.tab.keyboard.press("Shift")
+    ring = "getComputedStyle(document.activeElement).outlineColor"
+    assert modules.value(ring) == "rgb(0, 114, 178)"
 
 
 def test_ticks_of_a_study_have_the_prefix_of_its_axis(modules):

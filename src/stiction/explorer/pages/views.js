@@ -50,9 +50,12 @@ class PhasePortrait {
     for (const [each, color, alpha] of parts) {
       const { u_x: u, V_X: v } = each.track.columns, stiff = each.scene.k[0];
       context.globalAlpha = alpha;
+      context.setLineDash(each === data ? [] : [5, 3]); // as in the time series
       curve(context, u.length, (i) => [this.to.x(stiff * u[i]), this.to.y(v[i])], color);
+      context.setLineDash([]);
       context.globalAlpha = 1;
     }
+    if (parts.length > 1) text(context, "A dashed, B now", box.left + box.width - 8, box.top + 12, { align: "right", halo: true });
     offsets(context, box, this.axes.xs, this.axes.ys);
     below(context, width, height, `spring force k_x u_x (${this.axes.xs.unit})`);
     beside(context, height, `velocity X′ (${this.axes.ys.unit})`);
@@ -169,6 +172,7 @@ class StabilityMap {
         context.fillRect(box.left + (j * box.width) / columns, box.top + box.height * (1 - (i + 1) / rows), box.width / columns + 0.6, box.height / rows + 0.6);
       }
     }
+    this.limit(context, box, growth, rows, columns);
     const xs = logAxis(...found.angles, "", 6, (value) => plain(value)), ys = logAxis(...found.speeds, "", 7);
     this.axes = { xs, ys };
     this.box = { ...box };
@@ -182,6 +186,18 @@ class StabilityMap {
       const { x, y } = this.place(data.pinned.own);
       dot(context, x, y, "#8a9097");
       text(context, "A", x + 8, y, { color: "#444b53", halo: true });
+    }
+  }
+
+  // A line between the two areas, whose colours are of one lightness.
+  limit(context, box, growth, rows, columns) {
+    const grows = (i, j) => growth[i * columns + j] > 0, wide = box.width / columns, high = box.height / rows;
+    for (let i = 0; i < rows; i++) {
+      for (let j = 0; j < columns; j++) {
+        const x = box.left + j * wide, y = box.top + box.height - i * high;
+        if (j && grows(i, j) !== grows(i, j - 1)) line(context, [[x, y], [x, y - high]], SOFT, 1.5);
+        if (i && grows(i, j) !== grows(i - 1, j)) line(context, [[x, y], [x + wide, y]], SOFT, 1.5);
+      }
     }
   }
 
