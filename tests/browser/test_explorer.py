@@ -381,6 +381,13 @@ def test_the_address_restores_the_state(page):
     page.tab.goto("about:blank")
     page.visit(state)
     assert page.row("slider.phi").locator("input[type=text]").input_value() == "3 deg"
+    other = {"tables": tables_of(an_opened(duration=0.25).description)}
+    other |= {"t": 0.15, "window": [0.1, 0.2], "views": ["constructor", "numbers"]}
+    encode = f"({{ encodeState }}) => {{ location.hash = encodeState({json.dumps(other)}); }}"
+    page.done_after(lambda: page.value(module("state.js", encode)))  # a link in the same tab
+    assert page.value("[stictionPage.t, ...stictionPage.window]") == [0.15, 0.1, 0.2]
+    assert page.row("slider.phi").locator("input[type=text]").input_value() == "1 deg"
+    assert page.tab.locator("td[data-name='steady sliding']").first.inner_text() == "unstable"
 
 
 def test_an_address_holds_a_record_and_no_tables_without_a_form(modules):

@@ -2,7 +2,8 @@
 
 It listens on 127.0.0.1. Every request must name this host and carry the token of the address that
 was opened; the web socket must come from the page's own origin. So another page in the same browser
-can neither read nor drive it, nor can another user of the machine who does not know the token.
+can neither read nor drive it, nor can another user of the machine who does not know the token;
+while the browser is started, the list of processes may show it to them.
 """
 
 from __future__ import annotations

@@ -11,6 +11,7 @@ import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
+from stiction.drive.recorded.reading import locate_nothing
 from stiction.errors import DescriptionError, ResultError, echo
 from stiction.explorer.motion import CURVES
 from stiction.friction import Anisotropic, Law
@@ -72,7 +73,8 @@ class Opened:
     def read(self, tables: Mapping[str, Any]) -> Description:
         """Return the description of a page's tables.
 
-        The page names no file: a user's law is that which was opened, by its name.
+        The page names no file: a user's law is that which was opened, by its name, and a recorded
+        drive has its rows.
 
         Raises
         ------
@@ -80,7 +82,7 @@ class Opened:
             With every fault.
         """
         raw = tame({str(key): value for key, value in tables.items()}, "description")
-        return Description.from_dict(raw, find=self.find)
+        return Description.from_dict(raw, find=self.find, locate=locate_nothing)
 
     @property
     def own(self) -> dict[str, Law]:

@@ -151,6 +151,16 @@ def test_a_law_from_a_file_is_not_loaded(tmp_path, monkeypatch):
     assert not (tmp_path / "ran").exists()
 
 
+def test_a_record_of_a_drive_is_not_read_from_a_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "way.csv").write_text("time [s],velocity [m/s]\n0,0\n1,1\n")
+    tables = tables_of(an_opened().description)
+    named = {"file": "way.csv", "time": "time [s]", "velocity": "velocity [m/s]"}
+    tables["drive"]["program"] = [{"piece": "recorded", **named}]
+    (head,) = replies(do="run", tables=tables)
+    assert [fault["path"] for fault in head["faults"]] == ["drive.program.1.file"]
+
+
 def test_nonsense_is_answered_in_words():
     deep: dict = {}
     for _ in range(40):
