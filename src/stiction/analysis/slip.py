@@ -111,8 +111,8 @@ class Outcome(NamedTuple):
     time_stuck : float
         Their total duration, s.
     peak : float
-        Largest magnitude of the load cell's force, over the normal load at that time; NaN where
-        there is no load.
+        Largest ratio of the load cell's force, in either direction, to the normal load at the same
+        instant; NaN without a load. Under a load that falls it comes later than the largest force.
     fastest : float
         Largest slip speed of the samples, m/s.
     slowest : float
@@ -143,13 +143,13 @@ def outcome(run: Trajectory) -> Outcome:
     parts = np.array_split(loading, min(100, len(loading)))
     rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
-    at, peak = largest(cell_force(run))
-    load = float(run.samples["normal_load"][at])
+    force, load = abs(cell_force(run)), run.samples["normal_load"]
+    _, peak = largest(np.divide(force, load, out=np.full_like(force, nan), where=load > 0.0))
     return Outcome(
         run.status,
         statistics.stick_count,
         statistics.time_stuck,
-        peak / load if load > 0.0 else nan,
+        peak,
         float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
         0.0 if rests else float(np.fmin.reduce(loading)),
         float(np.median([part.mean() for part in parts])),
