@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -38,6 +38,9 @@ BOTH_HOLD = (
     "Both hold, as the loading curve is compared with two sets of simulations: those with the "
     "fitted values have one like it, which is enough for an explanation; of those with "
     "the parameters that its features suggest few have, and a claim of rotation needs both."
+)
+WITHDRAWN = (
+    "The fit assumes that friction rotates and is not like this record, so rotation is not claimed."
 )
 WARNINGS, GROUNDS = "Warnings about the record", "What that rests on"
 CHANGES = "What would change it"
@@ -128,7 +131,18 @@ def compare(
         )  # fmt: skip
     except (ResultError, DescriptionError) as error:
         why = str(error)
-    return RecordComparison(record, seen, found, made, odds=odds, incomparable=why)
+    return withdraw(RecordComparison(record, seen, found, made, odds=odds, incomparable=why))
+
+
+def withdraw(found: RecordComparison) -> RecordComparison:
+    """Withdraw a claim of rotation where the rig as described does not explain the record.
+
+    Both compare the record with simulations of a rig whose friction rotates, by measures and
+    limits of their own.
+    """
+    if found.like or found.odds is None or found.odds.decision != ROTATION:
+        return found
+    return replace(found, odds=replace(found.odds, doubt=WITHDRAWN))
 
 
 def sections(found: RecordComparison) -> list[Section]:
@@ -157,14 +171,16 @@ def verdict(found: RecordComparison) -> str:
         return (
             f"Friction, not misalignment: this record is like simulations of {claimed} "
             f"(probability {probability} among the mechanisms compared), not of a friction vector "
-            "that rotates; the fit below, which assumes that it rotates, means nothing."
+            "that rotates on the rig as described: a stated stiffness k_y, mass or load that is "
+            "wrong speaks against rotation too. The fit below, which assumes that it rotates, "
+            "means nothing."
         )
     if not found.like:
         why = "" if found.fit is None else found.fit.explanation
         return (
             "No verdict: this record is not like those of the rig as described, whatever the "
-            "uncertain values are; the fitted values below mean nothing until that is explained. "
-            f"{why}".rstrip()
+            "uncertain values are within their priors; the fitted values below mean nothing until "
+            f"that is explained. {why}".rstrip()
         )
     return f"{explanation(found)}; {alternatives(found.odds)}."
 
@@ -284,23 +300,26 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
     lines = []
     if not found.like:
         lines.append(
-            "Look at hum, which is not simulated, and at filters and drifts of the zero that no "
-            "sensor states; at the zero of the force, and the stated stiffness, mass, load and "
-            "velocity (stiction analyse); at the law of friction; and whether the priors are too "
-            "narrow."
+            "Look at filters and drifts of the zero that no sensor states; at the zero of the "
+            "force, and the stated stiffness, mass, load and velocity (stiction analyse); at the "
+            f"law of friction; and whether the priors are too narrow. {fit.narrow_priors}".rstrip()
         )
     if found.absent:
         listed = " and ".join(NAMES.get(name, name) for name in found.absent)
         lines.append(f"Measuring the {listed} too would tell more of the misalignment.")
-    if fit.unidentified:
+    if fit.unidentified and rotates(found):
         lines.append(
             f"Not identifiable from this record: {', '.join(fit.unidentified)}. Where the "
             "prior of one of these is wrong, the verdict is."
         )
     if found.odds is None:
         lines.append(f"Other mechanisms were not compared: {found.incomparable}.")
-    lines.append(
-        "A record of the same rig, turned by a known angle, would test the verdict: the fitted "
-        "misalignment must turn with it. What narrows its interval, `stiction design` tells."
-    )
+    turned = "A record of the same rig, turned by a known angle, would test the verdict: "
+    if rotates(found):
+        lines.append(
+            f"{turned}the fitted misalignment must turn with it. What narrows its interval, "
+            "`stiction design` tells."
+        )
+    elif found.odds is not None and found.odds.decision != UNDECIDED:
+        lines.append(f"{turned}where the friction vector rotates, its loading curve differs.")
     return lines

@@ -222,6 +222,19 @@ class Fit(Report):
         """The parameters with a median near an end of the prior, beyond which few per cent lie."""
         return self._out_by(NEAR_AN_END)
 
+    @property
+    def narrow_priors(self) -> str:
+        """What a posterior at an end of its prior tells of records that are unlike, or ''.
+
+        By itself it tells nothing: of true values, 2 % lie as near to each end.
+        """
+        if not self.at_an_end:
+            return ""
+        return (
+            f"The fit comes to an end of the prior of {' and '.join(self.at_an_end)}: that prior, "
+            "or a value stated as certain, may be wrong. "
+        )
+
     def _out_by(self, score: float) -> list[str]:
         """Return the parameters with a median farther from the prior's than a normal score."""
         middles = np.median(self.scores, axis=0)
@@ -240,10 +253,11 @@ class Fit(Report):
         if self.farther < RARE:
             found.append(
                 "The records are not like those of the rig as described, whatever the uncertain "
-                f"values are: {percent(self.farther)} of the simulated records are less like the "
-                f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
-                "explained: is it this rig's record, are drive and load as stated, does the load "
-                f"cell lie along the axis that the rig states? {self.explanation}".rstrip()
+                f"values are within their priors: {percent(self.farther)} of the simulated records "
+                f"are less like the others, {percent(RARE)} are needed. The values below mean "
+                "nothing until that is explained: is it this rig's record, are drive and load as "
+                "stated, does the load cell lie along the axis that the rig states? "
+                f"{self.narrow_priors}{self.explanation}".rstrip()
             )
         if self.disagreement is not None and self.disagreement.p_value < CONTRADICTS:
             found.append(

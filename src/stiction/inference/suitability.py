@@ -67,7 +67,7 @@ def refuse_few(name: str, count: int) -> None:
     if count < LEAST_CYCLES:
         raise ResultError(
             f"{name} has {count} whole cycles of stick and slip, a fit needs {LEAST_CYCLES}; "
-            "record for longer, or slower"
+            "record for longer, or drive faster"
         )
 
 

@@ -12,14 +12,17 @@ from stiction.auditing.measured import (
     BOTH_HOLD,
     CHANGES,
     GROUNDS,
+    WITHDRAWN,
     alternatives,
     compare,
     sections,
     verdict,
+    withdraw,
 )
 from stiction.auditing.page import page
 from stiction.errors import DescriptionError
 from stiction.inference.cycles import slip_cycles
+from stiction.inference.mechanism.odds import UNDECIDED
 from stiction.inference.mechanism.rivals import ROTATION, STATIC
 from stiction.inference.predictive import SHARES, loading_curve
 from stiction.plotting import plot_predictive, plot_ranks
@@ -82,6 +85,9 @@ def test_a_record_with_static_friction_and_no_rotation_is_not_explained_by_the_r
     undecided = replace(seen.odds, probabilities=np.full(len(seen.odds.names), 0.25))
     said = verdict(replace(seen, odds=undecided))
     assert said.startswith("No verdict: this record is not like those of the rig")
+    assert "the uncertain values are within their priors" in said
+    (change,) = (part for part in sections(seen) if part.title == CHANGES)
+    assert not any(word in str(change) for word in ("hum", "must turn with it", "Not identifiable"))
 
 
 def test_a_posterior_in_the_tail_of_its_prior_is_named(found):
@@ -109,6 +115,39 @@ def test_the_verdict_says_what_other_mechanisms_leave_open(found):
     assert "none is excluded" in verdict(alone)
     (change,) = (part for part in sections(alone) if part.title == CHANGES)
     assert "Other mechanisms were not compared: nothing rotates." in str(change)
+
+
+def test_a_record_without_a_verdict_claims_nothing(found):
+    """Below "No verdict" stood "Claimed: rotation of the friction vector (probability 0.90)"."""
+    seen = found.measured
+    sure = np.eye(len(seen.odds.names))[seen.odds.names.index(ROTATION)]
+    odds = replace(seen.odds, probabilities=sure, by_halves=np.array([sure, sure]), steady=1.0)
+    claimed = replace(seen, odds=odds)
+    assert withdraw(claimed) is claimed
+    far = withdraw(replace(claimed, fit=replace(seen.fit, farther=0.01)))
+    said = "\n".join(map(str, sections(far)))
+    assert said.count("No verdict") == 1
+    assert "Claimed" not in said
+    assert WITHDRAWN in said
+    assert far.odds.decision == UNDECIDED
+
+
+def test_a_fit_that_ends_at_its_prior_says_so_where_records_are_unlike(found):
+    """A known stiffness that is 9 % wrong: phi at 4.84 deg and mu_0 at 0.7495, of up to 5 and 0.75.
+
+    At 2.1 normal scores a value may be as true as any, so that nothing is said of other records.
+    """
+    seen = found.measured
+    scores = seen.fit.scores - np.median(seen.fit.scores, axis=0)
+    scores[:, 0] += 2.1
+    fit = replace(seen.fit, scores=scores)
+    assert not fit.beyond
+    assert "comes to an end" not in str(fit.tables()[0])
+    said = f"The fit comes to an end of the prior of {fit.estimates[0].name}: "
+    far = replace(fit, farther=0.01)
+    assert said in str(far.tables()[0].sentences)
+    (change,) = (x for x in sections(replace(seen, fit=far)) if x.title == CHANGES)
+    assert said in str(change.sentences)
 
 
 def test_an_explanation_beside_an_unusual_loading_curve_says_how_both_hold(found):

@@ -13,7 +13,7 @@ from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.odds import Odds
 from stiction.inference.observation import observe
 from stiction.inference.priors import Normal
-from stiction.inference.suitability import explain_unlike
+from stiction.inference.suitability import explain_unlike, refuse_few
 
 RIG = st.Rig.from_toml(
     """
@@ -109,3 +109,9 @@ def test_the_odds_say_why_a_record_is_unlike():
     assert odds.objections()[-1] == "A pause."
     like = tuple(each._replace(farther=0.5) for each in likeness)
     assert replace(odds, likeness=like).objections() == []
+
+
+def test_too_few_cycles_ask_for_more_of_them():
+    """The remedy was to drive more slowly: fewer cycles in the same time."""
+    with pytest.raises(ResultError, match=r"3 whole cycles .* record for longer, or drive faster$"):
+        refuse_few("the record", 3)

@@ -65,6 +65,8 @@ class Odds(Report):
         What was measured.
     explanation : str
         What may explain that the records are unlike simulations, as sentences; may be empty.
+    doubt : str
+        What else speaks against a claim, found by other means, as a sentence; may be empty.
     """
 
     names: tuple[str, ...]
@@ -78,6 +80,7 @@ class Odds(Report):
     absent: tuple[str, ...]
     channels: tuple[str, ...]
     explanation: str = field(default="", compare=False)
+    doubt: str = field(default="", compare=False)
 
     @property
     def needed(self) -> float:
@@ -140,7 +143,7 @@ class Odds(Report):
                 f"{self.steady:.1g}), which is not simulated. Take cycles after running in "
                 f"(--begin). {STATE_DRIFT}"
             )
-        return found
+        return [*found, self.doubt] if self.doubt else found
 
     def tables(self) -> list[Section]:
         """Return the odds, what they rest on, and how often such odds are right."""
