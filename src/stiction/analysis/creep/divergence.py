@@ -120,9 +120,10 @@ def fit_divergence(
     if lag is None:
         bounds = ((*low_n, -0.9 * float(end.min())), (*high_n, loading_time))
         more = *sizes, LAG * loading_time
-        found, errors = fit_parameters(mean, begin, velocity, error, (*start, 0.0), bounds, more)
+        fit = fit_parameters(mean, begin, velocity, error, (*start, 0.0), bounds, more)
+        found, errors = fit.values, fit.errors
     else:
-        found, errors = fit_parameters(
+        fit = fit_parameters(
             lambda at, a, n: mean(at, a, n, lag),
             begin,
             velocity,
@@ -131,7 +132,7 @@ def fit_divergence(
             (low_n, high_n),
             sizes,
         )
-        found, errors = [*found, lag], [*errors, 0.0]
+        found, errors = (*fit.values, lag), (*fit.errors, 0.0)
     (a, n, late), (a_error, n_error, late_error) = found, errors
     if not low_n[1] + EDGE < n < high_n[1] - EDGE:
         raise ResultError("the creep curve does not have the shape that is fitted")

@@ -12,7 +12,14 @@ from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.force_curve import misalignment_from_force
-from stiction.analysis.creep.misalignment import REST_SPEED, SURE, Misalignment, fit_misalignment
+from stiction.analysis.creep.misalignment import (
+    REST_SPEED,
+    SLIDING,
+    SURE,
+    WEAKENINGS,
+    Misalignment,
+    fit_misalignment,
+)
 from stiction.analysis.creep.normal_load import (
     CHANGED,
     FOLLOWED,
@@ -119,7 +126,8 @@ def find_creep(
         across = record.stiffness_across if run is None else run.slider.k_y
         if run is not None:
             _refuse_jerks(run, curves)
-        found = _misalignment(even, V, stiffness, across, record.mass)
+        ends_in_slip = run is None or slips(run)
+        found = _misalignment(even, V, stiffness, across, record.mass, ends_in_slip)
         turned = stiffness / (across or inf) / tan(found.phi) ** 2
         refuse_change(change, FOLLOWED, "and Eq. (7) supposes a constant one")
         most = TURNED / turned if turned else inf
@@ -263,12 +271,24 @@ def _refuse_jerks(run: Trajectory, curves: xr.Dataset) -> None:
 
 
 def _misalignment(
-    mean: xr.Dataset, V: float, stiffness: float, across: float | None, mass: float | None
+    mean: xr.Dataset,
+    V: float,
+    stiffness: float,
+    across: float | None,
+    mass: float | None,
+    ends_in_slip: bool,
 ) -> Misalignment:
     """Return the implied misalignment, if it exceeds its uncertainty."""
     if np.nanmedian(np.abs(mean["velocity"].values)) < REST_SPEED * V:
         raise ResultError("not determined: the mass mostly rests where Eq. (7) predicts creep")
-    found = fit_misalignment(mean, V, stiffness, stiffness_across=across or inf, mass=mass or 0.0)
+    found = fit_misalignment(
+        mean,
+        V,
+        stiffness,
+        stiffness_across=across or inf,
+        mass=mass or 0.0,
+        weakenings=WEAKENINGS if ends_in_slip else SLIDING,
+    )
     if found.misfit > MISSED or found.scatter > SCATTER:
         by = percent(found.misfit) if found.misfit > MISSED else "more than its uncertainty"
         raise ResultError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from typing import NamedTuple
 from warnings import catch_warnings, simplefilter
 
 import numpy as np
@@ -32,6 +33,23 @@ def used_bins(curve: xr.Dataset, low: float, high: float) -> Bins:
     return bins._replace(error=error).some(inside)
 
 
+class CreepFit(NamedTuple):
+    """Parameters of least squares, their covariance, and the sum of squares.
+
+    The covariance is scaled up by `excess`, the squares of a degree of freedom, if that is above 1.
+    """
+
+    values: tuple[float, ...]
+    covariance: Floats
+    chi_square: float
+    excess: float
+
+    @property
+    def errors(self) -> tuple[float, ...]:
+        """The standard errors of the parameters."""
+        return tuple(np.sqrt(np.diag(self.covariance)).tolist())
+
+
 def fit_parameters(
     model: Callable[..., Floats],
     at: Floats,
@@ -40,8 +58,8 @@ def fit_parameters(
     start: tuple[float, ...],
     bounds: tuple[tuple[float, ...], tuple[float, ...]],
     sizes: tuple[float, ...],
-) -> tuple[list[float], list[float]]:
-    """Return parameters and standard errors, which are scaled up if the misfit exceeds them.
+) -> CreepFit:
+    """Return the parameters of the best fit.
 
     Parameters are varied in units of their `sizes`: the optimiser's steps have no unit.
 
@@ -71,6 +89,7 @@ def fit_parameters(
     except RuntimeError:
         raise ResultError("the creep curve does not have the shape that is fitted") from None
     missed = (values - scaled(at, *found)) / errors
-    excess = max(1.0, float(np.sum(missed**2)) / (len(values) - len(found)))
-    spread = np.sqrt(np.diag(covariance) * excess)
-    return (found * sizes).tolist(), (spread * sizes).tolist()
+    chi_square = float(np.sum(missed**2))
+    excess = max(1.0, chi_square / (len(values) - len(found)))
+    best = tuple((found * sizes).tolist())
+    return CreepFit(best, covariance * excess * np.outer(sizes, sizes), chi_square, excess)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from math import inf
+from collections.abc import Iterable, Mapping
+from math import exp, inf, pi
 from typing import NamedTuple
 
 import numpy as np
@@ -12,13 +13,17 @@ from stiction.analysis.creep.least_squares import THEORY, fit_parameters, used_b
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 
-START = 0.02  # rad, of phi, and of the weakening
-WEAKENINGS = (-0.3, 1.0)  # from strengthening to half the friction at the drive's speed
-ASSUMED = 0.1  # standard error of the weakening: its order is all that is known before
-TURNS = 6  # of the iteration for theta: the weakening is small, so each gains a digit or two
+# Starts of fits: phi, rad, and excess over the peak
+STARTS: tuple[tuple[float, float], ...] = (0.02, 0.02), (0.05, 0.005), (0.01, 0.1)
+SIZES = 0.02, 0.01, 1e-4  # by which these, and the common error of the theory, are varied
+# Weakenings that are tried, and how likely each is before. Where creep ends in a slip, friction may
+# have fallen by any share of it by then, and not even the order of its fall is known; where
+# the mass comes to slide, steep friction would have made it slip: 0 with an error of 0.1 is assumed
+WEAKENINGS = dict.fromkeys((-0.1, 0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8), 1.0)
+SLIDING = {w: exp(-0.5 * (w / 0.1) ** 2) for w in (-0.2, -0.1, 0.0, 0.1, 0.2)}
 OFF = 0.1  # of the velocity: largest common error of the theory that is tried
-NEAR = 1e-3  # of the peak, and of the largest common error: they are varied by at least so much
-NEAR_ZERO = 1e-3, 1e-6  # rad, of theta: while it is sought, and as found
+# Angles theta (rad) at which creep is tabled: near zero, where only a trial of a fit comes, and far
+ANGLES = np.concatenate([np.geomspace(1e-3, 0.5, 300), np.linspace(0.5, pi - 0.01, 300)[1:]])
 REST_SPEED, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
 SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
 
@@ -29,7 +34,8 @@ class Misalignment(NamedTuple):
     Under a measured load that varies F_0 is that at the record's `normal_load`.
     `stiffness` (N/m) is the fitted one, if any; `misfit` is the typical relative deviation of the
     creep from Eq. (7) beyond two standard errors, `scatter` the root mean square of all deviations
-    in standard errors; `weakening` is the share of friction lost at the drive's speed.
+    in standard errors. `weakening` is -V F'(0)/F_0, the mean of those under which the creep is as
+    likely as it was seen: phi, F_0 and their errors are over all of them.
     """
 
     phi: float
@@ -59,14 +65,16 @@ def fit_misalignment(
     stretch: tuple[float, float] = (0.05, 1.0),
     stiffness_across: float = inf,
     mass: float = 0.0,
+    weakenings: Mapping[float, float] = WEAKENINGS,
 ) -> Misalignment:
     """Fit the misalignment of Eq. (7) to a creep curve.
 
     By Eq. (7) the velocity depends on the spring force alone, independent of the start of loading:
     X' = V sin(phi) cos(theta - phi)/sin(theta), F = F_0 cos(theta). Least squares determine phi and
-    F_0: near slip the force is so close to F_0 that an error of a per mille in F_0 shows. They also
-    determine how far friction weakens with the slip speed |s| = V sin(phi)/sin(theta) of the creep,
-    as F_0/(1 + weakening |s|/V): taken as constant, it makes angles above 5 deg 1 to 2 % too small.
+    F_0. Friction weakens with the slip speed |s| = V sin(phi)/sin(theta) of the creep, as
+    F_0/(1 + weakening |s|/V), by as much as is not known: the result is the mean over weakenings,
+    each weighed by how well creep under it fits, and the error holds how far they are apart.
+    Friction taken as constant makes F_0 too small, by up to 20 %.
 
     Eq. (7) supposes a spring across that is far stiffer, k_x/k_y << tan^2(phi). With
     `stiffness_across` the creep is that of both springs, and bins before its begin, where the mass
@@ -86,6 +94,9 @@ def fit_misalignment(
         k_y, N/m.
     mass : float, optional
         m, kg.
+    weakenings : mapping of float to float, optional
+        How likely each weakening is before creep is seen: {0.0: 1.0} where friction is known to be
+        constant. By default none and all of some decades are alike, as where a slip ends the creep.
 
     Returns
     -------
@@ -118,51 +129,110 @@ def fit_misalignment(
     if ratio > 0.0:
         used = _after_rest(used, drive_velocity)
     used = used._replace(force=used.force - mass * _acceleration(used))
-    begin = max(1.02 * peak, float(used.force.max()) + 1e-3 * peak)
-    start = Misalignment(START, 0.0, begin, 0.0, weakening=START)
-    found = _fit(used, peak, drive_velocity, 0.0, start)
-    if ratio == 0.0:
-        return found
-    fits = [_fit(used, peak, drive_velocity, ratio, each) for each in (start, found)]
-    return min(fits, key=lambda fit: fit.scatter)
+    share = used._replace(
+        velocity=used.velocity / drive_velocity,
+        error=used.error / drive_velocity,
+        force=used.force / peak,
+    )
+    trials, starts = list[_Trial](), STARTS
+    for weakening in weakenings:
+        trials.append(_fit(share, starts, weakening, ratio))
+        starts = ((trials[-1].best[0], trials[-1].best[1]), STARTS[0])
+    return _over_weakenings(share, trials, weakenings, peak)
+
+
+class _Trial(NamedTuple):
+    """The best fit under one weakening: phi and F_0 over the peak, their variances, and creep.
+
+    `best` are the fitted parameters, `chi_square` the sum of squares, `excess` that of a degree of
+    freedom, if above one; `velocity` is that in the bins, over that of the drive.
+    """
+
+    known: Floats
+    variance: Floats
+    best: tuple[float, ...]
+    chi_square: float
+    excess: float
+    velocity: Floats
 
 
 def _fit(
-    used: Bins, peak: float, drive_velocity: float, ratio: float, start: Misalignment
-) -> Misalignment:
-    """Return the best fit that is reached from a first one, with springs of a ratio k_x/k_y."""
-    velocity, error, force = used[:3]
-    largest = float(force.max())
+    used: Bins, starts: Iterable[tuple[float, float]], weakening: float, ratio: float
+) -> _Trial:
+    """Return the best fit under a weakening, with springs of a ratio k_x/k_y.
 
-    def creep(force: Floats, phi: float, excess: float, weakening: float, off: float) -> Floats:
-        share = force / (largest + excess)
-        return drive_velocity * (1.0 + off) * creep_velocity(share, phi, weakening, ratio)
+    The force is that over the peak, the velocity that over the drive's. Fitted are phi, by how much
+    the largest force of creep exceeds that of the bins, and the common error of the theory.
+    """
+    largest = float(used.force.max())
+
+    def F_0(phi: float, excess: float) -> float:
+        return float((largest + excess) / turning_creep(phi, weakening, ratio).force[-1])
+
+    def velocity(phi: float, excess: float, off: float) -> Floats:
+        force, speed = turning_creep(phi, weakening, ratio)
+        share = used.force * (force[-1] / (largest + excess))
+        return np.asarray((1.0 + off) * np.interp(share, force, speed))
 
     # below zero Eq. (7) creeps against the drive; with two springs it has its mirror image above
-    low = (-1.5 if ratio == 0.0 else 0.0, 1e-6 * peak, WEAKENINGS[0], -OFF)
-    high = (1.5, 10.0 * peak, WEAKENINGS[1], OFF)
-    begin = np.clip((start.phi, start.F_0 - largest, start.weakening, 0.0), low, high)
-    found, errors = fit_parameters(
-        lambda at, *known: np.append(creep(at, *known), known[2:]),
-        force,
-        np.append(velocity, (0.0, 0.0)),
-        np.append(error, (ASSUMED, THEORY)),
-        tuple(begin.tolist()),
-        (low, high),
-        (START, max(begin[1], NEAR * peak), START, NEAR * OFF),
+    low, high = (-1.5 if ratio == 0.0 else 0.0, 1e-6, -OFF), (1.5, 10.0, OFF)
+    fits = [
+        fit_parameters(
+            lambda _, *at: np.append(velocity(*at), at[2]),
+            used.force,
+            np.append(used.velocity, 0.0),
+            np.append(used.error, THEORY),
+            tuple(np.clip((*start, 0.0), low, high).tolist()),
+            (low, high),
+            SIZES,
+        )
+        for start in starts
+    ]
+    best = min(fits, key=lambda fit: fit.chi_square)
+    phi, excess, off = best.values
+    known = np.array([phi, F_0(phi, excess)])
+    moved = [[phi + SIZES[2], F_0(phi + SIZES[2], excess)], [phi, F_0(phi, excess + SIZES[2])]]
+    slopes = np.subtract(moved, known) / SIZES[2]
+    return _Trial(
+        known,
+        np.einsum("ik,ij,jk->k", slopes, best.covariance[:2, :2], slopes),
+        best.values,
+        best.chi_square,
+        best.excess,
+        velocity(phi, excess, off),
     )
-    theory = creep(force, *found)
-    off = np.abs(velocity - theory)
-    size = np.maximum(np.maximum(np.abs(velocity), np.abs(theory)), TINY)
+
+
+def _over_weakenings(
+    used: Bins, trials: list[_Trial], weakenings: Mapping[float, float], peak: float
+) -> Misalignment:
+    """Return the mean over weakenings, each as likely as before times as the creep under it."""
+    best = min(trials, key=lambda trial: trial.chi_square)
+    worse = np.array([trial.chi_square - best.chi_square for trial in trials])
+    likely = np.exp(-0.5 * worse / best.excess) * list(weakenings.values())
+    likely /= likely.sum()
+    known = np.array([trial.known for trial in trials])
+    phi, F_0 = middle = np.array([_median(each, likely) for each in known.T])
+    variance = [trial.variance for trial in trials] + (known - middle) ** 2
+    phi_error, F_0_error = np.sqrt(likely @ variance)
+    off = np.abs(used.velocity - best.velocity)
+    size = np.maximum(np.maximum(np.abs(used.velocity), np.abs(best.velocity)), TINY)
     return Misalignment(
-        found[0],
-        errors[0],
-        largest + found[1],
-        errors[1],
-        misfit=float(np.median(np.maximum(off - SURE * error, 0.0) / size)),
-        scatter=float(np.sqrt(np.mean((off / error) ** 2))),
-        weakening=found[2],
+        float(phi),
+        float(phi_error),
+        float(F_0) * peak,
+        float(F_0_error) * peak,
+        misfit=float(np.median(np.maximum(off - SURE * used.error, 0.0) / size)),
+        scatter=float(np.sqrt(np.mean((off / used.error) ** 2))),
+        weakening=float(likely @ list(weakenings)),
     )
+
+
+def _median(values: Floats, weights: Floats) -> float:
+    """Return the value below which half of the weight lies, between the nearest two."""
+    order = np.argsort(values)
+    below = np.cumsum(weights[order]) - 0.5 * weights[order]
+    return float(np.interp(0.5, below, values[order]))
 
 
 def _acceleration(used: Bins) -> Floats:
@@ -186,29 +256,29 @@ def _after_rest(used: Bins, drive_velocity: float) -> Bins:
     return used.some(later)
 
 
-def creep_velocity(share: Floats, phi: float, weakening: float, ratio: float = 0.0) -> Floats:
-    """Return the velocity of slow creep over that of the drive, at shares F/F_0 of the force.
+class TurningCreep(NamedTuple):
+    """Creep while friction turns: the rising force over F_0, and the velocity over the drive's."""
 
-    The force on both springs is F_0 (cos(theta), sin(theta)), and the slip is along it:
+    force: Floats
+    velocity: Floats
+
+
+def turning_creep(phi: float, weakening: float, ratio: float) -> TurningCreep:
+    """Return the slow creep up to the largest force, at which the mass slips.
+
+    The force on both springs is friction times (cos(theta), sin(theta)), and slip is along it:
 
         F_0/k_x theta' = -V sin(theta - phi)/(sin^2(theta) + r cos^2(theta)), r = k_x/k_y,
         |s| = V [cos(theta - phi) - (1 - r) sin(theta - phi) sin(theta) cos(theta)
                  /(sin^2(theta) + r cos^2(theta))], X' = |s| cos(theta - phi).
 
     With r = 0 this is Eq. (7), |s| = V sin(phi)/sin(theta). Friction is F_0/(1 + weakening |s|/V),
-    as in `crept_force`; near theta = 0, which only a trial of the fit reaches, sines are kept
-    from zero.
+    as in `crept_force`.
     """
-    theta = np.arccos(np.clip(share, -1.0, 1.0))
-    for _ in range(TURNS):
-        slip = np.abs(_slip_speed(np.maximum(theta, NEAR_ZERO[0]), phi, ratio))
-        theta = np.arccos(np.clip(share * (1.0 + weakening * slip), -1.0, 1.0))
-    theta = np.maximum(theta, NEAR_ZERO[1])
-    return np.asarray(np.cos(theta - phi) * _slip_speed(theta, phi, ratio))
-
-
-def _slip_speed(theta: Floats, phi: float, ratio: float) -> Floats:
-    """Return the slip speed of slow creep over V; below zero against the force."""
-    sine, cosine = np.sin(theta), np.cos(theta)
+    sine, cosine = np.sin(ANGLES), np.cos(ANGLES)
     turned = (1.0 - ratio) * sine * cosine / (sine**2 + ratio * cosine**2)
-    return np.asarray(np.cos(theta - phi) - np.sin(theta - phi) * turned)
+    slip = np.cos(ANGLES - phi) - np.sin(ANGLES - phi) * turned  # below zero against the force
+    force = cosine / np.maximum(1.0 + weakening * np.abs(slip), TINY)
+    slips = int(np.argmax(force))
+    rising, velocity = force[slips:][::-1], (np.cos(ANGLES - phi) * slip)[slips:][::-1]
+    return TurningCreep(np.maximum.accumulate(rising), velocity)
