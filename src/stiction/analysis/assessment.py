@@ -28,7 +28,7 @@ from stiction.analysis.motion.metadata import (
     other_velocity,
 )
 from stiction.analysis.motion.regime.evidence import Regime
-from stiction.analysis.motion.regime.kinds import UNDETERMINED
+from stiction.analysis.motion.regime.kinds import STICK_SLIP, UNDETERMINED
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.trajectory import Trajectory
@@ -88,7 +88,10 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     friction = _friction(record, found, cycles.part(~apart), regime, turns)
     drift = shown_drift(record, regime.kind, cycles)
     ends = flat_ends(record.force)
-    stated = compare_metadata(record, regime.kind, cycles, drift, ends)
+    kind, slips = regime.kind, cycles
+    if "slips_at" in regime.evidence and found.few is not None:
+        kind, slips = STICK_SLIP, found.few
+    stated = compare_metadata(record, kind, slips, drift, ends)
     alike = none if turns else cycles  # those of two strokes are none
     doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
     off = error_of_zero(record, cycles, drift)

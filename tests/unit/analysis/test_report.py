@@ -92,7 +92,7 @@ def test_a_loading_without_a_slip_has_no_stick_phase_that_ends(run):
     early = run.data["time"].values < 1.9
     given = {"time": run.data["time"].values[early], "force": run.data["spring_x"].values[early]}
     found = st.analyse(st.Record(**given, stiffness=1e3, drive_velocity=1e-3))
-    assert found.missing["creep"] == "no stick phase ends in a slip"
+    assert found.missing["creep"] == "no whole stick phase ends in a slip"
 
 
 def test_without_misalignment_the_last_motion_is_the_slip():

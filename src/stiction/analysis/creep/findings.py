@@ -174,7 +174,7 @@ def _mean(curves: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
     """
     if not np.isfinite(curves["velocity"].values).any():
         if not curves.sizes["phase"]:
-            raise ResultError("no stick phase ends in a slip")
+            raise ResultError("no whole stick phase ends in a slip")
         raise ResultError("no stick phase has enough samples")
     mean = mean_creep(curves)
     velocity, error = (mean[name].values for name in ("velocity", "velocity_error"))

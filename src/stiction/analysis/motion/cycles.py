@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import built_up
+from stiction.analysis.motion.changes.few_slips import FEW, few_slips
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
 from stiction.analysis.motion.course import dies_out, is_over
@@ -14,8 +15,10 @@ from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
     is_beside,
     is_carried,
+    is_larger,
     is_residue,
     is_rounding,
+    is_stick_slip,
     is_subharmonic,
     lasts_through_loading,
     may_be_carried,
@@ -23,9 +26,18 @@ from stiction.analysis.motion.disturbance import (
 )
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.digitised import rounding_line
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
-from stiction.analysis.signals.hum import Line, narrow_lines, of_mains, peak_frequencies
-from stiction.analysis.signals.robust import without_outliers
+from stiction.analysis.signals.hum import (
+    PERIODS,
+    Line,
+    line_near,
+    narrow_lines,
+    of_mains,
+    peak_frequencies,
+)
+from stiction.analysis.signals.peak_refinement import Vertices
+from stiction.analysis.signals.robust import uniform_mean, without_outliers
 from stiction.analysis.signals.turning_points import turning_points
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
@@ -123,6 +135,9 @@ class Swings(NamedTuple):
         What dies out within the record beside the cycles, as after a knock; `force` is without it.
     over : bool
         Whether the record is that of a run, which has no noise, and no swing follows for long.
+    few : CycleTable or None
+        A row for each slip of a record that has few, known by their shape, with the columns of
+        `find_cycles`; the first is loaded from where its loading is even.
     """
 
     table: CycleTable
@@ -135,6 +150,7 @@ class Swings(NamedTuple):
     wave: float = 0.0
     ringing: Ringing | None = None
     over: bool = False
+    few: CycleTable | None = None
 
     @property
     def lasting(self) -> CycleTable:
@@ -170,7 +186,29 @@ def swings(record: Record) -> Swings:
         if without is None:
             break
         record, found = without
-    return found
+    return _without_hum_of_few_slips(record, grid, found) or found
+
+
+def _without_hum_of_few_slips(record: Record, grid: EvenGrid, found: Swings) -> Swings | None:
+    """Return a few slips beside a line that is not alone, if there are any.
+
+    Their own spectrum may be as high as a ninth of the line, within half an octave of it, or hide
+    it: then it is known by its swings. But means over its periods show the slips.
+    """
+    seen = found.few is not None and len(found.table) <= FEW
+    if record.slip_speed is not None or seen or is_stick_slip(found.lasting):
+        return None
+    its = [1.0 / found.table.median("period")] if len(found.table) > PERIODS else []
+    for frequency in its + peak_frequencies(grid, record.force):
+        length = round(1.0 / (frequency * grid.step))
+        if few_slips(record.time, uniform_mean(record.force, length)) is None:
+            continue
+        line = line_near(grid, record.force, frequency)
+        if line is not None:
+            _, without = swings_without(line, record)
+            if without.few is not None and is_larger(line, without.few):
+                return without._replace(lines=(*found.lines, line))
+    return None
 
 
 def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
@@ -215,9 +253,10 @@ def _without_line(
     """Return record and swings without a line beside the motion, if there is one.
 
     Lines of the mains come first: others may be the stick-slip that a slow wave carries. A ramp
-    through the steps of the force as it was `read` (N) has a line, too.
+    through the steps of the force as it was `read` (N) has lines, too.
     """
-    lines = narrow_lines(grid, record.force)
+    steps = 2.0 * rounding_line(read)  # from crest to trough
+    lines = [line for line in narrow_lines(grid, record.force) if line.height > steps]
     for line in sorted(lines, key=lambda line: not of_mains(line.frequency)):
         if any(abs(line.frequency / each.frequency - 1.0) < SAME for each in found.lines):
             continue  # what is left of a line
@@ -225,6 +264,8 @@ def _without_line(
         if is_rounding(without.table, read):
             continue
         without = without._replace(lines=(*found.lines, line))
+        if without.few is not None and is_larger(line, without.few):
+            return rest, without
         if is_beside(line, without.table, record):
             number = line.frequency * without.table.median("period")
             count, left = len(found.table), len(without.table)
@@ -252,7 +293,11 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
     force that a `wave` (N) carries the swings are those less the wave, but tabulated with it.
     """
     force = record.force if wave is None else record.force - wave
-    points = turning_points(force)
+    points, few = turning_points(force), None
+    if len(points.index) <= 2 * FEW + 1 and wave is None and record.slip_speed is None:
+        few = few_slips(record.time, force)
+    if few is not None and not len(points.index):
+        points = few.points
     corners, dips, turns = find_corners(record.time, force, points)
     if wave is not None:
         there = np.interp(corners.time, record.time, wave)
@@ -264,4 +309,7 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
         over = record.sticks is not None and is_over(table["period"], rest)
         dying = over or dies_out(table["drop"], table["period"], rest)
     found = Swings(table, dying, turns, points.noise, points.clearness, record.force)
+    if few is not None:
+        none = Vertices(np.zeros(0), np.zeros(0))
+        found = found._replace(few=tabulate(record, few.corners(record.time), none, points.least))
     return found._replace(over=over)

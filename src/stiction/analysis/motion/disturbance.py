@@ -56,9 +56,17 @@ def is_beside(line: Line, table: CycleTable, record: Record) -> bool:
     aside = (period * line.frequency > SLOWER) & motion
     if len(aside) < 2 or np.median(aside) < 1.0 or _is_elsewhere(line, table, record):
         return False
-    if of_mains(line.frequency) or _sticks(table):
+    if of_mains(line.frequency) or is_stick_slip(table):
         return True
     return not _is_own(line, record) and not is_irregular(period, drop)
+
+
+def is_larger(line: Line, slips: CycleTable) -> bool:
+    """Return whether all of a few slips without a line are so much larger that it is beside them.
+
+    A mass that is loaded evenly before and after them sticks, and does not vibrate.
+    """
+    return len(slips) > 0 and bool(slips["drop"].min() > HIGHER * line.height)
 
 
 def _is_elsewhere(line: Line, table: CycleTable, record: Record) -> bool:
@@ -138,19 +146,19 @@ def is_carried(frequency: float, duration: float, seen: CycleTable, left: CycleT
     some.
     """
     enough = len(left) > NEARLY_ALL * frequency * duration
-    if not enough or not _sticks(left):
+    if not enough or not is_stick_slip(left):
         return False
     among = left["peak_time"]
-    if _sticks(seen):
+    if is_stick_slip(seen):
         among = among[(among > seen["start"][0]) & (among < seen["trough_time"][-1])]
     if len(among) <= MORE * len(seen) + AND_MORE:
         return False
     alike = np.abs(left["period"] * frequency - 1.0) < NEAR
     larger = seen.median("drop") > NO_LARGER * left.median("drop")
-    return bool(np.mean(alike) > NEARLY_ALL) and not (_sticks(seen) and larger)
+    return bool(np.mean(alike) > NEARLY_ALL) and not (is_stick_slip(seen) and larger)
 
 
-def _sticks(table: CycleTable) -> bool:
+def is_stick_slip(table: CycleTable) -> bool:
     """Return whether swings are stick-slip, by their typical shape."""
     shares = table["rise_share"]
     return len(shares) > 0 and bool(rest_share(np.median(shares)) >= STICKING)

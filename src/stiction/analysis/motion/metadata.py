@@ -225,7 +225,8 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
         off = 0.5 * float(np.hypot(unseen, 2.0 / (record.sample_rate * swing)))  # or a sample
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
-    error = 2.0 * found * float(np.hypot(_error(swings) / swing, off))
+    scatter = _error(swings) / swing if len(swings) > 1 else 0.0
+    error = 2.0 * found * float(np.hypot(scatter, off))
     return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, highest, how)
 
 

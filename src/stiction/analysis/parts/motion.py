@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import inf
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,7 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
 )
 from stiction.analysis.motion.rest import comes_to_rest, stuck_share
+from stiction.analysis.motion.vibration import COUPLED
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.parts.wording import number
 from stiction.analysis.signals.hum import of_mains
@@ -28,7 +30,7 @@ from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -123,7 +125,7 @@ def _describe_cycles(found: Analysis) -> str:
     if plain is None:
         return ""
     falls = f"the force drops by {in_words(drop, 'N')}{_each_time(found)}."
-    return f"{plain}; {falls}{_why_transverse(found)}{_slow_swing(found)}{_on_a_wave(found)}"
+    return f"{plain}; {falls}{_why_transverse(found)}{_not_its_own(found)}{_on_a_wave(found)}"
 
 
 def _after_first(found: Analysis) -> str:
@@ -197,11 +199,19 @@ def _describe_course(found: Analysis) -> str:
 
 
 def _begins_to_slip(found: Analysis) -> str:
-    """Describe a loading that ends in a fall of the force; else say that nothing is known."""
-    begin = found.regime.evidence.get("ends_falling_from")
+    """Describe a single slip, or a loading that ends in a fall; else say that nothing is known."""
+    evidence = found.regime.evidence
+    if "slips_at" in evidence:
+        at = in_words(evidence["slips_at"], "s")
+        by = with_error(evidence["slips_by"], evidence["slips_by_error"], "N")
+        return (
+            f"The mass sticks, slips once, at {at}, and sticks again: the force drops by {by} "
+            f"within {in_words(evidence['slips_within'], 's')}. A single slip makes no cycle."
+        )
+    begin = evidence.get("ends_falling_from")
     if begin is None:
         return "This record does not show what the mass does."
-    fall = in_words(found.regime.evidence["ends_falling_by"], "N")
+    fall = in_words(evidence["ends_falling_by"], "N")
     turns = "" if isinstance(found.source, Trajectory) else ", or the drive turns back"
     return (
         f"The force rises until {in_words(begin, 's')}, then falls by {fall} or more until the "
@@ -220,17 +230,23 @@ def _sticks(found: Analysis) -> str:
 
 def _swinging(found: Analysis) -> str:
     """Return what is known to swing: the mass, or only the force, which friction changes too."""
-    period = found.regime.evidence.get("natural_period")
-    return "force" if period is None or period > SLOW_SWING else "mass"
+    period = found.regime.evidence.get("natural_period", inf)
+    return "mass" if COUPLED <= period <= SLOW_SWING else "force"
 
 
-def _slow_swing(found: Analysis) -> str:
-    """Return that a mass on its spring swings more quickly than its record, if it does so."""
+def _not_its_own(found: Analysis) -> str:
+    """Return what else may swing in a record, if a mass on its spring swings at another rate."""
     if found.regime.kind != HARMONIC or isinstance(found.source, Trajectory):
         return ""
-    period = found.regime.evidence.get("natural_period", 0.0)
-    if period <= SLOW_SWING:
+    period = found.regime.evidence.get("natural_period", 1.0)
+    if COUPLED <= period <= SLOW_SWING:
         return ""
+    if period < COUPLED:
+        return (
+            f" The mass on its spring takes {1.0 / period:.3g} times as long: this is the "
+            "transverse oscillation, hum, or the load cell's own vibration, unless mass or "
+            "stiffness are not as stated."
+        )
     return (
         f" The mass on its spring would do so {period:.3g} times as quickly: friction, load or "
         "drive change so."

@@ -89,6 +89,16 @@ def narrow_lines(grid: EvenGrid | None, force: Floats) -> list[Line]:
     return [_measure_line(force, grid, power, floor, width, at) for at in found]
 
 
+def line_near(grid: EvenGrid, force: Floats, frequency: float) -> Line | None:
+    """Return the line at one of the `peak_frequencies` (Hz), alone or not; None without any."""
+    seen = _spectrum_on_grid(grid, force)
+    if seen is None:
+        return None
+    power, width = seen
+    at = min(max(round(frequency * grid.step / width), 1), len(power) - 1)
+    return _measure_line(force, grid, power, beside(power), width, at)
+
+
 def lines_like(lines: Sequence[Line], grid: EvenGrid, values: Floats, least: float) -> list[Line]:
     """Return the narrow lines of another channel that are of the mains or are those of a force.
 

@@ -9,6 +9,7 @@ from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import COURSE_PARTS
+from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
@@ -19,6 +20,7 @@ from stiction.analysis.motion.regime.kinds import (
     IRREGULAR,
     SETTLING,
     STEADY,
+    STICK_SLIP,
     STUCK,
     TRANSITIONAL,
     TRANSVERSE,
@@ -39,8 +41,10 @@ from stiction.analysis.motion.vibration import (
     FastOscillation,
 )
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
+from stiction.recording.noise import white_noise
 from stiction.trajectory import Trajectory
 
 FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
@@ -104,12 +108,27 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if len(found.table):
         period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))
+    if found.few is not None:
+        return Regime(UNDETERMINED, 0.0, _single_slip(record, found.few), STICK_SLIP)
     seen = _while_it_slides(record, found)
     stays = levels(record) if record.slip_speed is None else []
     if len(stays) > 1:
         return seen._replace(evidence=seen.evidence | {"levels": len(stays)})
     frequency = seen.evidence.get("hump")
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
+
+
+def _single_slip(record: Record, slips: CycleTable) -> dict[str, float]:
+    """Return the evidence of a slip that is the only one, so that there is no cycle.
+
+    The fall has the error of two samples, and of what the spring is loaded by from one to the next.
+    """
+    begin, end, drop = (float(slips[name][0]) for name in ("peak_time", "trough_time", "drop"))
+    between = float(slips["stick_slope"][0]) / record.sample_rate
+    error = 2.0**0.5 * max(white_noise(record.force), resolution(record.force), between)
+    return {
+        "slips_at": begin, "slips_by": drop, "slips_by_error": error, "slips_within": end - begin,
+    }  # fmt: skip
 
 
 def _while_it_slides(record: Record, found: Swings) -> Regime:

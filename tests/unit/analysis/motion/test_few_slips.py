@@ -1,0 +1,92 @@
+"""Few slips are known by their shape: even loading, a quick fall, and the same loading again."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.motion.changes.few_slips import few_slips
+
+RAMP, LASTS, DROP = 1.0, 0.04, 0.6  # N/s, s and N
+TIME = np.arange(0.0, 1.5, 5e-4)
+STIFFNESS = (np.pi / LASTS) ** 2  # N/m of a mass of 1 kg whose slip lasts so long
+LEVELS = np.select([TIME < 0.5, TIME < 1.0], [0.2, 1.0], 0.4)
+VIBRATION = 1.0 + 0.3 * np.sin(2.0 * np.pi * 2.0 * TIME)
+BREAK_AWAY = np.where(TIME < 1.0, TIME, 0.5 + 0.5 * np.exp(-(TIME - 1.0) / 0.02))
+
+
+def sawtooth(slips, rest=0.5, time=None):
+    """Return times (s) and a force (N) that slips so often, loaded for so long afterwards."""
+    period = DROP / RAMP + LASTS
+    end = 1.0 + (slips - 1) * period + LASTS + rest
+    time = np.arange(0.0, end, 5e-4) if time is None else time
+    force = RAMP * time
+    for k in range(slips):
+        since = np.clip(time - 1.0 - k * period, 0.0, LASTS)
+        force -= 0.5 * DROP * (1.0 - np.cos(np.pi * since / LASTS)) + RAMP * since
+    return time, force
+
+
+def noisy(force, noise=0.005, seed=1):
+    return force + noise * np.random.default_rng(seed).standard_normal(len(force))
+
+
+def analyse(time, force):
+    stated = {"mass": 1.0, "stiffness": STIFFNESS, "drive_velocity": RAMP / STIFFNESS}
+    return st.analyse(st.Record(time=time, force=force, **stated))
+
+
+@pytest.mark.parametrize("slips", [1, 2, 3])
+def test_each_slip_is_found(slips):
+    time, force = sawtooth(slips)
+    found = few_slips(time, noisy(force))
+    assert found is not None
+    assert len(found.points.index) == 2 * slips
+    assert found.begin.value == pytest.approx([0.4], abs=0.05)
+
+
+@pytest.mark.parametrize("force", [LEVELS, VIBRATION, BREAK_AWAY, TIME, 0.0 * TIME])
+def test_no_other_force_slips(force):
+    assert few_slips(TIME, noisy(force)) is None
+
+
+def test_a_slip_without_even_loading_after_it_is_none():
+    time, force = sawtooth(1)
+    flat = np.where(time < 1.0 + LASTS, force, 1.0 - DROP)
+    assert few_slips(time, noisy(flat)) is None
+    quick = np.where(time < 1.0 + LASTS, force, force + 2.0 * (time - 1.0 - LASTS))
+    assert few_slips(time, noisy(quick)) is None
+
+
+def test_a_fall_as_slow_as_its_loading_is_none():
+    force = np.interp(TIME, [0.0, 0.6, 1.0, 1.5], [0.0, 0.6, 0.2, 0.7])
+    assert few_slips(TIME, noisy(force)) is None
+
+
+@pytest.mark.parametrize("hum", [0.0, 0.03, 0.2])
+def test_a_single_slip_is_described(hum):
+    time, force = sawtooth(1)
+    found = analyse(time, noisy(force) + hum * np.sin(2.0 * np.pi * 73.0 * time))
+    assert "The mass sticks, slips once, at 1" in str(found)
+    assert "no stick phase ends" not in str(found)
+    assert found.friction.kinetic is None
+    its = found.regime.evidence
+    assert its["slips_by"] == pytest.approx(DROP, abs=3.0 * its["slips_by_error"])
+    swing = next(x for x in found.parts["metadata"] if x.quantity == "stiffness over mass")
+    assert swing.found == pytest.approx(STIFFNESS, abs=2.0 * swing.error)
+    assert swing.agrees
+
+
+def test_hum_beside_two_slips_is_not_the_motion():
+    time, force = sawtooth(2)
+    found = analyse(time, noisy(force) + 0.05 * np.sin(2.0 * np.pi * 90.0 * time))
+    assert found.regime.kind == "stick-slip"
+    assert found.cycles["drop"].values == pytest.approx([DROP], abs=0.05)
+
+
+def test_a_vibration_far_quicker_than_the_mass_is_not_called_its_own():
+    time = np.arange(0.0, 2.0, 1e-3)
+    force = 2.0 + 0.1 * np.sin(2.0 * np.pi * 60.3 * time)
+    stated = {"mass": 1.0, "stiffness": 100.0, "drive_velocity": 1e-3}
+    text = str(st.analyse(st.Record(time=time, force=noisy(force, 1e-4), **stated)))
+    assert "The force swings" in text
+    assert "takes 37.9 times as long: this is the transverse oscillation, hum" in text
