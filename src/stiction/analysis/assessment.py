@@ -31,6 +31,8 @@ from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import STICK_SLIP, UNDETERMINED
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
+from stiction.analysis.signals.digitised import resolution
+from stiction.recording.noise import rounding_error
 from stiction.trajectory import Trajectory
 
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
@@ -131,6 +133,10 @@ def _friction(
         several = "the force stays at several levels, each with its own: see the parts"
         return friction_of(first, regime, usual).without_kinetic(several)
     friction = with_smear(friction_of(clean, regime, usual), clean, usual)
+    rounding = rounding_error(record.force, resolution(record.force))
+    friction = friction.with_errors(break_away=rounding)
+    if changed:  # what is left without a line has no steps, but their error
+        friction = friction.with_errors(static=rounding, kinetic=rounding)
     if "forth" in regime.evidence or "straight" in regime.evidence:
         return friction.without_any(turns)
     return friction.without_kinetic(turns) if turns else friction

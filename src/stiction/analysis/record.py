@@ -364,11 +364,23 @@ class Record(Described):
         """
         if self.load is None or not self.normal_load or not np.ptp(self.load) > 0.0:
             return np.ones(len(self))
-        noise = white_noise(self.load) if len(self) > ORDER else 0.0
-        wanted = (noise / (SHARP * float(self.load.mean()))) ** 2
-        width = int(max(1.0, min(wanted, LONGEST_MEAN * len(self))))
-        load = uniform_mean(self.load, width)
+        load = uniform_mean(self.load, self._averaged_load()[1])
         return np.asarray(np.where(load > 0.0, load, np.nan) / self.normal_load)
+
+    def load_noise(self) -> float:
+        """Return the standard error of `relative_load`, or of its mean where it does not vary."""
+        if self.load is None or not self.normal_load or not np.ptp(self.load) > 0.0:
+            return 0.0
+        noise, width = self._averaged_load()
+        count = width if self.load_variation() > 0.0 else len(self)
+        return float(noise / count**0.5 / self.normal_load)
+
+    def _averaged_load(self) -> tuple[float, int]:
+        """Return the noise of a sample of `load`, N, and over how many it is averaged."""
+        load = np.zeros(1) if self.load is None else self.load
+        noise = white_noise(load) if len(self) > ORDER else 0.0
+        wanted = (noise / (SHARP * float(load.mean()))) ** 2
+        return noise, int(max(1.0, min(wanted, LONGEST_MEAN * len(self))))
 
     def load_variation(self) -> float:
         """Return how far `load` varies beyond its noise, from least to largest, over its mean.

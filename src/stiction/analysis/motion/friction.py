@@ -69,6 +69,11 @@ class Measured(NamedTuple):
         its = float(np.hypot(self.coefficient_error, of_coefficient))
         return self._replace(error=error, coefficient_error=its)
 
+    def with_load_error(self, relative: float) -> Measured:
+        """Return the same with a `relative` error of the load."""
+        its = float(np.hypot(self.coefficient_error, relative * abs(self.coefficient)))
+        return self._replace(coefficient_error=its)
+
 
 class Friction(NamedTuple):
     """The friction of a record; for each None, `missing` gives the reason.
@@ -119,8 +124,11 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
     relative, slides = record.relative_load(), sliding(record)
     end = len(record) if len(cycles) else slides.last  # the fall after it follows no break-away
-    load = (record.normal_load or np.nan) * relative[:end]
+    varies = record.load_variation() > 0.0  # else the mean has less noise than any part of it
+    load = (record.normal_load or np.nan) * (relative[:end] if varies else np.ones(end))
     break_away, reason = _find_break_away(record.time[:end], record.force[:end], cycles, load)
+    if break_away is not None:
+        break_away = break_away.with_load_error(record.load_noise())
     slid = break_away is not None and not len(cycles)
     if regime.kind == STUCK and not regime.runner_up:
         break_away, reason = None, "the mass does not slip"

@@ -300,3 +300,28 @@ def test_friction_is_that_of_the_peaks_if_very_few_are_cut_off(count, known):
         assert found.static.force == pytest.approx(2.0, abs=0.01)
     else:
         assert "peaks are cut off" in found.missing["static"]
+
+
+def test_a_constant_load_in_noise_is_as_uncertain_in_the_break_away_as_told():
+    """Its mean over a 400th of the record was off by up to 13 errors that were told."""
+    off = []
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        force = stick_slip(10.0 + 0.0 * TIME[:4000]) + 1e-3 * random.standard_normal(4000)
+        load = 10.0 + 0.5 * random.standard_normal(4000)
+        broke = st.analyse(st.Record(time=TIME[:4000], force=force, load=load)).friction.break_away
+        assert broke is not None
+        off.append((broke.coefficient - STATIC) / broke.coefficient_error)
+    assert np.abs(off).max() < 3.0
+
+
+@pytest.mark.parametrize("offset", [0.1, 0.35, 0.6, 0.85])
+def test_a_rounded_top_in_steps_is_known_to_a_part_of_a_step(offset):
+    """Its error was a thousandth of a step."""
+    step, share = 0.02, np.clip(TIME % 4.0, 0.0, 3.9) / 3.9
+    force = 2.0 * np.sin(0.5 * np.pi * share) + step * offset
+    read = step * np.round(force / step) - step * offset
+    broke = st.analyse(st.Record(time=TIME, force=read)).friction.break_away
+    assert broke is not None
+    assert broke.error > 0.25 * step
+    assert broke.force == pytest.approx(2.0, abs=2.0 * broke.error)
