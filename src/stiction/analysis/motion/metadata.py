@@ -43,7 +43,7 @@ FEWEST_PER_FALL = 6  # samples: the duration of a fall, or a slope, is not known
 ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
 SURE = 3.0  # standard errors by which a value differs for sure
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
-AT_REST = 0.02  # of the largest force
+AT_REST, ROUNDING = 0.02, 1e-12  # of the largest force: a reading at rest, and one of zero
 LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
 BY_RISE, BY_SLIPS = "rate at which the force rises", "duration of its slips"
 
@@ -344,6 +344,7 @@ def _zero(record: Record) -> StatedQuantity | None:
         return None
     largest = largest_magnitude(record.force)
     read, spread = float(np.median(some)), float(np.std(some))
+    read = read if abs(read) > ROUNDING * largest else 0.0
     if not abs(read) < AT_REST * largest or spread > AT_REST * largest:
         return None
     stated = 0.0 if record.zero is not None else nan

@@ -34,7 +34,9 @@ NOTHING = 1e-3  # of the work: what is less stands in the files, not in the term
 def find(found: Analysis) -> xr.Dataset:
     """Return the energy budget of each cycle of a run."""
     if not isinstance(found.source, Trajectory):
-        raise ResultError("of a measured record only the force is known")
+        raise ResultError(
+            "a record lacks the force of friction, and what the dampers take; a run has them"
+        )
     from stiction.analysis.energy import energy_budget  # with the solver, which no record needs
 
     return energy_budget(found.source, edges(found.source, found.cycles))

@@ -31,7 +31,8 @@ ROUGH = {  # why a value may be farther from the truth than its error says
         "so does a load cell whose filter smears it."
     ),
     BY_RISE: (
-        "The force may rise more slowly than stiffness times drive velocity: the mass creeps."
+        "The force may rise more slowly than stiffness times drive velocity: the mass creeps. The "
+        "error of its rate is that of the scatter alone."
     ),
 }
 NOT_SHOWN = "not shown"
@@ -46,9 +47,17 @@ def section(found: Analysis) -> Section | None:
     known = [word for word in map(verdict, its) if word not in ("", NOT_SHOWN)]
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
-    rough = [x.how for x in its if verdict(x) in ((ALLOWED,) if x.part else (ALLOWED, ""))]
+    rough = [x.how for x in its if _is_rough(x)]
     lines += [ROUGH[how] for how in dict.fromkeys(rough) if how in ROUGH]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
+
+
+def _is_rough(each: StatedQuantity) -> bool:
+    """Return whether a value is, or may be, farther from the truth than its error says."""
+    if verdict(each) in ((ALLOWED,) if each.part else (ALLOWED, "")):
+        return True
+    apart = each.stated - each.found
+    return each.how == BY_RISE and each.agrees is True and apart > SURE * each.error
 
 
 def _agreement(known: list[str]) -> str:

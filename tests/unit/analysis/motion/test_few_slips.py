@@ -90,3 +90,20 @@ def test_a_vibration_far_quicker_than_the_mass_is_not_called_its_own():
     text = str(st.analyse(st.Record(time=time, force=noisy(force, 1e-4), **stated)))
     assert "The force swings" in text
     assert "takes 37.9 times as long: this is the transverse oscillation, hum" in text
+
+
+def test_a_mass_that_creeps_is_loaded_more_slowly_than_the_error_says():
+    """981.8 ± 0.6 mN/s beside a stated 1 N/s was all that was said."""
+    time, force = sawtooth(5)
+    assert "is that of the scatter alone" in str(analyse(time, 0.98 * noisy(force, 1e-4)))
+
+
+def test_what_is_nothing_is_told_as_nothing():
+    """A zero of -1.312 rN, and a rate of 317 nHz at which to sample, were told."""
+    time, force = sawtooth(4)
+    tiny = np.where(time < 0.1, -1.3e-27, force)
+    assert "rN" not in str(st.analyse(st.Record(time=time, force=tiny)))
+    coarse, year = slice(None, None, 80), 3e7
+    text = str(st.analyse(st.Record(time=year * time[coarse], force=force[coarse])))
+    assert "nHz or more" not in text
+    assert "or more often" in text

@@ -17,6 +17,7 @@ from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
+SLOWLY = 1e3  # s between samples
 ENOUGH_VALUES = 16  # that are all repeated as often
 # Samples in a fall as they are seen, about one more than it lasts, and by which share the largest
 # rate of half a sine between straight lines is too low that cubics through five samples have; the
@@ -107,10 +108,12 @@ def doubt_few_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
     samples = fall * record.sample_rate
     if not samples < FEWEST_PER_FALL:
         return
+    interval = 0.1 * max(fall, 1.0 / record.sample_rate)
+    slow = interval > SLOWLY  # nobody samples in nanohertz
+    rate = f"every {in_words(interval, 's')}" if slow else f"at {in_words(1.0 / interval, 'Hz')}"
     yield (
         f"A fall of the force takes {samples:.1f} samples: peaks and troughs lie between them"
-        f"{_slow_slips(record, cycles, samples)}. "
-        f"Sample at {in_words(10.0 / max(fall, 1.0 / record.sample_rate), 'Hz')} or more."
+        f"{_slow_slips(record, cycles, samples)}. Sample {rate} or more{' often' * slow}."
     )
 
 

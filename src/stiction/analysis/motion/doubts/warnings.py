@@ -32,7 +32,7 @@ from stiction.analysis.motion.metadata import (
     SWING,
     StatedQuantity,
 )
-from stiction.analysis.motion.regime.kinds import HARMONIC
+from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import ACROSS, Record, across_force
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.hum import Line, of_mains
@@ -81,7 +81,7 @@ def warnings(
         *_implausible_friction(record, friction, cycles),
         *doubt_clipping(ends),
         *doubt_mean_period(cycles),
-        *doubt_loading(cycles),
+        *(doubt_loading(cycles) if kind in (STICK_SLIP, TRANSITIONAL) else ()),
         *doubt_cycles_apart(cycles),
         *doubt_quiet(record, friction, cycles),
         *_loading([each for each in stated if each.quantity == LOADING_RATE]),
@@ -264,6 +264,11 @@ def _remedy_of_mass(ratio: float, kind: str) -> str:
         return (
             "check mass and stiffness; or the transverse spring swings as well, as friction that "
             "turns makes it"
+        )
+    if ratio > 1.0:
+        return (
+            "check mass and stiffness; or a slip takes the spring across as well, as at a "
+            "misalignment of some degrees"
         )
     return "check mass and stiffness"
 
