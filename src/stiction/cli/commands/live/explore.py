@@ -21,7 +21,7 @@ def explore(
     """Open the explorer: sliders for every parameter, and the whole motion at once.
 
     The page is served on this machine only (127.0.0.1), and needs no network. Ctrl-C ends it, or
-    closing its last page.
+    closing its last page, some seconds later.
 
     For example, with the paper's case, then with your own, then with a measured force over it:
 
