@@ -41,6 +41,9 @@ T = TypeVar("T")
 
 KNOWN = 0.25  # largest useful standard error, of the exponent, or of the angle relative to it
 MISSED = 0.1  # of the creep: Eq. (7) does not describe curves with a larger misfit
+# Sum of squares by which presliding alone fits better: on random rigs it did so for 2 of 112 angles
+# without presliding, and for 21 of 68 under LuGre
+BETTER = 4.0
 SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by more
 # Of the creep: rest between jerks; of F_0: what friction in them is less by. With more of both the
 # angle comes out up to 10 % low; a jerk that is slow beside what friction weakens by does no harm
@@ -294,6 +297,12 @@ def _misalignment(
         raise ResultError(
             "not determined: Eq. (7), which supposes slow loading and a spring that is far "
             f"stiffer across, misses this creep by {by}"
+        )
+    if found.worse < -BETTER:
+        raise ResultError(
+            "not determined: a contact that gives way before it slips (presliding), "
+            f"{found.contact:.2g} times as stiff as the spring, describes this creep better than "
+            "friction that turns"
         )
     if not found.phi_error < KNOWN * abs(found.phi):
         most = degrees(abs(found.phi) + SURE * found.phi_error)

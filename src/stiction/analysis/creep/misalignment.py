@@ -10,6 +10,7 @@ import numpy as np
 
 from stiction.analysis.creep.curve import Bins
 from stiction.analysis.creep.least_squares import THEORY, fit_parameters, used_bins
+from stiction.analysis.creep.presliding import fit_presliding
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 
@@ -35,7 +36,9 @@ class Misalignment(NamedTuple):
     `stiffness` (N/m) is the fitted one, if any; `misfit` is the typical relative deviation of the
     creep from Eq. (7) beyond two standard errors, `scatter` the root mean square of all deviations
     in standard errors. `weakening` is -V F'(0)/F_0, the mean of those under which the creep is as
-    likely as it was seen: phi, F_0 and their errors are over all of them.
+    likely as it was seen: phi, F_0 and their errors are over all of them. `contact` is how many
+    times as stiff as the spring a contact would be that creeps so by presliding alone, and `worse`
+    by how much the sum of squares, in standard errors, is larger then.
     """
 
     phi: float
@@ -46,6 +49,8 @@ class Misalignment(NamedTuple):
     misfit: float = np.nan
     scatter: float = np.nan
     weakening: float = np.nan
+    contact: float = np.nan
+    worse: float = np.nan
 
     @property
     def interval(self) -> tuple[float, float]:
@@ -72,7 +77,7 @@ def fit_misalignment(
     By Eq. (7) the velocity depends on the spring force alone, independent of the start of loading:
     X' = V sin(phi) cos(theta - phi)/sin(theta), F = F_0 cos(theta). Least squares determine phi and
     F_0. Friction weakens with the slip speed |s| = V sin(phi)/sin(theta) of the creep, as
-    F_0/(1 + weakening |s|/V), by as much as is not known: the result is the mean over weakenings,
+    F_0/(1 + weakening |s|/V), by as much as is not known: the result is the median over weakenings,
     each weighed by how well creep under it fits, and the error holds how far they are apart.
     Friction taken as constant makes F_0 too small, by up to 20 %.
 
@@ -138,7 +143,10 @@ def fit_misalignment(
     for weakening in weakenings:
         trials.append(_fit(share, starts, weakening, ratio))
         starts = ((trials[-1].best[0], trials[-1].best[1]), STARTS[0])
-    return _over_weakenings(share, trials, weakenings, peak)
+    found, least = _over_weakenings(share, trials, weakenings, peak)
+    alone = fit_presliding(share)
+    worse = (alone.chi_square - least.chi_square) / least.excess
+    return found._replace(contact=exp(alone.values[0]), worse=worse)
 
 
 class _Trial(NamedTuple):
@@ -205,8 +213,11 @@ def _fit(
 
 def _over_weakenings(
     used: Bins, trials: list[_Trial], weakenings: Mapping[float, float], peak: float
-) -> Misalignment:
-    """Return the mean over weakenings, each as likely as before times as the creep under it."""
+) -> tuple[Misalignment, _Trial]:
+    """Return the median over weakenings, and the best.
+
+    Each is as likely as it was before, times the likelihood of the creep under it.
+    """
     best = min(trials, key=lambda trial: trial.chi_square)
     worse = np.array([trial.chi_square - best.chi_square for trial in trials])
     likely = np.exp(-0.5 * worse / best.excess) * list(weakenings.values())
@@ -217,7 +228,7 @@ def _over_weakenings(
     phi_error, F_0_error = np.sqrt(likely @ variance)
     off = np.abs(used.velocity - best.velocity)
     size = np.maximum(np.maximum(np.abs(used.velocity), np.abs(best.velocity)), TINY)
-    return Misalignment(
+    middle_of_all = Misalignment(
         float(phi),
         float(phi_error),
         float(F_0) * peak,
@@ -226,6 +237,7 @@ def _over_weakenings(
         scatter=float(np.sqrt(np.mean((off / used.error) ** 2))),
         weakening=float(likely @ list(weakenings)),
     )
+    return middle_of_all, best
 
 
 def _median(values: Floats, weights: Floats) -> float:

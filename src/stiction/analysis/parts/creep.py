@@ -29,6 +29,7 @@ RESTING, UNKNOWN = "it rests", "its creep is not determined"
 BARELY = "it creeps at less than a millionth of the drive's velocity"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
 SURE = 2.0  # standard errors that a fit must be away from nothing
+EXCLUDED = 9.0  # sum of squares, in standard errors, by which presliding alone fits worse
 
 
 def _below_peak(found: Analysis, its: Misalignment) -> str:
@@ -56,7 +57,7 @@ def section(found: Analysis) -> Section:
     if found.creep is None:
         why = found.missing["creep"]
         said = why if why.startswith("not determined") else f"not seen: {why}"
-        return Section("Creep", [f"{said[0].upper()}{said[1:]}."])
+        return Section("Creep", [f"{said[0].upper()}{said[1:]}.", *_force_across(found)])
     counts = found.creep["phases"].values
     usual = int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
     far, near = (found.creep.isel(bin=at) for at in (usual, 0))
@@ -91,13 +92,35 @@ def section(found: Analysis) -> Section:
             f"By Eq. (7){_of_both(found)} it implies a misalignment of "
             f"{with_error(phi.phi, phi.phi_error, 'rad')}{_true(found)}, and "
             f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}{_at_load(found)}.{_assumption(found)}"
-            f"{_below_peak(found, phi)}"
+            f"{_below_peak(found, phi)}{_presliding(found, phi)}"
         )
     fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
     lines += [
         f"{what}: {found.missing[fit]}." for fit, what in fits.items() if fit in found.missing
     ]
-    return Section("Creep", lines)
+    return Section("Creep", [*lines, *_force_across(found)])
+
+
+def _presliding(found: Analysis, its: Misalignment) -> str:
+    """Return what presliding would do to the angle of a record, which its errors leave out."""
+    if isinstance(found.source, Trajectory) and not states(found.source.slider.law):
+        return ""
+    supposed = " It is supposed that the contact does not give way before it slips (presliding)"
+    if not np.isfinite(its.worse):
+        return f"{supposed}; the errors do not include that."
+    if its.worse > EXCLUDED:
+        return f"{supposed}. Alone it would not creep so; what it adds is not in the errors."
+    return (
+        f"{supposed}. One {its.contact:.2g} times as stiff as the spring would creep so without "
+        "any misalignment; the errors do not include that."
+    )
+
+
+def _force_across(found: Analysis) -> list[str]:
+    """Return that a force across was read for nothing."""
+    if isinstance(found.source, Trajectory) or found.record.force_across is None:
+        return []
+    return ["The force across is recorded, but not used in this report."]
 
 
 def _knows_both(found: Analysis) -> bool:

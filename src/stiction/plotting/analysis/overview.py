@@ -46,7 +46,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
             load = typical_load(found.record, found.curves["slip_time"].values)
             l_x = fit.F_0 * load / stiffness
             theory = creep_theory(V, fit.phi, l_x, _loading(found))
-            lines = {f"{name}, fitted": line for name, line in theory.items()}
+            lines = {f"{name}, at fitted φ, F₀": line for name, line in theory.items()}
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
     its = found.oscillation
     if isinstance(found.source, Trajectory) and its is not None and stands_out(its):

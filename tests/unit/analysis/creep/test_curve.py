@@ -12,9 +12,10 @@ from tests.parts import creep_of
 import stiction as st
 from stiction import theory
 from stiction.analysis.creep.curve import between_rests, bin_edges
-from stiction.analysis.creep.findings import MISSED
+from stiction.analysis.creep.findings import BETTER, MISSED
 from stiction.analysis.creep.misalignment import SLIDING, WEAKENINGS, turning_creep
 from stiction.analysis.parts import creep as creep_part
+from stiction.analysis.parts.creep import EXCLUDED
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.page.canvas import figure_of
@@ -586,3 +587,41 @@ def test_a_bound_of_creep_above_the_drive_s_velocity_says_nothing(paper_run, err
     said = " ".join(creep_part.section(hidden).sentences)
     assert ("creeps no faster than" in said) == known
     assert ("Its creep is not determined" in said) != known
+
+
+def presliding_curve(ratio: float) -> xr.Dataset:
+    """Creep of a contact that gives way before it slips, `ratio` times as stiff as the spring."""
+    curve = exact_curve(0.01, bin_edges(0.02, 1.95))
+    left = 1.0 - curve["force"] / F_0
+    return curve.assign(velocity=V / (1.0 + ratio * left), velocity_error=0.0 * left + 1e-4 * V)
+
+
+@pytest.mark.parametrize("ratio", [20.0, 200.0])
+def test_presliding_is_known_from_friction_that_turns_where_the_creep_is_seen_well(ratio):
+    found = st.analysis.fit_misalignment(presliding_curve(ratio), V, K)
+    assert found.worse < -BETTER
+    assert found.contact == pytest.approx(ratio, rel=0.02)
+
+
+def test_friction_that_turns_is_known_from_presliding_where_the_creep_is_seen_well():
+    found = st.analysis.fit_misalignment(exact_curve(0.01, bin_edges(0.02, 1.95)), V, K)
+    assert found.worse > EXCLUDED
+
+
+def test_a_report_says_what_the_angle_of_a_record_leaves_out(paper_run):
+    """Its creep is seen only as well as the noise lets it, so presliding is not excluded."""
+    time, force, place = (paper_run.data[name].values for name in ("time", "spring_x", "X"))
+    noise = np.random.default_rng(2).standard_normal((2, len(time)))
+    record = st.Record(
+        time=time,
+        force=force + 2e-3 * noise[0],
+        force_across=paper_run.data["spring_y"].values,
+        position=place + 2e-6 * noise[1],
+        stiffness=K,
+        drive_velocity=V,
+        mass=0.25,
+    )
+    text = str(st.analyse(record))
+    assert "supposed that the contact does not give way before it slips (presliding)" in text
+    assert "not used in this report" in text
+    assert "presliding" not in str(st.analyse(paper_run))
