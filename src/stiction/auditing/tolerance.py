@@ -229,14 +229,13 @@ def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
     if over[0] == 0:
         return Alignment(nan, float(scan[0]), least)
     below, above = over[0] - 1, min(over[0] + 1, known - 1)
-    angles = np.geomspace(scan[below], scan[above], FINE)
-    all_angles = np.concatenate([scan[:below], angles, scan[above + 1 :]])
-    inside = np.array([found[below], *errors(angles[1:-1]), found[above]])
-    read = np.concatenate([found[:below], inside, found[above + 1 :]])
-    tested, off = all_angles[np.isfinite(read)], read[np.isfinite(read)]
-    angle, first = crossing(tested, off), min(tested[off > ALLOWED])
-    nearer = int((tested < angle).sum())
-    return Alignment(angle, float(scan[over[0]]), least, float(first), nearer)
+    fine = np.geomspace(scan[below], scan[above], FINE)[1:-1]
+    angles, off = np.append(scan, fine), np.append(found, errors(fine))
+    order = [at for at in np.argsort(angles) if np.isfinite(off[at])]
+    angles, off = angles[order], off[order]
+    angle, first = crossing(angles, off), min(angles[off > ALLOWED])
+    count = int((angles < angle).sum())
+    return Alignment(angle, float(scan[over[0]]), least, float(first), count)
 
 
 def crossing(angles: Floats, errors: Floats) -> float:
