@@ -7,6 +7,8 @@ from math import pi
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from stiction.arguments import is_list
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, ResultError
@@ -15,10 +17,12 @@ from stiction.inference.fit import check, plan_for
 from stiction.inference.next_test.advice import Advice
 from stiction.inference.next_test.expected import (
     FEWEST_RIGS,
+    GROUPS,
     Expected,
     estimates,
     expectation,
     left_out_errors,
+    ratio_of,
     read,
     write,
 )
@@ -96,7 +100,7 @@ def design(
         Standard deviation of a sample of the forces (N) and of the displacement (m). By default
         that of the record, else 0.2 % of the friction force at rest, and this over ``k_x``.
     simulations : int, optional
-        Rigs that are drawn; more sharpen the intervals.
+        Rigs that are drawn; more teach more, and sharpen the intervals.
     library : str or Path, optional
         A folder in which simulations are kept, so that an interrupted design continues.
     seed : int, optional
@@ -145,7 +149,7 @@ def design(
     whole = progress or silent
     simulating, learning = part(whole, 0, 10, of=6), part(whole, 6, 10, of=4)
     scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=simulating)
-    path = None if folder is None else folder / f"expected-{simulations}-{'-'.join(measured)}.npz"
+    path = None if folder is None else folder / f"tests-{simulations}-{'-'.join(measured)}.npz"
     every = [Further("the present test", measured), *tests]
     found = learn_or_read(trial, every, scores, features, path, learning)
     whole(1.0)
@@ -235,30 +239,56 @@ def expectations(
     ResultError
         If too few of the simulated rigs stick and slip in the present test.
     """
-    (first, *others), width = trial.conditions, features.shape[1] // len(trial.conditions)
+    width = features.shape[1] // len(trial.conditions)
+    columns = features_from(tests[0].channels, trial.conditions[0], trial.slider)
+    complete = have_cycles(features[:, :width][:, columns])
+    refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST_RIGS)
+    truth, rows = scores[complete], features[complete]
+    groups = [
+        [*group_ratios(trial, tests, truth[some], rows[some])]
+        for some in np.array_split(np.arange(len(truth)), GROUPS)
+    ]
+    each = errors_of(trial, tests, truth, rows, FEWEST_RIGS)
+    for done, (test, errors) in enumerate(zip(tests, each, strict=True), 1):
+        progress(done / len(tests))
+        added = len(test.channels) - len(tests[0].channels) + (test.record is not None)
+        by_group = np.array([its[done - 1] for its in groups])
+        yield expectation(trial, test.name, truth, errors, added=added, by_group=by_group)
+
+
+def group_ratios(
+    trial: Plan, tests: Sequence[Further], truth: Floats, rows: Floats
+) -> Iterator[Floats]:
+    """Yield the ratios (p,) of the tests that a group of the rigs finds by itself."""
+    for errors in errors_of(trial, tests, truth, rows, FEWEST_RIGS // GROUPS):
+        yield ratio_of(trial, truth, errors)
+
+
+def errors_of(
+    trial: Plan, tests: Sequence[Further], truth: Floats, rows: Floats, fewest: int
+) -> Iterator[list[Floats]]:
+    """Yield left-out errors (n, p) of the present test, of parts of each test, and of itself.
+
+    Of rigs with these parameters (n, p) and features (n, f); none is learned from fewer rigs than
+    `fewest`.
+    """
+    width, present = rows.shape[1] // len(trial.conditions), tests[0].channels
 
     def seen(number: int, channels: Sequence[str]) -> Floats:
-        columns = features_from(channels, first, trial.slider)
-        return features[:, number * width : (number + 1) * width][:, columns]
+        columns = features_from(channels, trial.conditions[0], trial.slider)
+        return rows[:, number * width : (number + 1) * width][:, columns]
 
-    present = tests[0].channels
-    complete = have_cycles(seen(0, present))
-    refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST_RIGS)
-    truth = scores[complete]
     known: dict[tuple[str, ...], Floats] = {}  # what the first record says, by its channels
-    further = iter(range(1, 1 + len(others)))
-    for done, test in enumerate(tests):
-        progress(done / len(tests))
+    further = iter(range(1, len(trial.conditions)))
+    for test in tests:
         if test.channels not in known:
-            known[test.channels] = estimates(seen(0, test.channels)[complete], truth)
+            known[test.channels] = estimates(seen(0, test.channels), truth, fewest)
         records = [known[test.channels]]
         if test.record is not None:
-            records.append(estimates(seen(next(further), test.channels)[complete], truth))
+            records.append(estimates(seen(next(further), test.channels), truth, fewest))
         less = [its for its in known if {*present} < {*its} < {*test.channels}]
         parts = [truth - known[each] for each in (present, *less)]
-        added = len(test.channels) - len(present) + len(records) - 1
-        errors = [*parts, left_out_errors(records, truth)]
-        yield expectation(trial, test.name, truth, errors, added=added)
+        yield [*parts, left_out_errors(records, truth, fewest)]
 
 
 def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) -> list[str]:
