@@ -353,7 +353,7 @@ def test_what_is_too_high_to_be_heard_is_as_deep_as_of_listen():
 
 def test_of_a_long_run_a_minute_is_heard(description, monkeypatch):
     monkeypatch.setattr(
-        "stiction.explorer.answers.rate_at", lambda _, times, **__: np.zeros(len(times))
+        "stiction.explorer.answers.rate_at", lambda _, times, **__: np.ones(len(times))
     )
     for duration, heard in ((50.0, 50), (1000.0, 60)):
         long = description._replace(run=Settings(duration=duration))
