@@ -368,12 +368,12 @@ class Record(Described):
         return np.asarray(np.where(load > 0.0, load, np.nan) / self.normal_load)
 
     def load_noise(self) -> float:
-        """Return the standard error of `relative_load`, or of its mean where it does not vary."""
+        """Return the relative standard error of the load, or of its mean where it does not vary."""
         if self.load is None or not self.normal_load or not np.ptp(self.load) > 0.0:
             return 0.0
         noise, width = self._averaged_load()
         count = width if self.load_variation() > 0.0 else len(self)
-        return float(noise / count**0.5 / self.normal_load)
+        return float(noise / count**0.5 / abs(self.load.mean()))
 
     def _averaged_load(self) -> tuple[float, int]:
         """Return the noise of a sample of `load`, N, and over how many it is averaged."""

@@ -124,8 +124,9 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
         return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
     relative, slides = record.relative_load(), sliding(record)
     end = len(record) if len(cycles) else slides.last  # the fall after it follows no break-away
-    varies = record.load_variation() > 0.0  # else the mean has less noise than any part of it
-    load = (record.normal_load or np.nan) * (relative[:end] if varies else np.ones(end))
+    load = (record.normal_load or np.nan) * relative[:end]
+    if record.load_variation() == 0.0 and np.isfinite(load).any():
+        load = np.full(end, np.nanmean(load))  # of which any part has more noise
     break_away, reason = _find_break_away(record.time[:end], record.force[:end], cycles, load)
     if break_away is not None:
         break_away = break_away.with_load_error(record.load_noise())

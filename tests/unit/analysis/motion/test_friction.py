@@ -325,3 +325,13 @@ def test_a_rounded_top_in_steps_is_known_to_a_part_of_a_step(offset):
     assert broke is not None
     assert broke.error > 0.25 * step
     assert broke.force == pytest.approx(2.0, abs=2.0 * broke.error)
+
+
+def test_the_load_of_the_first_break_away_is_that_of_the_channel_as_for_static_friction():
+    """A load stated as half of a constant, noisy channel made its coefficient twice the other."""
+    random, time = np.random.default_rng(5), np.arange(4000) / 400.0
+    force = np.where(time < 1.0, time, 0.5 + 0.5 * (time % 1.0)) + 2e-3 * random.normal(size=4000)
+    load = 2.0 * (1.0 + 0.02 * random.normal(size=4000))
+    found = st.analyse(st.Record(time=time, force=force, load=load, normal_load=1.0)).friction
+    for its in (found.break_away, found.static):
+        assert abs(its.coefficient - 0.5) < 3.0 * its.coefficient_error + 2e-3
