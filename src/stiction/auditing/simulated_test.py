@@ -75,7 +75,7 @@ class SimulatedTest:
 
     @cached_property
     def swings(self) -> Swings:
-        """The swings of the force: drive and load are steady, so that nothing disturbs it."""
+        """The swings of the force, which nothing disturbs, as drive and load are steady."""
         return own_swings(self.record)
 
     @cached_property

@@ -245,7 +245,7 @@ def _first_peak(forces: Floats, until: int, noise: float) -> tuple[int | None, s
     fall = np.maximum(FALLS * noise, PEAK * rise)
     fallen = np.flatnonzero((highest - forces > fall) & risen)
     if not len(fallen):
-        least = f"{percent(PEAK)} of its rise"
+        least = f"{percent(PEAK)} of its rise and {FALLS:g} times the noise"
         return None, f"the first loading does not end in a fall of more than {least}"
     return int(np.argmax(forces[: fallen[0] + 1])), ""
 

@@ -205,8 +205,9 @@ def _begins_to_slip(found: Analysis) -> str:
         at = in_words(evidence["slips_at"], "s")
         by = with_error(evidence["slips_by"], evidence["slips_by_error"], "N")
         return (
-            f"The mass sticks, slips once, at {at}, and sticks again: the force drops by {by} "
-            f"within {in_words(evidence['slips_within'], 's')}. A single slip makes no cycle."
+            f"The mass sticks, slips once, at {at}, and sticks again, unless the drive turns back "
+            f"or the zero jumps there: the force drops by {by} within "
+            f"{in_words(evidence['slips_within'], 's')}. A single slip makes no cycle."
         )
     begin = evidence.get("ends_falling_from")
     if begin is None:

@@ -107,3 +107,24 @@ def test_what_is_nothing_is_told_as_nothing():
     text = str(st.analyse(st.Record(time=year * time[coarse], force=force[coarse])))
     assert "nHz or more" not in text
     assert "or more often" in text
+
+
+def test_the_error_of_a_single_fall_holds_how_few_samples_it_has():
+    """The ends of falls of a few samples were told up to ten errors beyond them."""
+    off = []
+    for number in range(60):
+        draw = np.random.default_rng([3, number])
+        time = np.linspace(0.0, 10.0, draw.choice([600, 1500, 4000]), endpoint=False)
+        drop, lasts, noise = (
+            draw.uniform(0.2, 0.9),
+            draw.uniform(0.01, 0.05),
+            draw.choice([0, 0.01]),
+        )
+        rate = (1.0 + 1.6 * drop) / (10.0 - lasts)
+        since = np.clip(time - 1.0 / rate, 0.0, lasts)
+        force = rate * (time - since) - 0.5 * drop * (1.0 - np.cos(np.pi * since / lasts))
+        record = st.Record(time=time, force=noisy(force, noise * drop, number))
+        its = st.analyse(record).regime.evidence
+        off.append(abs(its["slips_by"] - drop) / its["slips_by_error"])
+    assert np.mean(np.array(off) < 2.0) > 0.93
+    assert max(off) < 5.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import hypot
+
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import BELOW
@@ -11,6 +13,7 @@ from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import COURSE_PARTS
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
+from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
 from stiction.analysis.motion.regime.evidence import Regime
@@ -109,7 +112,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
         period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))
     if found.few is not None:
-        return Regime(UNDETERMINED, 0.0, _single_slip(record, found.few), STICK_SLIP)
+        return Regime(UNDETERMINED, 0.0, _single_slip(record, found, found.few), STICK_SLIP)
     seen = _while_it_slides(record, found)
     stays = levels(record) if record.slip_speed is None else []
     if len(stays) > 1:
@@ -118,14 +121,19 @@ def regime_of(record: Record, found: Swings) -> Regime:
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
 
 
-def _single_slip(record: Record, slips: CycleTable) -> dict[str, float]:
+def _single_slip(record: Record, found: Swings, slips: CycleTable) -> dict[str, float]:
     """Return the evidence of a slip that is the only one, so that there is no cycle.
 
-    The fall has the error of two samples, and of what the spring is loaded by from one to the next.
+    Its fall has the error of two samples, or of the loading from one to the next; of what its ends,
+    where the sides meet, lie beyond the samples: they may be round; and of the rest of a line that
+    was subtracted.
     """
     begin, end, drop = (float(slips[name][0]) for name in ("peak_time", "trough_time", "drop"))
     between = float(slips["stick_slope"][0]) / record.sample_rate
+    read = -float(np.diff(np.interp([begin, end], record.time, found.force))[0])
     error = 2.0**0.5 * max(white_noise(record.force), resolution(record.force), between)
+    left = 0.5 * RESIDUE * sum(line.height for line in found.lines)
+    error = hypot(error, drop - read, left)
     return {
         "slips_at": begin, "slips_by": drop, "slips_by_error": error, "slips_within": end - begin,
     }  # fmt: skip
