@@ -383,5 +383,5 @@ def with_error(value: float, error: float, unit: str) -> str:
     size, name = suited_unit(max(abs(value), error), unit)
     shown = float(f"{error / size:.1g}")
     digit = -floor(log10(shown))
-    rounded, decimals = round(value / size, digit), max(0, digit)
+    rounded, decimals = round(value / size, digit) + 0.0, max(0, digit)  # no -0
     return f"{rounded:.{decimals}f} ± {shown:.{decimals}f} {name}".rstrip()

@@ -21,6 +21,7 @@ PARTS = (
     "changes",
     "cycles",
     "creep",
+    "rotation",
     "oscillation",
     "energy",
     "metadata",

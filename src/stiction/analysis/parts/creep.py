@@ -57,7 +57,7 @@ def section(found: Analysis) -> Section:
     if found.creep is None:
         why = found.missing["creep"]
         said = why if why.startswith("not determined") else f"not seen: {why}"
-        return Section("Creep", [f"{said[0].upper()}{said[1:]}.", *_force_across(found)])
+        return Section("Creep", [f"{said[0].upper()}{said[1:]}."])
     counts = found.creep["phases"].values
     usual = int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
     far, near = (found.creep.isel(bin=at) for at in (usual, 0))
@@ -98,7 +98,7 @@ def section(found: Analysis) -> Section:
     lines += [
         f"{what}: {found.missing[fit]}." for fit, what in fits.items() if fit in found.missing
     ]
-    return Section("Creep", [*lines, *_force_across(found)])
+    return Section("Creep", lines)
 
 
 def _presliding(found: Analysis, its: Misalignment) -> str:
@@ -114,13 +114,6 @@ def _presliding(found: Analysis, its: Misalignment) -> str:
         f"{supposed}. One {its.contact:.2g} times as stiff as the spring would creep so without "
         "any misalignment; the errors do not include that."
     )
-
-
-def _force_across(found: Analysis) -> list[str]:
-    """Return that a force across was read for nothing."""
-    if isinstance(found.source, Trajectory) or found.record.force_across is None:
-        return []
-    return ["The force across is recorded, but not used in this report."]
 
 
 def _knows_both(found: Analysis) -> bool:

@@ -623,5 +623,5 @@ def test_a_report_says_what_the_angle_of_a_record_leaves_out(paper_run):
     )
     text = str(st.analyse(record))
     assert "supposed that the contact does not give way before it slips (presliding)" in text
-    assert "not used in this report" in text
+    assert "It turns rather than grows" in text
     assert "presliding" not in str(st.analyse(paper_run))

@@ -1,0 +1,123 @@
+"""Whether the friction force turns in the plane while the spring is loaded, or grows."""
+
+from __future__ import annotations
+
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+from stiction.analysis.motion.doubts.warnings import VARIES
+from stiction.analysis.parts.wording import number
+from stiction.analysis.rotation.findings import (
+    BOTH,
+    GROWING,
+    SURE,
+    TURNING,
+    UNDETERMINED,
+    Rotation,
+    rotation_of,
+)
+from stiction.errors import ResultError
+from stiction.text.sections import Section
+from stiction.text.units import in_words, with_error
+from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from stiction.analysis.report import Analysis
+
+TITLE = "Rotation of the force"
+CONCLUSIONS = {
+    TURNING: "It turns rather than grows: this apparent stick is slow creep.",
+    GROWING: "It grows rather than turns: the mass rests, or its contact yields before it slips.",
+    BOTH: "It grows and turns: the mass rests for a part of the loading, and creeps for another.",
+    UNDETERMINED: "Whether the force turns or grows is not determined.",
+}
+
+
+def find(found: Analysis) -> Rotation | None:
+    """Return how the force changes in the loadings of a record with a force across."""
+    record = found.record
+    if isinstance(found.source, Trajectory) or record.force_across is None:
+        return None
+    if not found.regime.loads:
+        raise ResultError("not determined: the record shows no stick-slip")
+    if found.friction.static is None:
+        raise ResultError(f"not determined: {found.friction.missing['static']}")
+    if record.load_variation() > VARIES:
+        raise ResultError("not determined: the load varies, and friction with it")
+    return rotation_of(record, found.cycles)
+
+
+def section(found: Analysis) -> Section | None:
+    """Return it in words; None without a force across."""
+    its: Rotation | None = found.parts["rotation"]
+    if its is None:
+        why = found.missing.get("rotation")
+        return Section(TITLE, [f"{why[0].upper()}{why[1:]}."]) if why else None
+    return Section(TITLE, [_course(its), _conclusion(its)])
+
+
+def _course(its: Rotation) -> str:
+    """Return what both forces do, and with a known zero magnitude and angle."""
+    a, b = (in_words(float(each), "N") for each in its.along)
+    c, d = (float(each) for each in its.across)
+    across = "the force across"
+    if isfinite(its.change):
+        c, d = abs(c), abs(d)
+        known = "stated" if its.stated else "fitted"
+        across += f", from its {known} zero,"
+    way = "falls" if d < c else "rises"
+    said = (
+        f"While the force along the drive rises from {a} to {b}, {across} {way} from "
+        f"{in_words(c, 'N')} to {in_words(d, 'N')}"
+    )
+    if not isfinite(its.change):
+        return f"{said}. These are means over {its.loadings} loadings."
+    angles = zip(its.angle, its.angle_error, strict=True)
+    start, end = (with_error(float(each), float(error), "rad") for each, error in angles)
+    change = with_error(100.0 * its.change, 100.0 * its.change_error, "1")
+    turns = "turns" if its.kind in (TURNING, BOTH) else "goes"
+    return (
+        f"{said}: the force {turns} from ({start}) to ({end}) off the axis of the load cell, and "
+        f"its magnitude changes by ({change}) %. These are means over {its.loadings} loadings."
+    )
+
+
+def _conclusion(its: Rotation) -> str:
+    """Return whether it turns or grows, and what follows."""
+    said = [CONCLUSIONS[its.kind]]
+    if its.kind == UNDETERMINED and its.stated:
+        said.append("The errors leave both possible.")
+    elif its.kind == UNDETERMINED:
+        said.append(
+            "Neither an arc that ends at slip nor a straight line describes its path clearly "
+            "better; state the zero of the force across, with its uncertainty."
+        )
+    if its.kind == GROWING and not its.stated:
+        said.append(
+            "Its path is straight, not an arc that ends at slip. How far it grows follows if the "
+            "zero of the force across is stated, with its uncertainty."
+        )
+    if its.kind == TURNING:
+        said.append(f"Friction near rest is F_0 = {with_error(its.F_0, its.F_0_error, 'N')}.")
+        if its.change < -SURE * its.change_error:
+            said.append("It is weaker towards slip, where the mass creeps faster.")
+        if not its.stated:
+            zero = with_error(its.zero, its.zero_error, "N")
+            said.append(f"The zero of the force across, {zero}, is that of the arc which fits.")
+        gain = "" if its.stated else " and an error of the gain"
+        said.append(f"The errors leave out crosstalk of the channels{gain}.")
+    return " ".join(said)
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return the finding as a table."""
+    its: Rotation | None = found.parts["rotation"]
+    if its is None:
+        return {"rotation": None}
+    shown = {
+        name: [number(one) for one in each] if hasattr(each, "__len__") else number(each)
+        for name, each in its._asdict().items()
+        if name not in ("kind", "stated", "loadings")
+    }
+    rest = {"kind": its.kind, "stated": its.stated, "loadings": its.loadings}
+    return {"rotation": rest | shown}

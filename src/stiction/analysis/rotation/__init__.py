@@ -1,0 +1,1 @@
+"""Whether the friction force turns while the spring is loaded, or grows."""

@@ -1,0 +1,97 @@
+"""The mean course of the force, along and across, while the spring is loaded."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.arrays import Floats, xr
+from stiction.errors import ResultError
+from stiction.text.quantity_text import percent
+
+BINS = 10  # of each loading
+RINGING, SLIPPING = 0.1, 0.04  # of a loading: left out where the slip rings, and where it begins
+FEWEST = 5  # samples in a bin
+FORWARD = 0.1  # of the peak: least force along, as after a slip that overshoots it pulls back
+LEAST = 0.1  # of the peak: least rise of the force along that says something of its course
+ROUNDING = 1e-6  # of the peak: no error is less
+
+
+class MeanLoading(NamedTuple):
+    """Mean force along (x) and across (y), N, in bins of the loadings, with standard errors.
+
+    `peak` is the mean force along, N, at which the mass slips.
+    """
+
+    x: Floats
+    y: Floats
+    x_error: float
+    y_error: float
+    peak: float
+
+
+class LoadingSeries(NamedTuple):
+    """Mean (x, y) in each bin of each loading, (n, 2, BINS), N, and the variance by noise, (2,)."""
+
+    means: Floats
+    noise: Floats
+    peaks: Floats
+
+    def __len__(self) -> int:
+        """Return their number."""
+        return len(self.peaks)
+
+    def without(self, at: int) -> LoadingSeries:
+        """Return all but one, for the scatter of what they yield."""
+        return LoadingSeries(np.delete(self.means, at, 0), self.noise, np.delete(self.peaks, at))
+
+    def mean(self) -> MeanLoading:
+        """Return their mean; its errors are of noise, or of the scatter of shapes if more."""
+        count, mean = len(self.peaks), self.means.mean(axis=0)
+        variance = self.noise / count
+        if count > 2:
+            apart = self.means - mean
+            apart = apart - apart.mean(axis=2, keepdims=True)  # a shift bends nothing
+            scatter = (apart**2).sum(axis=(0, 2)) / (count - 1) / (BINS - 1)
+            variance = np.maximum(variance, scatter / count)
+        peak = float(self.peaks.mean())
+        x_error, y_error = np.sqrt(np.maximum(variance, (ROUNDING * peak) ** 2))
+        return MeanLoading(mean[0], mean[1], float(x_error), float(y_error), peak)
+
+
+def loadings(time: Floats, forces: Floats, cycles: xr.Dataset) -> LoadingSeries:
+    """Return the loadings of cycles with forces along and across, (2, n), N.
+
+    Raises
+    ------
+    ResultError
+        If none has enough samples, or the force along hardly rises.
+    """
+    means, noise, peaks = [], [], []
+    columns = (cycles[name].values for name in ("start", "peak_time", "start_force", "peak"))
+    for start, end, low, peak in zip(*columns, strict=True):
+        rise = end - start
+        begin = max(RINGING, (FORWARD * peak - low) / (peak - low))
+        edges = np.linspace(start + begin * rise, end - SLIPPING * rise, BINS + 1)
+        at = np.searchsorted(time, edges)
+        whole = forces[:, at[0] : at[-1]]
+        if np.diff(at).min() < FEWEST or not np.isfinite(whole).all():
+            continue
+        parts = [forces[:, i:j] for i, j in pairwise(at)]
+        means.append(np.array([part.mean(axis=1) for part in parts]).T)
+        # Of differences, which leave the trend out
+        noise += [np.var(np.diff(part), axis=1) / 2.0 / part.shape[1] for part in parts]
+        peaks.append(peak)
+    if not means:
+        raise ResultError(
+            f"not determined: no loading of a cycle has {FEWEST} samples in each of {BINS} parts"
+        )
+    found = LoadingSeries(np.array(means), np.mean(noise, axis=0), np.array(peaks))
+    along = found.means[:, 0]
+    if float(np.median(along[:, -1] - along[:, 0])) < LEAST * found.peaks.mean():
+        raise ResultError(
+            f"not determined: the force along rises by less than {percent(LEAST)} in a loading"
+        )
+    return found
