@@ -45,6 +45,7 @@ class Page:
     def visit(self, state):
         self.tab.goto(self.explorer.address + state)
         self.until(SHOWN)
+        self.settle()
 
     def value(self, expression):
         return self.tab.evaluate(expression)
@@ -59,12 +60,15 @@ class Page:
         act()
         self.until(f"{SHOWN} && stictionPage.shown.asked > {before}")
 
-    def drawn_picture(self, canvas):
-        """Return the picture of a canvas when all that was asked for has been drawn."""
+    def settle(self):
+        """Wait until all that was asked for, also by a change of the layout, has been drawn."""
         frames = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))"
         self.value(frames)  # in which a change of the layout is noticed
         self.until("stictionPage.settled")
         self.value(frames)
+
+    def drawn_picture(self, canvas):
+        self.settle()
         return self.picture(canvas)
 
     def number(self, name):
