@@ -89,7 +89,7 @@ def vertices(time: Floats, points: TurningPoints) -> Vertices:
     x = np.where(level, 0.0, _top(slope, bend))
     found = Vertices(fit.middle + fit.half * x, fit.at(x))
     found = _corners_as_sampled(time, values, upward, first, last, found)
-    return _within_steps(time, points, upward, found)
+    return _in_order(time, points, _within_steps(time, points, upward, found))
 
 
 def _top(slope: Floats, bend: Floats) -> Floats:
@@ -173,6 +173,15 @@ def _corners_as_sampled(
     return Vertices(
         np.where(corner, time[middle], found.time), np.where(corner, values[middle], found.value)
     )
+
+
+def _in_order(time: Floats, points: TurningPoints, found: Vertices) -> Vertices:
+    """Leave tops as they are sampled where one and the next, a sample or two on, change places."""
+    while (late := np.diff(found.time) <= 0.0).any():
+        both = np.append(late, False) | np.insert(late, 0, False)
+        its = time[points.index], points.values[points.index]
+        found = Vertices(*(np.where(both, new, old) for new, old in zip(its, found, strict=True)))
+    return found
 
 
 def _bend(time: Floats, values: Floats, middle: Indices) -> Floats:

@@ -8,6 +8,7 @@ from tests.drawn import inside
 import stiction as st
 from stiction.analysis.signals import peak_refinement, reversals, turning_points
 from stiction.analysis.signals.peak_refinement import fit_pieces
+from stiction.analysis.signals.robust import uniform_mean
 
 WALKS = [np.rint(np.cumsum(each) * 40).astype(np.int64) for each in inside(4, *[(-1.0, 1.0)] * 60)]
 
@@ -463,3 +464,20 @@ def test_a_signal_turns_wherever_it_ends(last):
 @pytest.mark.parametrize(("heights", "step"), [([], 1.0), ([1.0, 2.0], 1.0), ([5.0], 0.0)])
 def test_without_heights_above_two_steps_there_is_no_gap(heights, step):
     assert turning_points.widest_gap(heights, step, 3.0) == (0.0, 0.0, 0.0)
+
+
+def test_turning_points_stay_in_the_order_of_time():
+    """Two in succession, a sample apart, changed places: a cycle had the period zero."""
+    seen = 0
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        size, period = 2000, rng.uniform(4.0, 12.0)
+        wave = rng.uniform(0.5, 1.5) * np.sin(2.0 * np.pi * np.arange(size) / period)
+        values = np.rint(wave + rng.uniform(0.0, 0.3) * rng.standard_normal(size))
+        values -= uniform_mean(values, int(rng.integers(3, 30)))
+        points = turning_points.turning_points(values)
+        if len(points.index):
+            found = peak_refinement.vertices(np.arange(float(size)), points)
+            assert np.diff(found.time).min() > 0.0
+            seen += 1
+    assert seen > 30

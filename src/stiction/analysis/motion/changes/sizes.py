@@ -20,6 +20,7 @@ from stiction.analysis.signals.reversals import all_heights
 from stiction.analysis.signals.robust import part_means, uniform_mean
 from stiction.analysis.signals.turning_points import (
     COUNTS,
+    FEWEST_PER_CYCLE,
     TurningPoints,
     as_counts,
     turning_points,
@@ -174,7 +175,7 @@ def _smaller_cycles(its: Larger, begin: float, end: float) -> CycleCorners | Non
     """Return the cycles that are found in a stretch (s) by itself, if it has any of its own."""
     first, last = np.searchsorted(its.time, [begin, end])
     time, force = its.time[first:last], its.force[first:last]
-    if len(force) == len(its.force):
+    if len(force) == len(its.force) or len(force) < FEW_CYCLES * FEWEST_PER_CYCLE:
         return None
     smaller = find_corners(time, force, turning_points(force))
     if not _goes_on(smaller, float(time[0]), float(time[-1])):
