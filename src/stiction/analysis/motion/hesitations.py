@@ -178,16 +178,20 @@ def _below(values: Floats, share: float, most: float = np.inf) -> Hesitations:
 
     Legs that are larger than `most` count as no more in what is typical.
     """
-    points = np.arange(len(values))
+    points, legs = np.arange(len(values)), np.abs(np.diff(values))
+    size = swing(legs, most)
     at, depth = [np.zeros(0, np.intp)], [np.zeros(0)]
     while len(points) > 4:
-        legs = np.abs(np.diff(values[points]))
-        found = smallest_legs(legs, share * swing(legs, most)[1:-1])
+        found = smallest_legs(legs, share * size[1:-1])
         if not len(found):
             break
         at.append(points[found])
         depth.append(legs[found])
-        points = np.delete(points, np.concatenate([found, found + 1]))
+        gone = np.concatenate([found, found + 1])
+        points, size = np.delete(points, gone), np.delete(size, gone)
+        legs = np.abs(np.diff(values[points]))
+        joined = found - 1 - 2 * np.arange(len(found))
+        size = _swing_beside(size, legs, joined, most)
     places = np.concatenate(at)
     order = np.argsort(places)
     return Hesitations(
@@ -223,12 +227,43 @@ def swing(legs: Floats, most: float = np.inf) -> Floats:
     return found
 
 
+def _swing_beside(size: Floats, legs: Floats, joined: Indices, most: float) -> Floats:
+    """Return the `swing` of legs, some of which were joined of three, from that of the others.
+
+    Hesitations can go one beside the other along a whole record, some at a time: then all but a few
+    keep their size.
+    """
+    count, reach = len(legs), 2 * AROUND
+    if count <= (reach + 4) * (len(joined) + 2):
+        return swing(legs, most)
+    begin, end = (
+        np.bincount(np.clip(joined + at, 0, count), minlength=count + 1)
+        for at in (-reach, reach + 1)
+    )
+    beside = np.cumsum(begin - end) > 0
+    legs = np.minimum(legs, most)
+    for first in (1, 2):
+        near = size[first:-1:2][AROUND:-AROUND]
+        rows = np.flatnonzero(beside[first:-2:2][AROUND:-AROUND])
+        near[rows] = _weighted_median(_around(legs[first:-1:2])[rows])
+        size[first:-1:2] = _to_ends(near)
+    return size
+
+
 def typical(size: Floats) -> Floats:
     """Return the typical size around each leg: half of the total path is in larger ones."""
-    width = 2 * AROUND + 1
-    if len(size) <= width:
+    if len(size) <= 2 * AROUND + 1:
         return np.full(len(size), _weighted_median(size[None, :])[0])
-    near = _weighted_median(np.lib.stride_tricks.sliding_window_view(size, width))
+    return _to_ends(_weighted_median(_around(size)))
+
+
+def _around(size: Floats) -> Floats:
+    """Return rows of as many neighbours on either side of each that has them."""
+    return np.lib.stride_tricks.sliding_window_view(size, 2 * AROUND + 1)
+
+
+def _to_ends(near: Floats) -> Floats:
+    """Return values for all from those that have as many neighbours on either side."""
     return np.concatenate([np.full(AROUND, near[0]), near, np.full(AROUND, near[-1])])
 
 
