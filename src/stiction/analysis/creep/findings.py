@@ -32,7 +32,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
 from stiction.errors import ResultError, StictionError
-from stiction.recording.noise import rounding_error
+from stiction.recording.noise import ROUNDING_SPREAD, rounding_error
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
@@ -99,6 +99,8 @@ def find_creep(
         mean = _with_base(mean, known, record)
     if mean is not None:
         mean = _with_rounding(mean, known, cycles)
+    if mean is not None and run is None:
+        mean = _with_slip_time(mean, known)
     if run is not None and run.slider.misalignment == 0.0:
         return CreepFound(curves, mean, None, None, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
@@ -230,6 +232,22 @@ def _with_rounding(mean: xr.Dataset, record: Record, cycles: xr.Dataset) -> xr.D
     rounding = 8.0**0.5 * place / lasts / np.maximum(passed, 1.0)
     error = mean["velocity_error"]
     return mean.assign(velocity_error=error.copy(data=np.hypot(np.nan_to_num(error), rounding)))
+
+
+def _with_slip_time(mean: xr.Dataset, record: Record) -> xr.Dataset:
+    """Return mean creep whose error next to the slip has that of when the mass slips.
+
+    That is known to a sample, for all phases alike. With a part of it more, or less, the last bin
+    has more or less of a motion that goes as fast as the drive.
+    """
+    V, velocity = record.drive_velocity, float(mean["velocity"][0])
+    if V is None:
+        return mean
+    lasts = float(mean["begin"][0] - mean["end"][0])
+    error = mean["velocity_error"].values.copy()
+    unsure = ROUNDING_SPREAD * abs(V - velocity) / record.sample_rate / lasts
+    error[0] = np.hypot(np.nan_to_num(error[0]), unsure)
+    return mean.assign(velocity_error=mean["velocity_error"].copy(data=error))
 
 
 def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
