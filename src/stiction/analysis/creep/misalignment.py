@@ -25,6 +25,7 @@ SLIDING = {w: exp(-0.5 * (w / 0.1) ** 2) for w in (-0.2, -0.1, 0.0, 0.1, 0.2)}
 OFF = 0.1  # of the velocity: largest common error of the theory that is tried
 # Angles theta (rad) at which creep is tabled: near zero, where only a trial of a fit comes, and far
 ANGLES = np.concatenate([np.geomspace(1e-3, 0.5, 300), np.linspace(0.5, pi - 0.01, 300)[1:]])
+STRETCH = 0.05, 1.0  # of the loading time: time to slip of the bins that are fitted
 REST_SPEED, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
 SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
 
@@ -67,7 +68,7 @@ def fit_misalignment(
     curve: xr.Dataset,
     drive_velocity: float,
     stiffness: float,
-    stretch: tuple[float, float] = (0.05, 1.0),
+    stretch: tuple[float, float] = STRETCH,
     stiffness_across: float = inf,
     mass: float = 0.0,
     weakenings: Mapping[float, float] = WEAKENINGS,
@@ -147,6 +148,23 @@ def fit_misalignment(
     alone = fit_presliding(share)
     worse = (alone.chi_square - least.chi_square) / least.excess
     return found._replace(contact=exp(alone.values[0]), worse=worse)
+
+
+def implied_velocity(found: Misalignment, force: Floats, ratio: float = 0.0) -> Floats:
+    """Return the creep over the drive's velocity that a misalignment implies at some forces.
+
+    Parameters
+    ----------
+    found : Misalignment
+        From `fit_misalignment`.
+    force : ndarray
+        Along the drive, N, at the load to which its F_0 belongs; beyond the largest, at which the
+        mass slips, the result is NaN.
+    ratio : float, optional
+        k_x/k_y.
+    """
+    its = turning_creep(found.phi, float(np.nan_to_num(found.weakening)), ratio)
+    return np.asarray(np.interp(force / found.F_0, its.force, its.velocity, right=np.nan))
 
 
 class _Trial(NamedTuple):

@@ -34,7 +34,6 @@ def creep_theory(
     formulas = {
         "Eq. (7), closed form": theory.creep_velocity,
         "Eq. (8), corrected": theory.creep_velocity_approximation,
-        "Eq. (8), as printed": theory.creep_velocity_as_printed,
     }
 
     end = l_x / V if slip_time is None else slip_time

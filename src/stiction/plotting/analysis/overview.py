@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import inf, isfinite
 from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.findings import drive_speed
-from stiction.analysis.creep.misalignment import REST_SPEED
+from stiction.analysis.creep.misalignment import REST_SPEED, STRETCH, implied_velocity
 from stiction.analysis.creep.normal_load import typical_load
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
-from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
+from stiction.arrays import Floats
+from stiction.plotting.analysis.creep_curve import Line, creep_theory, plot_creep
 from stiction.plotting.analysis.cycles import plot_motion
 from stiction.plotting.analysis.energy import plot_energy
 from stiction.plotting.analysis.oscillation import plot_oscillation
@@ -40,13 +41,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
         drawn["cycles"] = figure_of(plot_motion, found.record, found.cycles, found.regime.kind)
     V = drive_speed(found.source, found.record)
     if found.curves is not None and found.creep is not None and V is not None and moves(found, V):
-        fit, lines = found.misalignment, {}
-        if fit is not None and fit.stands_out and found.record.stiffness is not None:
-            stiffness = fit.stiffness if isfinite(fit.stiffness) else found.record.stiffness
-            load = typical_load(found.record, found.curves["slip_time"].values)
-            l_x = fit.F_0 * load / stiffness
-            theory = creep_theory(V, fit.phi, l_x, _loading(found))
-            lines = {f"{name}, at fitted φ, F₀": line for name, line in theory.items()}
+        lines = _creep_lines(found, V)
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
     its = found.oscillation
     if isinstance(found.source, Trajectory) and its is not None and stands_out(its):
@@ -60,6 +55,32 @@ def moves(found: Analysis, V: float) -> bool:
     """Return whether the mass creeps at all: a figure of rest alone is empty."""
     mean = found.creep
     return mean is not None and bool((np.abs(mean["velocity"].values) > REST_SPEED * V).any())
+
+
+def _creep_lines(found: Analysis, V: float) -> dict[str, Line]:
+    """Return creep by Eq. (7) as it was fitted, and by Eq. (8), if the misalignment stands out.
+
+    The former is that at the forces which were measured, so far from slip as it was fitted.
+    """
+    fit, stiffness, mean = found.misalignment, found.record.stiffness, found.creep
+    if fit is None or not fit.stands_out or stiffness is None:
+        return {}
+    if found.curves is None or mean is None:
+        return {}
+    run = found.source if isinstance(found.source, Trajectory) else None
+    across = found.record.stiffness_across if run is None else run.slider.k_y
+    stiffness = fit.stiffness if isfinite(fit.stiffness) else stiffness
+    load = typical_load(found.record, found.curves["slip_time"].values)
+    l_x, ratio = fit.F_0 * load / stiffness, stiffness / (across or inf)
+    middle, force = 0.5 * (mean["begin"] + mean["end"]).values, mean["force"].values / load
+
+    def fitted(to_slip: Floats) -> Floats:
+        far = np.where(to_slip < STRETCH[0] * l_x / V, np.nan, to_slip)
+        return V * implied_velocity(fit, np.interp(far, middle, force), ratio)
+
+    near = creep_theory(V, fit.phi, l_x, _loading(found))
+    name = "Eq. (8), corrected"
+    return {"Eq. (7), fitted": fitted, f"{name}, at fitted φ, F₀": near[name]}
 
 
 def _loading(found: Analysis) -> float | None:
