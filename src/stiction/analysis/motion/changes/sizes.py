@@ -30,8 +30,9 @@ from stiction.arrays import Floats
 FREE = 2.0  # median times between two peaks: a longer stretch without a peak is searched by itself
 RISING = 0.53  # of a cycle: a mass that sticks rises for longer than it falls; a sine, for half
 # Reversals beside the larger cycles that are as high as the smaller ones: of their drop, at least;
-# of their number, so many make these a ripple; means of each period in which they are sought
-AS_HIGH, AS_MANY, MEANS = 0.5, 0.5, 12
+# of their number, so many make these a ripple; means of each period in which they are sought, and
+# periods that tell
+AS_HIGH, AS_MANY, MEANS, ENOUGH = 0.5, 0.5, 12, 400
 
 
 class CycleCorners(NamedTuple):
@@ -182,6 +183,7 @@ def _smaller_cycles(its: Larger, begin: float, end: float) -> CycleCorners | Non
         return None
     beside = [(a, min(b, begin)) for a, b in its.parts] + [(max(a, end), b) for a, b in its.parts]
     beside = [each for each in beside if each[0] < each[1]]
+    beside.sort(key=lambda part: max(part[0] - end, begin - part[1]))  # the nearest first
     less = np.median(smaller.drop) < np.median(its.cycles.drop)
     return smaller if less and not _is_ripple(smaller, its, beside) else None
 
@@ -226,11 +228,16 @@ def _goes_on(cycles: CycleCorners, begin: float, end: float) -> bool:
 
 
 def _is_ripple(cycles: CycleCorners, its: Larger, parts: list[tuple[float, float]]) -> bool:
-    """Return whether cycles go on beside larger ones, in parts of these (s), as ripple does."""
+    """Return whether cycles go on beside larger ones, in parts of these (s), as ripple does.
+
+    The first parts count, as far as they have enough periods.
+    """
     least, period = AS_HIGH * float(np.median(cycles.drop)), float(np.median(cycles.period))
     most = _limit(cycles, its.cycles)
     found = expected = 0.0
     for begin, end in parts:
+        if expected > ENOUGH:
+            break
         first, last = np.searchsorted(its.time, [begin, end])
         force = its.force[first:last]
         number = float(np.ptp(its.time[first:last])) / period if len(force) else 0.0
