@@ -71,7 +71,7 @@ def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Float
     from stiction.analysis.creep.slip_finder import find_slip
 
     least = float(np.abs(drive).max()) * _least_gain(slider)
-    return FirstLoading(*find_slip(time, elongation, drive, least))
+    return FirstLoading(*find_slip(time, elongation, drive, least, np.empty(len(time))))
 
 
 def slips_at_once(slider: Slider) -> bool:

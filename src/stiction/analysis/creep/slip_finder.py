@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import copysign
+
 import numpy as np
 
 from stiction.solver.compilation.jit import compiled
@@ -9,26 +11,32 @@ from stiction.solver.compilation.jit import compiled
 
 @compiled
 def find_slip(
-    time: np.ndarray, elongation: np.ndarray, drive: np.ndarray, least: float
+    time: np.ndarray, elongation: np.ndarray, drive: np.ndarray, least: float, lag: np.ndarray
 ) -> tuple[int, int]:
     """Return the samples of `FirstLoading`, for a gain of at least so much on the drive (m).
 
     While the drive holds, its way is that of its last motion; before its first, that of this one.
+    `lag` (n,) is room for the way by which the spring was loaded. Nothing here is NumPy's: its
+    functions have compiled code of their own, with which a process would load numba's copy of it.
     """
-    n, fastest, moves = len(time), np.abs(drive).max(), drive[drive != 0.0]
-    way = np.sign(moves[0]) if len(moves) > 0 else 0.0
-    lag, behind, peak, slip = np.zeros(n), 0.0, 0.0, 0
-    for i in range(1, n):
+    fastest, way = 0.0, 0.0
+    for v in drive:
+        fastest = max(fastest, abs(v))
+        way = copysign(1.0, v) if way == 0.0 and v != 0.0 else way
+    behind, peak, slip, most = 0.0, 0.0, 0, 0.0
+    lag[0] = 0.0
+    for i in range(1, len(time)):
         v = drive[min(i, len(drive) - 1)]
-        way = np.sign(v) if v != 0.0 else way
+        way = copysign(1.0, v) if v != 0.0 else way
         loaded = way * (elongation[i] - elongation[i - 1])
         lag[i] = lag[i - 1] + (loaded if v != 0.0 else 0.0)
+        most = max(most, lag[i])
         behind += loaded + (0.0 if v != 0.0 else fastest * (time[i] - time[i - 1]))
         if behind > peak:
             peak, slip = behind, i
         elif peak - behind > least:
             return slip, slip
-    enough, end = lag.max() - least, 0
-    while lag[end] < enough:
+    end = 0
+    while lag[end] < most - least:
         end += 1
     return -1, end
