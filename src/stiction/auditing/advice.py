@@ -79,32 +79,39 @@ class Remedy(NamedTuple):
 
 
 def advise(
-    slider: Slider, stable: bool, work: int, progress: Progress = silent
+    slider: Slider, misalignment: Critical | None, work: int, progress: Progress = silent
 ) -> Iterator[Remedy]:
     """Yield, for each parameter, the nearest value with steady sliding, tried from rest.
 
-    If steady sliding is already `stable`, only not reached from rest, ever larger values are tried.
-    `work` limits all simulations together, see `SimulatedTest.work`; each parameter passes the rest
-    of its share on to the next. `progress` receives the fraction of parameters done.
+    If steady sliding is already stable, only not reached from rest, ever larger values are tried;
+    `misalignment` is None then, else what `critical` finds of phi. `work` limits all simulations
+    together, see `SimulatedTest.work`; each parameter passes the rest of its share on to the next.
+    `progress` receives the fraction of parameters done.
     """
     paths = [softest_path(slider) if path == "k_x" else path for path in LEVERS]
     for number, path in enumerate(paths):
         report = part(progress, number, len(LEVERS))
-        advice = advise_one(slider, path, stable, work // (len(LEVERS) - number), report)
+        found = misalignment
+        if found is not None and path != "phi":
+            found = critical(slider, path, limits(slider, path))
+        advice = advise_one(slider, path, found, work // (len(LEVERS) - number), report)
         work -= advice.work
         report(1.0)
         yield advice
 
 
-def advise_one(slider: Slider, path: str, stable: bool, work: int, progress: Progress) -> Remedy:
-    """Return the nearest value of one parameter with steady sliding, tried from rest."""
-    if stable:
-        advice = Remedy(path, unit(slider, path), read(slider, path), None, *NOT_TRIED)
+def advise_one(
+    slider: Slider, path: str, found: Critical | None, work: int, progress: Progress
+) -> Remedy:
+    """Return the nearest value of one parameter with steady sliding, tried from rest.
+
+    `found` is its critical values, None where steady sliding is stable.
+    """
+    now = read(slider, path)
+    advice = Remedy(path, unit(slider, path), now, found, *NOT_TRIED)
+    if found is None:
         ways = list(further(slider, path))
     else:
-        found = critical(slider, path, limits(slider, path))
-        now = read(slider, path)
-        advice = Remedy(path, found.unit, now, found, *NOT_TRIED)
         ways = [nearest(found, now, beyond) for beyond in BEYOND]
         if ways[0] == now:  # on the boundary at zero, of which no share leads away
             ways = list(further(slider, path))

@@ -219,9 +219,10 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
         springs = chain.examine(system, work // 2, report(2))
         work -= sum(each.tried.work for each in springs.replacements if each.tried)
     advices: tuple[Remedy, ...] = ()
-    if not sliding.stable or observation.comes_to != SLIDES:
-        advices = tuple(advise(system, sliding.stable, work, report(3, of=len(LEVERS))))
     misalignment = critical(system, "phi")
+    if not sliding.stable or observation.comes_to != SLIDES:
+        known = None if sliding.stable else misalignment
+        advices = tuple(advise(system, known, work, report(3, of=len(LEVERS))))
     tolerance = budget(rig, report(PARTS, of=MORE)) if rig.priors else None
     progress(1.0)
     both = observation, sliding_on

@@ -111,6 +111,12 @@ class SimulatedTest:
         """
         return final_state(self.run, self.growth)
 
+    @cached_property
+    def slip_time(self) -> float:
+        """When the first slip begins, s; NaN if there is none."""
+        slip = first_slip_time(self.run)
+        return slip if slip < self.record.time[-1] else nan
+
     @property
     def motion(self) -> str:
         """The name of the final motion, as far as the load cell sees it."""
@@ -292,19 +298,13 @@ def end_of_loading(force: Floats) -> int:
     return int(np.argmax(force >= ALMOST * force.max()))
 
 
-def slip_time(seen: SimulatedTest) -> float:
-    """Return when the first slip begins, s; NaN if there is none."""
-    slip = first_slip_time(seen.run)
-    return slip if slip < seen.record.time[-1] else nan
-
-
 def creep_before_slip(seen: SimulatedTest) -> float:
     """Return the distance moved until the first slip, m; NaN if there is none.
 
     The mass is as fast as the drive when it slips, and may cover more between two samples than it
     has crept before: what lies between the samples about the slip is simulated again.
     """
-    run, slip = seen.run, slip_time(seen)
+    run, slip = seen.run, seen.slip_time
     if not isfinite(slip):
         return nan
     time, X = run.samples["time"], run.samples["X"]

@@ -7,12 +7,7 @@ from tests.rigs import VERY_SLOW
 import stiction as st
 from stiction.auditing.assumptions import creep_suppositions, suppositions, weakening_angle
 from stiction.auditing.prediction import creep_distance, predict
-from stiction.auditing.simulated_test import (
-    coarse_rate,
-    creep_before_slip,
-    simulate_test,
-    slip_time,
-)
+from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, simulate_test
 from stiction.auditing.words.numbers import numbers
 from stiction.linear_stability import growth_rate
 
@@ -25,7 +20,7 @@ def creep_of(slider: st.Slider) -> tuple[float, float]:
     p = predict(slider)
     seen = simulate_test(slider, p, growth_rate(slider), sample_rate=coarse_rate(p))
     V = hypot(*slider.motion.rate(0.0))
-    by_eq_7 = creep_distance(V, slider.phi, slider.F_0 / slider.k_x, slip_time(seen))
+    by_eq_7 = creep_distance(V, slider.phi, slider.F_0 / slider.k_x, seen.slip_time)
     return creep_before_slip(seen), by_eq_7
 
 

@@ -16,7 +16,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.record import record_of
 from stiction.analysis.signals.reversals import extrema
 from stiction.auditing import advice, figures, report, simulated_test
-from stiction.auditing.advice import advise, advise_one, nearest
+from stiction.auditing.advice import advise, advise_one, limits, nearest
 from stiction.auditing.assumptions import suppositions
 from stiction.auditing.page import page
 from stiction.auditing.prediction import predict
@@ -218,7 +218,7 @@ def test_no_value_is_tried_twice(monkeypatch):
     )
     monkeypatch.setattr(advice, "LEVERS", ("phi",))
     monkeypatch.setattr(advice.Remedy, "works", False)
-    (found,) = [each._replace() for each in advise(soft, False, 10**6)]
+    (found,) = [each._replace() for each in advise(soft, critical(soft, "phi"), 10**6)]
     assert found.then == tried[-1].phi
     assert len({each.phi for each in tried}) == len(tried)
 
@@ -308,7 +308,8 @@ def test_every_end_of_a_window_of_changes_is_said_and_the_one_tried_lies_inside(
         return {"growth": growths[-1], "tried": found.observation}
 
     monkeypatch.setattr(advice, "try_change", failing)
-    tried = advise_one(slider, path, False, simulated_test.MOST_WORK, lambda fraction: None)
+    unstable = critical(slider, path, limits(slider, path))
+    tried = advise_one(slider, path, unstable, simulated_test.MOST_WORK, silent)
     assert _change(found, tried)[2] == said
     assert growths
     assert max(growths) < 0.0
@@ -707,7 +708,8 @@ def test_a_remedy_that_is_not_tried_is_not_said_to_be_none():
         mass="150 g", k_x="1.2 kN/m", k_y="1.2 MN/m", phi="0 deg", normal_load="8 N",
         friction=st.Coulomb(mu_0=0.45, mu_static=0.6), drive=st.ConstantVelocity("1 mm/s"),
     )  # fmt: skip
-    tried = advise_one(slider, "c_x", False, 1_000_000, silent)
+    unstable = critical(slider, "c_x", limits(slider, "c_x"))
+    tried = advise_one(slider, "c_x", unstable, 1_000_000, silent)
     assert tried.works
     assert tried.then > 0.0
 

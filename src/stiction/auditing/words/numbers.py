@@ -11,7 +11,7 @@ from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.analysis.motion.friction import friction_of
 from stiction.analysis.record import cell_axis
 from stiction.auditing.assumptions import creep_suppositions, suppositions
-from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, slip_time
+from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip
 from stiction.friction import has_state
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
@@ -39,7 +39,6 @@ def numbers(found: Audit) -> Table:
     """Return the table of predicted and simulated quantities."""
     p, seen, s = found.prediction, found.observation, found.slider
     first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
-    slip = slip_time(seen)
     creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
     theta_c = p.theta_c if p.zeta < 1.0 else nan  # else friction never turns so far
     rough = bool(suppositions(s, p))
@@ -55,7 +54,7 @@ def numbers(found: Audit) -> Table:
         ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", rough),
         ("θ at which ζ = 1: slow slip turns fast", theta_c, None, "rad", rough),
         ("first stick (true rest)", nan if has_state(s.law) else p.first_stick, first, "s", False),
-        ("time until the first slip", p.load_up if p.slips else nan, slip, "s", rough),
+        ("time until the first slip", p.load_up if p.slips else nan, seen.slip_time, "s", rough),
         ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", rough),
         ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", rough),
         creep,
