@@ -60,11 +60,13 @@ class Shelf:
         The Python function.
     own
         Digest of the user's law for which it is compiled; "" for the package's own laws.
+    counts
+        Whether numba counts who keeps an array, as it must where arrays are made.
     """
 
-    def __init__(self, function: Callable[..., Any], own: str = "") -> None:
-        """Store the function, and the digest of the user's law."""
-        self._own = own
+    def __init__(self, function: Callable[..., Any], own: str = "", *, counts: bool = True) -> None:
+        """Store the function, the digest of the user's law, and whether arrays are counted."""
+        self._own, self.counts = own, counts
         self._name = f"{function.__module__}.{function.__qualname__}"
         digest = hashlib.sha256(Path(getfile(function)).read_bytes())
         for called in function.__globals__.values():
@@ -90,7 +92,8 @@ class Shelf:
             return None
         if self._own:
             context.refresh()  # whatever a user's law calls, of NumPy's linear algebra for example
-        rtsys.initialize(context)  # all that the package's own code calls
+        if self.counts:
+            rtsys.initialize(context)  # all else that the package's own code calls
         return rebuild(context, *pickle.loads(code))
 
     def save_overload(self, signature: Any, result: Any) -> None:

@@ -127,7 +127,8 @@ def _borrow(context: Any, builder: Any, kind: Any, value: Any) -> Any:
         return context.make_tuple(
             builder, kind, [_borrow(context, builder, *part) for part in parts]
         )
-    context.nrt.incref(builder, kind, value)  # other counted objects are never freed
+    if context.enable_nrt:  # a user's law may have other counted objects: they are never freed
+        context.nrt.incref(builder, kind, value)
     return value
 
 

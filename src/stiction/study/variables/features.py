@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.solver.compilation.jit import compiled
+from stiction.solver.compilation.jit import compiled_with_arrays
 from stiction.study.variables.zigzag import zigzag
 
 
@@ -46,7 +46,7 @@ class Features(NamedTuple):
     last: float
 
 
-@compiled
+@compiled_with_arrays
 def even_columns(
     samples: np.ndarray,
     fine: int,
@@ -75,7 +75,7 @@ def even_columns(
     return columns
 
 
-@compiled
+@compiled_with_arrays
 def features(
     time: np.ndarray,
     force: np.ndarray,
@@ -136,7 +136,7 @@ def features(
     )  # fmt: skip
 
 
-@compiled
+@compiled_with_arrays
 def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tuple[float, float]:
     """Return the time and value at the end of a fall.
 
@@ -152,7 +152,7 @@ def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tu
     return time[a] + passed, values[a] + 0.5 * before * passed
 
 
-@compiled
+@compiled_with_arrays
 def vertex(time: np.ndarray, values: np.ndarray, i: int) -> tuple[float, float]:
     """Return time and value of the vertex of the parabola through a sample and its neighbours."""
     bend = values[i - 1] - 2.0 * values[i] + values[i + 1]

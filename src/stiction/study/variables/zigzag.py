@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.solver.compilation.jit import compiled
+from stiction.solver.compilation.jit import compiled_with_arrays
 
 
-@compiled
+@compiled_with_arrays
 def zigzag(values: np.ndarray, height: float) -> np.ndarray:
     """Return the indices of alternating maxima and minima between legs higher than `height`.
 
