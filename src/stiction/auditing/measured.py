@@ -24,7 +24,8 @@ from stiction.inference.posterior import RARE, Estimate, Fit
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.progress import silent
 from stiction.inference.rig import Rig
-from stiction.inference.simulated.library import SIMULATIONS, library_folder
+from stiction.inference.simulated import SIMULATIONS
+from stiction.inference.simulated.library import library_folder
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words

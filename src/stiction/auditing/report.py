@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record, as_record
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
@@ -21,7 +20,6 @@ from stiction.auditing.simulated_test import (
     from_sliding,
     simulate_test,
 )
-from stiction.auditing.tolerance import Budget, budget, section
 from stiction.auditing.words.chain import chain_sections
 from stiction.auditing.words.changes import changes
 from stiction.auditing.words.load_cell import TITLE as LOAD_CELL
@@ -32,7 +30,7 @@ from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
-from stiction.inference.simulated.library import SIMULATIONS
+from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
 from stiction.names import old_attributes
@@ -42,6 +40,7 @@ from stiction.text.sections import Section, as_html, as_text
 
 if TYPE_CHECKING:  # a fit takes 0.3 s to import
     from stiction.auditing.measured import RecordComparison
+    from stiction.auditing.tolerance import Budget
 
 # parts of the work: two tests, the advices, critical misalignments, and springs replaced
 PARTS = 4 + len(LEVERS)
@@ -123,8 +122,12 @@ class Audit(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
-        tolerance = [section(self.budget)] if self.budget else []
-        return [*_of_record(self.measured), *sections(self), *chain_sections(self), *tolerance]
+        parts = [*_of_record(self.measured), *sections(self), *chain_sections(self)]
+        if self.budget:
+            from stiction.auditing.tolerance import section
+
+            parts.append(section(self.budget))
+        return parts
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
@@ -194,6 +197,7 @@ def audit(
     before = FITTING if record is not None else 0.0
     measured = None
     if record is not None:
+        from stiction.analysis.measurement.reading import read_source
         from stiction.auditing.measured import compare
 
         seen = record if isinstance(record, Record) else as_record(read_source(record))
@@ -223,7 +227,11 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     if not sliding.stable or observation.comes_to != SLIDES:
         known = None if sliding.stable else misalignment
         advices = tuple(advise(system, known, work, report(3, of=len(LEVERS))))
-    tolerance = budget(rig, report(PARTS, of=MORE)) if rig.priors else None
+    tolerance = None
+    if rig.priors:
+        from stiction.auditing.tolerance import budget
+
+        tolerance = budget(rig, report(PARTS, of=MORE))
     progress(1.0)
     both = observation, sliding_on
     return Audit(

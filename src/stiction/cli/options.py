@@ -255,14 +255,16 @@ def rig_from(config: Path | None, preset: str | None, given: dict[str, Any], tru
 
 def choose(config: Path | None, preset: str | None) -> Preset | None:
     """Return the requested preset, None for a file; one of both must be given."""
-    from stiction.presets import find
-
     if (config is None) == (preset is None):
         raise StictionError(
             "give either the file of a description or --preset NAME; "
             "`stiction init my.toml` writes one, `stiction presets` lists the others"
         )
-    return None if preset is None else find(preset)
+    if preset is None:
+        return None
+    from stiction.presets import find
+
+    return find(preset)
 
 
 def parse_assignment(text: str, option: str) -> tuple[str, str]:

@@ -26,9 +26,9 @@ from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, rig_of
+from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
 from stiction.inference.simulated.library import (
-    SIMULATIONS,
     Library,
     build,
     library_folder,

@@ -90,7 +90,7 @@ def test_a_certain_misalignment_leaves_the_other_parameters_uncertain(monkeypatc
     assert "The misalignment is 2 deg throughout, as stated without an uncertainty." in text
     assert "Uncertain, there only: friction.mu_0." in text
     assert said.table.headings == ("quantity", "aligned", "at 2 deg", "95 %")
-    monkeypatch.setattr(report, "budget", lambda rig, progress: other)
+    monkeypatch.setattr(module, "budget", lambda rig, progress: other)
     assert report.audit(rig).tables()[-1].sentences == said.sentences
 
 

@@ -23,7 +23,6 @@ from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
 from stiction.storage.files import prepare_folder
 from stiction.study.execution.cores import Cores
 
-SIMULATIONS = 4000  # of a library, by default
 BLOCK = 32  # simulations that are stored together
 SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
 

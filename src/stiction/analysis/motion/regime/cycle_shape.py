@@ -22,6 +22,7 @@ from stiction.analysis.motion.regime.kinds import (
     bounds,
     couples,
     shape,
+    shape_each,
 )
 from stiction.analysis.motion.rest import TOUCHES, rest_share, stick_shares, still_shares
 from stiction.analysis.motion.vibration import COUPLED, LIKELY, drop_spread, irregularity
@@ -91,7 +92,7 @@ class Shapes(NamedTuple):
     @property
     def kinds(self) -> list[str]:
         """Kind of each cycle."""
-        return [shape(*each) for each in zip(*self[:3], strict=True)]
+        return shape_each(*self[:3])
 
     @property
     def chance(self) -> float:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from stiction.analysis.motion.rest import STICKING, TOUCHES, rest_share, rise_share
 from stiction.analysis.motion.vibration import COUPLED
+from stiction.arrays import Floats
 
 STICK_SLIP = "stick-slip"
 TRANSITIONAL = "transitional oscillation"
@@ -26,11 +29,20 @@ BACKWARD = 0.4  # share of the rise, below which the force falls slowly and rise
 
 def shape(rise_share: float, still: float = 0.0, sticks: float = 0.0) -> str:
     """Return the kind of cycles from the shares of rise, and of rest and sticking where known."""
+    return shape_each(np.array([rise_share]), [still], [sticks])[0]
+
+
+def shape_each(rise_share: Floats, still: Iterable[float], sticks: Iterable[float]) -> list[str]:
+    """Return the kind of each of some cycles: see `shape`."""
+    shares = zip(rise_share, rest_share(rise_share), still, sticks, strict=True)
+    return [_shape(*each) for each in shares]
+
+
+def _shape(rise_share: float, rests: float, still: float, sticks: float) -> str:
     if still >= RESTING_SHARE or sticks > TOUCHES:
         return STICK_SLIP
     if rise_share < BACKWARD:
         return UNDETERMINED
-    rests = rest_share(rise_share)
     return next(kind for bound, kind in SHAPES if rests >= bound)
 
 
