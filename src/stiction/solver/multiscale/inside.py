@@ -374,10 +374,15 @@ def at_angle(values: np.ndarray, nodes: int, x: float, block: np.ndarray) -> Non
     for n in range(0, nodes, FOLD):
         b = a * (x - POINTS[n])
         c = b * (x - POINTS[n + 1])
+        v0, v1, v2 = values[n], values[n + 1], values[n + 2]
+        if nodes - n <= FOLD // 2:  # the others are zero
+            for j in range(BLOCK):
+                before = block[j] if n > 0 else 0.0
+                block[j] = before + a * v0[j] + b * v1[j] + c * v2[j]
+            return
         d = c * (x - POINTS[n + 2])
         e = d * (x - POINTS[n + 3])
         f = e * (x - POINTS[n + 4])
-        v0, v1, v2 = values[n], values[n + 1], values[n + 2]
         v3, v4, v5 = values[n + 3], values[n + 4], values[n + 5]
         for j in range(BLOCK):
             before = block[j] if n > 0 else 0.0
