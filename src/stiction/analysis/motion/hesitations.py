@@ -164,11 +164,12 @@ def level(values: Floats, time: Floats) -> Floats:
     middle = np.clip(np.arange(last + 1), AWAY, last - AWAY)
     before, after = inner[middle] - inner[middle - AWAY], inner[middle + AWAY] - inner[middle]
     moves = np.minimum(np.abs(before), np.abs(after)) * (before * after > 0.0)
-    lasts = np.maximum(time[middle + AWAY] - time[middle - AWAY], TINY)
-    rate = (before + after) / lasts
     # a peak and a trough together: swings may grow to both sides
-    moves, rate = (0.5 * (each[1:] + each[:-1]) for each in (moves, rate))
-    passed = np.where(moves > GOES_ON * size, rate * np.diff(time), 0.0)
+    goes_on = 0.5 * (moves[1:] + moves[:-1]) > GOES_ON * size
+    if not goes_on.any():
+        return values
+    rate = (before + after) / np.maximum(time[middle + AWAY] - time[middle - AWAY], TINY)
+    passed = np.where(goes_on, 0.5 * (rate[1:] + rate[:-1]) * np.diff(time), 0.0)
     slow = np.concatenate([[0.0, 0.0], np.cumsum(passed)])
     return np.asarray(values - np.append(slow, slow[-1]))
 

@@ -108,18 +108,21 @@ def swings(found: Features) -> SwingShapes:
 
 def kind_of(
     found: Features,
+    complete: SwingShapes,
     cycles: SwingShapes,
     given: Circumstances,
     fast: FastOscillation,
     shares: Shares,
 ) -> str:
-    """Return the kind of motion from features, complete swings, and the final fast oscillation."""
-    lasting = cycles_among(cycles, given.until)
-    if len(lasting.drop) >= FEWEST_CYCLES:
-        return by_shape(lasting, given.own, shares)
-    dying = die_out(cycles, given.until)
+    """Return the kind of motion from features, swings and cycles, and the final fast oscillation.
+
+    `complete` are all complete swings, of which `cycles_among` finds the cycles.
+    """
+    if len(cycles.drop) >= FEWEST_CYCLES:
+        return by_shape(cycles, given.own, shares)
+    dying = die_out(complete, given.until)
     kind = kinds.SETTLING if dying else by_course(found, given)
-    last = (float(cycles.drop[-1]), float(cycles.period[-1])) if dying else ()
+    last = (float(complete.drop[-1]), float(complete.period[-1])) if dying else ()
     slides = kind in (kinds.SETTLING, kinds.STEADY) and not given.stops
     return kinds.TRANSVERSE if slides and fast.goes_on(*last) else kind
 

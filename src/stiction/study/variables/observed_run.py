@@ -258,8 +258,8 @@ class ObservedRun:
         own = 1.0 / slider.natural_frequency_x
         stops = stops_with_drive(slider.motion, self.end, self.slip_speed)
         given = Circumstances(self.end - self.start, self.until, drive, own, stops)
-        shares = self.rests, self.sticks
-        return kind_of(self.features, self.swings, given, self.fast_oscillation, shares)
+        shares, motion = (self.rests, self.sticks), (self.features, self.swings, self.cycles)
+        return kind_of(*motion, given, self.fast_oscillation, shares)
 
     def rests(self, cycles: SwingShapes) -> Floats:
         """Return for which share of each cycle the mass rests or creeps, in one piece."""
