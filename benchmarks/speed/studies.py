@@ -68,7 +68,7 @@ side, threads = int(sys.argv[1]), int(sys.argv[2])
 made = study(side, side, 5.0)
 asked = []
 
-def note(description, times, progress=None):
+def note(description, times, progress=None, room=None):
     asked.append((description, times))
     raise st.StictionError
 

@@ -17,7 +17,7 @@ from stiction.friction import has_state, states
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
 from stiction.solver.accuracy import tolerance
 from stiction.solver.compilation.refusal import reasons
-from stiction.solver.integrate import Solution, integrate
+from stiction.solver.integrate import Room, Solution, integrate
 from stiction.storage.version import own_version
 from stiction.system.description import Description, Settings, description_of
 from stiction.system.initial import Initial
@@ -207,10 +207,12 @@ def solve(
     max_steps: int = MOST_STEPS,
     progress: Callable[[float], None] | None = None,
     inside: float = 0.0,
+    room: Room = np.empty,
 ) -> Solution:
     """Integrate a description sampled at `times` (ascending, s): `run` without the labels.
 
-    `inside` is the relative error of the slip that samples inside steps may have.
+    `inside` is the relative error of the slip that samples inside steps may have; `room` makes the
+    array of samples.
 
     Raises
     ------
@@ -230,7 +232,7 @@ def solve(
         message = f"is below the resolution of time at t = {initial.time:g} s; start earlier"
         raise DescriptionError.of("run.duration", message)
     try:
-        return integrate(description, times, max_steps, progress, inside=inside)
+        return integrate(description, times, max_steps, progress, inside=inside, room=room)
     except NumbaError:
         found = [Fault("friction", reason) for reason in reasons(description.slider.law)]
         if not found:
@@ -244,13 +246,16 @@ def solve_coarsely(
     *,
     max_steps: int = MOST_STEPS,
     progress: Callable[[float], None] | None = None,
+    room: Room = np.empty,
 ) -> Solution:
     """Solve with samples as accurate as the steps' tolerance: enough for measures and pictures.
 
     Samples inside steps take a sixth of the time of those of `solve`; the motion is the same.
     """
     inside = tolerance(description.run.rtol)
-    return solve(description, times, max_steps=max_steps, progress=progress, inside=inside)
+    return solve(
+        description, times, max_steps=max_steps, progress=progress, inside=inside, room=room
+    )
 
 
 def kind(description: Description) -> str:

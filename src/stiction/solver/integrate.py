@@ -55,6 +55,7 @@ class Solution(NamedTuple):
 
 
 Report = Callable[[float], None]
+Room = Callable[[tuple[int, int]], np.ndarray]  # makes an array of a shape, of any content
 
 
 class Method(Protocol):
@@ -110,6 +111,7 @@ def integrate(
     take: Callable[[np.ndarray], None] | None = None,
     inside: float = 0.0,
     pause: int = BUDGET,
+    room: Room = np.empty,
 ) -> Solution:
     """Integrate a description, filling in the samples at `times` (ascending, s).
 
@@ -118,7 +120,7 @@ def integrate(
     that a return map finds at once are in one block. `inside` is the relative error of the slip
     that samples inside steps may have; if that is no less than the steps' `tolerance`, they take a
     sixth of the time. `progress` is told the share of the time that is done, after at most `pause`
-    turns of the loop.
+    turns of the loop. `room` makes the array in which the samples are returned.
     """
     slider, initial, settings = description
     t, end = initial.time, initial.time + settings.duration
@@ -126,7 +128,7 @@ def integrate(
     state = method.begin(description)
     times = np.asarray(times, dtype=np.float64)
     times = times if times.flags.carray else times.copy()  # compiled code takes no other array
-    out = Output(times, np.empty((len(times), method.columns)), np.empty((4096, 2)))
+    out = Output(times, room((len(times), method.columns)), np.empty((4096, 2)))
     code, segment, scales = COMPLETED, None, scales_of(slider, initial)
 
     def report(t: float) -> None:

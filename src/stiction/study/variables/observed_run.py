@@ -23,7 +23,7 @@ from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.simulation import sample_times, solve_coarsely
-from stiction.solver.integrate import Solution
+from stiction.solver.integrate import Room, Solution
 from stiction.study.variables.fast_regime import (
     Circumstances,
     SwingShapes,
@@ -274,7 +274,9 @@ class ObservedRun:
         return stick_shares(self.solution.sticks, cycles.start, peak, cycles.period)
 
 
-def observe_run(description: Description, report: Callable[[float], None] | None) -> ObservedRun:
+def observe_run(
+    description: Description, report: Callable[[float], None] | None, room: Room = np.empty
+) -> ObservedRun:
     """Run a description, sampled as measures need it: at least as often as it says."""
     start, duration = description.initial.time, description.run.duration
     slow, fast = description.slider.natural_frequencies
@@ -289,7 +291,7 @@ def observe_run(description: Description, report: Callable[[float], None] | None
     # over the last even samples, each step is divided into parts
     dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
     times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
-    solution = solve_coarsely(description, times, progress=report)
+    solution = solve_coarsely(description, times, progress=report, room=room)
     return ObservedRun(description, solution, fine, parts, rate >= least)
 
 
