@@ -89,6 +89,23 @@ finally:
     assert run_python(code).split()[-2:] == ["0", "True"]
 
 
+@pytest.mark.parametrize(("given", "taken"), [({}, "1"), ({"OPENBLAS_NUM_THREADS": "2"}, "2")])
+def test_a_command_starts_no_threads_for_large_matrices_unless_told(given, taken, monkeypatch):
+    """They wait busily when they start, for a tenth of the processor time of an audit."""
+    monkeypatch.delenv("OPENBLAS_NUM_THREADS", raising=False)
+    code = """
+import os, sys
+import stiction.__main__ as process
+assert "numpy" not in sys.modules  # which reads how many
+sys.argv = ["stiction", "--version"]
+try:
+    process.main()
+finally:
+    print(os.environ["OPENBLAS_NUM_THREADS"])
+"""
+    assert run_python(code, **given).split()[-1] == taken
+
+
 def test_processes_of_tests_leave_bytecode_to_each_other():
     """Otherwise each of them spends seconds on compiling what it imports."""
     run_python("import stiction.errors")
