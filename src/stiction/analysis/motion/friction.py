@@ -323,8 +323,9 @@ def _peak_excess(values: Floats, top: int, step: int) -> float:
     before, rise, fall, after = np.diff(values[at]) * (1.0, 1.0, -1.0, -1.0)
     if rise + fall > 2.0 * min(before - rise, after - fall):
         return float(max(rise, before - rise))  # it lies after the largest value, or before
-    meet = rise * (after - fall) / (rise + after), fall * (before - rise) / (fall + before)
-    return float(max(meet))
+    sides = (rise, after, fall), (fall, before, rise)
+    meet = [near * (far - over) / (near + far) for near, far, over in sides if near + far > 0.0]
+    return float(max(meet, default=0.0))  # where it is level on both sides, as steps may be
 
 
 def _over(forces: Floats, reduced: Floats, load: float, rounding: float) -> Measured:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.motion.friction import _peak_excess
 from stiction.analysis.protocols.friction_test import friction_test
 
 TIME = np.arange(0.0, 20.0, 1e-3)
@@ -325,6 +326,10 @@ def test_a_rounded_top_in_steps_is_known_to_a_part_of_a_step(offset):
     assert broke is not None
     assert broke.error > 0.25 * step
     assert broke.force == pytest.approx(2.0, abs=2.0 * broke.error)
+
+
+def test_a_top_that_is_level_on_both_sides_has_no_excess():
+    assert _peak_excess(np.array([0.9, 1.0, 1.0, 1.0, 0.9]), 2, 1) == 0.0
 
 
 def test_the_load_of_the_first_break_away_is_that_of_the_channel_as_for_static_friction():

@@ -174,7 +174,7 @@ def _varies(run: Trajectory, columns: tuple[str, ...]) -> bool:
 
 def _mains(kind: str, cycles: CycleTable) -> Iterator[str]:
     """Doubt a vibration at the mains frequency: nothing distinguishes it from hum."""
-    if kind != HARMONIC:
+    if kind != HARMONIC or not len(cycles):  # the spectrum alone may show a vibration
         return
     lasts = float(cycles["trough_time"][-1] - cycles["start"][0])
     frequency = len(cycles) / lasts

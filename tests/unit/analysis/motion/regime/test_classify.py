@@ -359,6 +359,16 @@ def test_a_line_of_the_mains_without_a_loading_may_be_hum() -> None:
     assert st.analysis.classify(own).confidence > 0.9
 
 
+def test_a_vibration_that_only_the_spectrum_shows_has_no_cycles_to_be_the_mains() -> None:
+    random = np.random.default_rng(7)
+    frequency, beat = random.uniform(5, 15), random.uniform(0.2, 0.6)
+    time = np.arange(512) * random.uniform(0.005, 0.02)
+    rise = random.uniform(0, 4) * time / time[-1]
+    lines = sum(np.sin(2 * pi * each * time) for each in (frequency, frequency + beat))
+    found = st.analyse(st.Record(time=time, force=rise + 0.2 * lines))
+    assert (found.regime.kind, found.cycles.sizes["cycle"]) == ("harmonic vibration", 0)
+
+
 BELTS = [  # sticks for 50 to 75 % of a cycle, as all but the last are published
     st.presets.leine_belt,
     st.presets.leine_arctan,
