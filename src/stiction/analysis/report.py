@@ -28,6 +28,7 @@ from stiction.analysis.oscillation import (
 )
 from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.rotation.findings import GROWING
 from stiction.arrays import TINY, xr
 from stiction.names import draw, warn_renamed
 from stiction.text.sections import Section, as_html, as_text
@@ -206,7 +207,20 @@ def _with_parts(analysis: Analysis) -> Analysis:
     found = {
         name: attempt(missing, name, partial(find, analysis)) for name, find in functions("find")
     }
-    return analysis._replace(parts=analysis.parts | found, missing=missing)
+    return _agreeing(analysis._replace(parts=analysis.parts | found, missing=missing))
+
+
+def _agreeing(analysis: Analysis) -> Analysis:
+    """Return an analysis without an angle of friction that turns where it is seen to grow."""
+    shown = analysis.parts["rotation"]
+    if analysis.misalignment is None or shown is None or shown.kind != GROWING:
+        return analysis
+    why = (
+        "not determined: Eq. (7) supposes that friction turns, and the force across shows that it "
+        "grows (see Rotation of the force)"
+    )
+    missing = analysis.missing | {"misalignment": why}
+    return analysis._replace(misalignment=None, missing=missing)
 
 
 analyze = analyse

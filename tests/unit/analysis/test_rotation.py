@@ -25,7 +25,10 @@ def cycles_of(peak=RISE[-1], low=RISE[0]):
 
 
 def record_of(across, noise, seed, zero=0.0, known=None, along=RISE):
-    """Return loadings one after the other, with noise; `known` is the error of the zero."""
+    """Return loadings one after the other, with noise; `known` is the error of the zero.
+
+    The zero may be that of each sample.
+    """
     normal = np.random.default_rng(seed).standard_normal((2, LOADINGS * EACH))
     along, across = (np.tile(each, LOADINGS) for each in (along, across))
     return st.Record(
@@ -95,6 +98,46 @@ def test_errors_cover_zero_magnitude_and_its_change_where_friction_weakens():
             covers.append(abs(found.change - truth.change) <= 2.0 * found.change_error)
     assert len(covers) > 40
     assert np.mean(covers) >= 0.93
+
+
+@pytest.mark.parametrize("stated", [0.0, 0.02])
+def test_a_drift_of_the_zero_is_in_the_errors_whether_it_is_seen_or_stated(stated):
+    """Over one loading it isn't seen."""
+    rate = 0.02
+    drifting = record_of(TURN, 1e-4, 8, rate * np.linspace(0.0, LOADINGS, LOADINGS * EACH), 1e-3)
+    sensor = st.Sensor(zero_uncertainty=1e-3, zero_drift_uncertainty=stated)
+    record = drifting.model_copy(update={"sensors": {"force_across": sensor}})
+    cycles = cycles_of().isel(cycle=[-1]) if stated else cycles_of()
+    found = rotation_of(record, cycles)
+    truth = rotation_of(record_of(TURN, 0.0, 1, 0.0, 1e-9), cycles_of())
+    assert (np.abs(found.angle - truth.angle) < 2.0 * found.angle_error).all()
+    assert (found.angle_error < np.radians(4.0)).all()
+    assert abs(found.change - truth.change) < 2.0 * found.change_error
+
+
+def test_rounding_that_all_loadings_share_is_in_the_errors():
+    """Across all of them the force is one code, off by up to half a step."""
+    step = 0.1
+    along, across = (step * np.round(each / step) for each in (RISE, 0.44 * step + 0.1 * RISE))
+    found = rotation_of(record_of(across, 0.0, 1, 0.0, 1e-3, along), cycles_of())
+    truth = rotation_of(record_of(0.44 * step + 0.1 * RISE, 0.0, 1, 0.0, 1e-9), cycles_of())
+    assert (np.abs(found.angle - truth.angle) < 2.0 * found.angle_error).all()
+    assert abs(found.change - truth.change) < 2.0 * found.change_error
+
+
+def test_a_force_across_that_passes_through_zero_has_angles_on_both_sides():
+    across = np.linspace(1.0, -0.5, EACH)
+    first, last = rotation_of(record_of(-across, 1e-4, 9, 0.0, 1e-3), cycles_of()).angle
+    assert first > 0.0 > last
+
+
+def test_a_magnitude_that_falls_with_the_logarithm_as_in_rate_and_state_is_in_the_errors():
+    r = F_0 * (1.0 + 0.04 * np.log(TURN.clip(0.1) / F_0))
+    along, across = r * RISE / F_0, r * TURN / F_0
+    found = rotation_of(record_of(across, 1e-3, 10, 1.0, None, along), cycles_of(along.max()))
+    assert found.kind == TURNING
+    assert abs(found.zero - 1.0) < 2.0 * found.zero_error
+    assert found.zero_error < 0.1 * F_0
 
 
 def test_what_does_not_rise_or_is_too_short_is_refused():

@@ -12,6 +12,7 @@ from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.misalignment import REST_SPEED
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import SLIGHT, number
+from stiction.analysis.rotation.findings import BOTH, TURNING
 from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import xr
 from stiction.friction import states
@@ -105,6 +106,14 @@ def _presliding(found: Analysis, its: Misalignment) -> str:
     """Return what presliding would do to the angle of a record, which its errors leave out."""
     if isinstance(found.source, Trajectory) and not states(found.source.slider.law):
         return ""
+    shown = found.parts["rotation"]
+    if shown is not None and shown.kind == TURNING:
+        return " The force across turns, as this supposes (see Rotation of the force)."
+    if shown is not None and shown.kind == BOTH:
+        return (
+            " The force across does not only turn, as this supposes, it grows as well (see "
+            "Rotation of the force); the errors do not include that."
+        )
     supposed = " It is supposed that the contact does not give way before it slips (presliding)"
     if not np.isfinite(its.worse):
         return f"{supposed}; the errors do not include that."

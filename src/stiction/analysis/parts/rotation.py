@@ -16,6 +16,7 @@ from stiction.analysis.rotation.findings import (
     Rotation,
     rotation_of,
 )
+from stiction.analysis.rotation.loading import SEVERAL
 from stiction.errors import ResultError
 from stiction.text.sections import Section
 from stiction.text.units import in_words, with_error
@@ -28,7 +29,8 @@ TITLE = "Rotation of the force"
 CONCLUSIONS = {
     TURNING: "It turns rather than grows: this apparent stick is slow creep.",
     GROWING: "It grows rather than turns: the mass rests, or its contact yields before it slips.",
-    BOTH: "It grows and turns: the mass rests for a part of the loading, and creeps for another.",
+    BOTH: "It grows and turns: the mass rests for a part of the loading and creeps for another, or "
+    "friction differs with its direction.",
     UNDETERMINED: "Whether the force turns or grows is not determined.",
 }
 
@@ -62,7 +64,7 @@ def _course(its: Rotation) -> str:
     c, d = (float(each) for each in its.across)
     across = "the force across"
     if isfinite(its.change):
-        c, d = abs(c), abs(d)
+        c, d = its.side * c, its.side * d
         known = "stated" if its.stated else "fitted"
         across += f", from its {known} zero,"
     way = "falls" if d < c else "rises"
@@ -103,10 +105,22 @@ def _conclusion(its: Rotation) -> str:
             said.append("It is weaker towards slip, where the mass creeps faster.")
         if not its.stated:
             zero = with_error(its.zero, its.zero_error, "N")
-            said.append(f"The zero of the force across, {zero}, is that of the arc which fits.")
-        gain = "" if its.stated else " and an error of the gain"
-        said.append(f"The errors leave out crosstalk of the channels{gain}.")
+            said.append(
+                f"The zero of the force across, {zero}, is that of the arc which fits, as none is "
+                "stated with its uncertainty; that friction is alike in all directions is supposed."
+            )
+    if isfinite(its.change):
+        said.append(_left_out(its))
     return " ".join(said)
+
+
+def _left_out(its: Rotation) -> str:
+    """Return what the errors do not include."""
+    drift = "" if its.loadings >= SEVERAL else ", a drift of the zero beyond a stated one"
+    return (
+        f"The errors leave out crosstalk of the channels{drift}, and gains or filters in which "
+        "they differ by more than is stated."
+    )
 
 
 def numbers(found: Analysis) -> dict[str, Any]:

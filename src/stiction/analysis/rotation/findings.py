@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.analysis.rotation.loading import BINS, LoadingSeries, MeanLoading, loadings
+from stiction.analysis.rotation.loading import BINS, SEVERAL, LoadingSeries, MeanLoading, loadings
 from stiction.analysis.rotation.path import best_arc, line_misfit, usual_arc
 from stiction.arrays import Floats, xr
 from stiction.recording.sensor import Sensor
@@ -23,7 +23,6 @@ TURNING, GROWING, BOTH, UNDETERMINED = "turning", "growing", "both", "not determ
 SURE = 2.0  # standard errors
 SOME, MOST = 0.2, 0.8  # of the rise of the force along: limits of turning and growing
 BETTER = 4.0  # times: so much better must an arc or a line fit than the other
-SEVERAL = 3  # loadings, whose scatter yields an error
 FREE = BINS - 2.0  # degrees of freedom of a line
 SCATTERING = ("change", "F_0", "zero")
 FITTED = {*SCATTERING, *(f"{name}_error" for name in SCATTERING)}
@@ -44,7 +43,8 @@ class Rotation(NamedTuple):
     F_0, F_0_error : float
         Magnitude of friction in slow creep, N, if the force turns; else NaN.
     zero, zero_error : float
-        Of the force across, N, as fitted to a force that turns; 0 with its error if `stated`.
+        Of the force across, N, as fitted to a force that turns; 0 with its error if `stated`. The
+        error includes a drift, stated or seen from loading to loading, until the mean loading.
     across_error, along_error : float
         Of means in one part by noise and scatter, N.
     stated : bool
@@ -69,9 +69,14 @@ class Rotation(NamedTuple):
 
     @property
     def angle(self) -> Floats:
-        """Angle of the force from the axis of the load cell, (2,), rad."""
-        angle: Floats = np.arctan2(np.abs(self.across), self.along)
+        """Angle of the force from the axis of the load cell, (2,), rad; the larger is positive."""
+        angle: Floats = np.arctan2(self.side * self.across, self.along)
         return angle
+
+    @property
+    def side(self) -> float:
+        """Sign of the larger force across."""
+        return float(np.sign(self.across[np.argmax(np.abs(self.across))])) or 1.0
 
     @property
     def angle_error(self) -> Floats:
@@ -102,7 +107,9 @@ def _rotation(its: MeanLoading, sensor: Sensor | None) -> Rotation:
     """Return what a mean loading shows, by the zero of the force across if that is stated."""
     if sensor is None or not sensor.zero_uncertainty:
         return _by_path(its)
-    return _by_zero(its, sensor.zero_uncertainty, sensor.gain_uncertainty)
+    its = its._replace(drift=hypot(its.drift, sensor.zero_drift_uncertainty))
+    zero_error = hypot(sensor.zero_uncertainty, its.drift * its.elapsed)
+    return _by_zero(its, zero_error, sensor.gain_uncertainty)
 
 
 def _with_scatter(found: Rotation, its: LoadingSeries) -> Rotation:
@@ -139,6 +146,7 @@ def _by_path(its: MeanLoading) -> Rotation:
     if kind != TURNING:
         return found
     fitted = {name: value for name, value in arc._asdict().items() if name in FITTED}
+    fitted["zero_error"] = hypot(arc.zero_error, its.drift * its.elapsed)
     return found._replace(across=found.across - arc.zero, **fitted)
 
 
@@ -150,6 +158,7 @@ def _by_zero(its: MeanLoading, zero_error: float, gain_error: float = 0.0) -> Ro
         its.x_error * hypot(x / r**2, x_0 / r_0**2),
         its.y_error * hypot(y / r**2, y_0 / r_0**2),
         zero_error * (y / r**2 - y_0 / r_0**2),
+        its.drift * its.lasts * y / r**2,
         gain_error * ((y / r) ** 2 - (y_0 / r_0) ** 2),
     )  # fmt: skip
     change = r / r_0 - 1.0

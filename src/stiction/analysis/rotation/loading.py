@@ -7,13 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
+from stiction.recording.noise import rounding_error
 from stiction.text.quantity_text import percent
 
 BINS = 10  # of each loading
 RINGING, SLIPPING = 0.1, 0.04  # of a loading: left out where the slip rings, and where it begins
 FEWEST = 5  # samples in a bin
+SEVERAL = 3  # loadings, whose scatter yields an error
 FORWARD = 0.1  # of the peak: least force along, as after a slip that overshoots it pulls back
 LEAST = 0.1  # of the peak: least rise of the force along that says something of its course
 ROUNDING = 1e-6  # of the peak: no error is less
@@ -22,7 +25,9 @@ ROUNDING = 1e-6  # of the peak: no error is less
 class MeanLoading(NamedTuple):
     """Mean force along (x) and across (y), N, in bins of the loadings, with standard errors.
 
-    `peak` is the mean force along, N, at which the mass slips.
+    `peak` is the mean force along, N, at which the mass slips; `elapsed` the mean time of the
+    loadings since the first sample, and `lasts` from their first bin to the last, s. `drift` is the
+    rate at which the force across changes from loading to loading, N/s: 0 where they are few.
     """
 
     x: Floats
@@ -30,14 +35,23 @@ class MeanLoading(NamedTuple):
     x_error: float
     y_error: float
     peak: float
+    elapsed: float = 0.0
+    lasts: float = 0.0
+    drift: float = 0.0
 
 
 class LoadingSeries(NamedTuple):
-    """Mean (x, y) in each bin of each loading, (n, 2, BINS), N, and the variance by noise, (2,)."""
+    """Mean (x, y) in each bin of each loading, (n, 2, BINS), N, and the variance by noise, (2,).
+
+    `rounding` is the standard error, (2,), N, by rounding, which may be alike in all loadings;
+    `spans` begin and end of each, (n, 2), s, since the first sample.
+    """
 
     means: Floats
     noise: Floats
     peaks: Floats
+    rounding: Floats
+    spans: Floats
 
     def __len__(self) -> int:
         """Return their number."""
@@ -45,20 +59,29 @@ class LoadingSeries(NamedTuple):
 
     def without(self, at: int) -> LoadingSeries:
         """Return all but one, for the scatter of what they yield."""
-        return LoadingSeries(np.delete(self.means, at, 0), self.noise, np.delete(self.peaks, at))
+        each = (np.delete(values, at, 0) for values in (self.means, self.peaks, self.spans))
+        means, peaks, spans = each
+        return LoadingSeries(means, self.noise, peaks, self.rounding, spans)
 
     def mean(self) -> MeanLoading:
         """Return their mean; its errors are of noise, or of the scatter of shapes if more."""
         count, mean = len(self.peaks), self.means.mean(axis=0)
         variance = self.noise / count
-        if count > 2:
+        if count >= SEVERAL:
             apart = self.means - mean
             apart = apart - apart.mean(axis=2, keepdims=True)  # a shift bends nothing
             scatter = (apart**2).sum(axis=(0, 2)) / (count - 1) / (BINS - 1)
             variance = np.maximum(variance, scatter / count)
         peak = float(self.peaks.mean())
+        variance = variance + self.rounding**2
         x_error, y_error = np.sqrt(np.maximum(variance, (ROUNDING * peak) ** 2))
-        return MeanLoading(mean[0], mean[1], float(x_error), float(y_error), peak)
+        at = self.spans.mean(axis=1)
+        levels, drift = self.means[:, 1].mean(axis=1), 0.0
+        if count >= SEVERAL:
+            drift = float(np.polyfit(at, levels, 1)[0])
+        lasts = float(np.ptp(self.spans, axis=1).mean())
+        errors = float(x_error), float(y_error)
+        return MeanLoading(mean[0], mean[1], *errors, peak, float(at.mean()), lasts, drift)
 
 
 def loadings(time: Floats, forces: Floats, cycles: xr.Dataset) -> LoadingSeries:
@@ -69,7 +92,7 @@ def loadings(time: Floats, forces: Floats, cycles: xr.Dataset) -> LoadingSeries:
     ResultError
         If none has enough samples, or the force along hardly rises.
     """
-    means, noise, peaks = [], [], []
+    means, noise, peaks, spans, widths = [], [], [], [], []
     columns = (cycles[name].values for name in ("start", "peak_time", "start_force", "peak"))
     for start, end, low, peak in zip(*columns, strict=True):
         rise = end - start
@@ -84,14 +107,28 @@ def loadings(time: Floats, forces: Floats, cycles: xr.Dataset) -> LoadingSeries:
         # Of differences, which leave the trend out
         noise += [np.var(np.diff(part), axis=1) / 2.0 / part.shape[1] for part in parts]
         peaks.append(peak)
+        spans.append(edges[[0, -1]] - time[0])
+        widths += [np.ptp(part, axis=1) for part in parts]
     if not means:
         raise ResultError(
             f"not determined: no loading of a cycle has {FEWEST} samples in each of {BINS} parts"
         )
-    found = LoadingSeries(np.array(means), np.mean(noise, axis=0), np.array(peaks))
+    rounding = np.array([*map(_rounding, forces, np.mean(widths, axis=0))])
+    found = LoadingSeries(
+        np.array(means), np.mean(noise, axis=0), np.array(peaks), rounding, np.array(spans)
+    )
     along = found.means[:, 0]
     if float(np.median(along[:, -1] - along[:, 0])) < LEAST * found.peaks.mean():
         raise ResultError(
             f"not determined: the force along rises by less than {percent(LEAST)} in a loading"
         )
     return found
+
+
+def _rounding(force: Floats, width: float) -> float:
+    """Return the standard error of the mean of a bin by rounding, N.
+
+    Its force moves by `width`, N: the more steps it passes, the less is left.
+    """
+    step = resolution(force)
+    return rounding_error(force, step) * step / max(step, width) if step else 0.0

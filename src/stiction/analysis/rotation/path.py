@@ -19,16 +19,22 @@ CHORD = 24.0  # the mean over an arc of angle a lies at 1 - a^2/24 of its radius
 
 
 class ArcShape(NamedTuple):
-    """How the magnitude changes: as 1/sin^power of the angle, and in which bins that holds."""
+    """How the magnitude changes: as 1/sin^power of the angle, and in which bins that holds.
+
+    With a power of 0 it changes as the logarithm, as rate and state has it.
+    """
 
     power: float
     bins: slice
 
 
 USUAL = ArcShape(2.0, slice(None))
-# What differs from it by the model alone: the power that a law linear in speed would have, the end
-# of ringing after a slip, and inertia before the next
-OTHERS = (ArcShape(1.0, slice(None)), ArcShape(2.0, slice(2, None)), ArcShape(2.0, slice(None, -2)))
+# What differs from it by the model alone: how the law depends on speed, the end of ringing after a
+# slip, and inertia before the next
+OTHERS = (
+    *(ArcShape(power, slice(None)) for power in (1.0, 0.0)),
+    *(ArcShape(2.0, bins) for bins in (slice(2, None), slice(None, -2))),
+)
 
 
 class Arc(NamedTuple):
@@ -84,7 +90,7 @@ def usual_arc(its: MeanLoading, known: float = 0.0, shape: ArcShape = USUAL) -> 
 
 
 def _magnitudes(its: MeanLoading, zeros: Floats, shape: ArcShape) -> tuple[Floats, Floats, Floats]:
-    """Return magnitude, 1/sin^power of the angle and weight of each bin, for each centre."""
+    """Return magnitude, its change by the shape, and weight of each bin, for each centre."""
     y = its.y - zeros[:, None]
     r = np.hypot(its.x, y)
     within = np.gradient(np.arctan2(y, its.x), axis=1)  # by how much the force turns in a bin
@@ -92,7 +98,8 @@ def _magnitudes(its: MeanLoading, zeros: Floats, shape: ArcShape) -> tuple[Float
     errors = (its.x * its.x_error) ** 2 + (y * its.y_error) ** 2
     weight[:, shape.bins] = (r**2 / errors)[:, shape.bins]
     sines = np.maximum(np.abs(y) / r, SIDEWAYS)
-    return r / (1.0 - within**2 / CHORD), sines**-shape.power, weight
+    q = sines**-shape.power if shape.power else -np.log(sines)
+    return r / (1.0 - within**2 / CHORD), q, weight
 
 
 def _fits(

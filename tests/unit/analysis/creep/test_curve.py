@@ -609,23 +609,28 @@ def test_friction_that_turns_is_known_from_presliding_where_the_creep_is_seen_we
     assert found.worse > EXCLUDED
 
 
-def test_a_report_says_what_the_angle_of_a_record_leaves_out(paper_run):
+def test_the_angle_of_a_record_has_what_it_leaves_out_or_what_the_force_across_shows(paper_run):
     """Its creep is seen only as well as the noise lets it, so presliding is not excluded."""
     time, force, place = (paper_run.data[name].values for name in ("time", "spring_x", "X"))
     noise = np.random.default_rng(2).standard_normal((2, len(time)))
-    record = st.Record(
-        time=time,
-        force=force + 2e-3 * noise[0],
-        force_across=paper_run.data["spring_y"].values,
-        position=place + 2e-6 * noise[1],
-        stiffness=K,
-        drive_velocity=V,
-        mass=0.25,
-    )
-    text = str(st.analyse(record))
+    known = {
+        "time": time,
+        "force": force + 2e-3 * noise[0],
+        "position": place + 2e-6 * noise[1],
+        "stiffness": K,
+        "drive_velocity": V,
+        "mass": 0.25,
+    }
+    text = str(st.analyse(st.Record(**known)))
     assert "supposed that the contact does not give way before it slips (presliding)" in text
-    assert "It turns rather than grows" in text
     assert "presliding" not in str(st.analyse(paper_run))
+    turning = st.analyse(st.Record(**known, force_across=paper_run.data["spring_y"].values))
+    assert turning.misalignment is not None
+    assert "The force across turns, as this supposes" in str(turning)
+    assert "presliding" not in str(turning)
+    growing = st.analyse(st.Record(**known, force_across=0.05 * known["force"]))
+    assert growing.misalignment is None
+    assert "the force across shows that it grows" in str(growing)
 
 
 def test_the_fitted_line_goes_through_the_creep_that_was_fitted():
