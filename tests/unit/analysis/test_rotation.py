@@ -167,6 +167,15 @@ def test_the_report_says_so(across, known, said):
     its = rotation_of(record_of(across, 1e-3, 6, 0.0 if known else 3.0, known), cycles_of())
     analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}})
     assert said in " ".join(rotation.section(analysis).sentences)
+    assert f"means over {LOADINGS} loadings" in " ".join(rotation.section(analysis).sentences)
     numbers = rotation.numbers(analysis)["rotation"]
     assert numbers["kind"] == its.kind
     assert numbers["change"] is None or abs(numbers["change"]) < 1.0
+
+
+def test_the_report_of_one_loading_leaves_out_a_drift_that_it_cannot_show():
+    its = rotation_of(record_of(TURN, 1e-3, 6, 0.0, 0.02), cycles_of().isel(cycle=[0]))
+    analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}})
+    said = " ".join(rotation.section(analysis).sentences)
+    assert "This is of one loading" in said
+    assert "a drift of the zero beyond a stated one" in said

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
 TITLE = "Rotation of the force"
 CONCLUSIONS = {
     TURNING: "It turns rather than grows: this apparent stick is slow creep.",
-    GROWING: "It grows rather than turns: the mass rests, or its contact yields before it slips.",
+    GROWING: "It grows rather than turns at one magnitude: the mass rests, or its contact yields "
+    "before it slips.",
     BOTH: "It grows and turns: the mass rests for a part of the loading and creeps for another, or "
     "friction differs with its direction.",
     UNDETERMINED: "Whether the force turns or grows is not determined.",
@@ -73,15 +74,22 @@ def _course(its: Rotation) -> str:
         f"{in_words(c, 'N')} to {in_words(d, 'N')}"
     )
     if not isfinite(its.change):
-        return f"{said}. These are means over {its.loadings} loadings."
+        return f"{said}. {_means(its)}"
     angles = zip(its.angle, its.angle_error, strict=True)
     start, end = (with_error(float(each), float(error), "rad") for each, error in angles)
     change = with_error(100.0 * its.change, 100.0 * its.change_error, "1")
     turns = "turns" if its.kind in (TURNING, BOTH) else "goes"
     return (
         f"{said}: the force {turns} from ({start}) to ({end}) off the axis of the load cell, and "
-        f"its magnitude changes by ({change}) %. These are means over {its.loadings} loadings."
+        f"its magnitude changes by ({change}) %. {_means(its)}"
     )
+
+
+def _means(its: Rotation) -> str:
+    """Return of how many loadings this is."""
+    if its.loadings == 1:
+        return "This is of one loading."
+    return f"These are means over {its.loadings} loadings."
 
 
 def _conclusion(its: Rotation) -> str:
