@@ -36,6 +36,7 @@ from stiction.recording.request import (
     request,
 )
 from stiction.recording.sensor import Sensor
+from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 T = TypeVar("T")
@@ -397,8 +398,8 @@ def _weigh(
                 "the normal load is negative, as compression is in many cells: its sign was turned"
             )
         if float(load.min()) < 0.0 < float(load.max()):
-            share = 100.0 * float(np.mean(load < 0.0))
-            notes.append(f"the normal load changes its sign: {share:.2g} % of the samples pull")
+            share = percent(float(np.mean(load < 0.0)))
+            notes.append(f"the normal load changes its sign: {share} of the samples pull")
     if not force.ratio:
         return channels, notes
     if load is None and "normal_load" not in known:

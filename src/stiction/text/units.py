@@ -368,6 +368,15 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
     return f"{plain} {name}".rstrip()
 
 
+def times(ratio: float, digits: int = 2) -> str:
+    """Return how many times something is another.
+
+    >>> times(163.2), times(0.0341), times(1.2345, 3)
+    ('160 times', '0.034 times', '1.23 times')
+    """
+    return f"{in_words(ratio, '1', digits)} times"
+
+
 def with_error(value: float, error: float, unit: str) -> str:
     """Return a value and its standard error in one unit, to the first digit of the error.
 

@@ -34,7 +34,7 @@ from stiction.arrays import Floats, Indices, xr
 from stiction.errors import ResultError, StictionError
 from stiction.recording.noise import ROUNDING_SPREAD, rounding_error
 from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
+from stiction.text.units import in_words, times
 from stiction.trajectory import Trajectory
 
 T = TypeVar("T")
@@ -319,7 +319,7 @@ def _misalignment(
     if found.worse < -BETTER:
         raise ResultError(
             "not determined: a contact that gives way before it slips (presliding), "
-            f"{found.contact:.2g} times as stiff as the spring, describes this creep better than "
+            f"{times(found.contact)} as stiff as the spring, describes this creep better than "
             "friction that turns"
         )
     if not found.phi_error < KNOWN * abs(found.phi):

@@ -21,6 +21,7 @@ from stiction.analysis.signals.correlated_noise import error_of_few
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.quantity_text import percent
+from stiction.text.units import times
 
 GRID = 400  # angles at which the closed form is tabled
 MODEL = 1e-4  # of the drop: least error of Eq. (7) with the terms below
@@ -220,7 +221,7 @@ def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) 
     """Raise an error with the reason, if the record does not determine the angle."""
     if abs(off) > 2.0 * WIDTHS[0]:
         raise ResultError(
-            f"not determined: the force rises at {1.0 / (1.0 + off):.3g} times stiffness times "
+            f"not determined: the force rises at {times(1.0 / (1.0 + off), 3)} stiffness times "
             "drive velocity as they are stated; measure both again"
         )
     if misfit > WORST:

@@ -18,7 +18,7 @@ from stiction.arrays import xr
 from stiction.friction import states
 from stiction.text.quantity_text import MEASURABLE
 from stiction.text.sections import Section
-from stiction.text.units import in_words, with_error
+from stiction.text.units import in_words, times, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -120,7 +120,7 @@ def _presliding(found: Analysis, its: Misalignment) -> str:
     if its.worse > EXCLUDED:
         return f"{supposed}. Alone it would not creep so; what it adds is not in the errors."
     return (
-        f"{supposed}. One {its.contact:.2g} times as stiff as the spring would creep so without "
+        f"{supposed}. One {times(its.contact)} as stiff as the spring would creep so without "
         "any misalignment; the errors do not include that."
     )
 

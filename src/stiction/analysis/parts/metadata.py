@@ -15,7 +15,7 @@ from stiction.analysis.motion.metadata import (
 from stiction.analysis.parts.wording import number
 from stiction.arrays import xr
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words, with_error
+from stiction.text.units import in_words, times, with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
@@ -91,7 +91,7 @@ def _sentence(each: StatedQuantity) -> str:
             "cannot be found from it."
         )
     name = f"{each.quantity[0].upper()}{each.quantity[1:]}"
-    return f"{name}: by the {each.how} it is {each.ratio:.2g} times what is stated."
+    return f"{name}: by the {each.how} it is {times(each.ratio)} what is stated."
 
 
 def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:

@@ -30,7 +30,7 @@ from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
-from stiction.text.units import in_words, with_error
+from stiction.text.units import in_words, times, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -244,12 +244,12 @@ def _not_its_own(found: Analysis) -> str:
         return ""
     if period < COUPLED:
         return (
-            f" The mass on its spring takes {1.0 / period:.3g} times as long: this is the "
+            f" The mass on its spring takes {times(1.0 / period, 3)} as long: this is the "
             "transverse oscillation, hum, or the load cell's own vibration, unless mass or "
             "stiffness are not as stated."
         )
     return (
-        f" The mass on its spring would do so {period:.3g} times as quickly: friction, load or "
+        f" The mass on its spring would do so {times(period, 3)} as quickly: friction, load or "
         "drive change so."
     )
 

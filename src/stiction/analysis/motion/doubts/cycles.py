@@ -20,7 +20,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import uniform_mean
 from stiction.recording.noise import white_noise
 from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
+from stiction.text.units import in_words, times
 
 QUIET_SHARE = 0.15  # of the record
 # By how much drops of a vibration differ from those of a sine of the same variance, and noise over
@@ -69,7 +69,7 @@ def doubt_cycles_apart(cycles: CycleTable) -> Iterator[str]:
     for at in np.flatnonzero(deep)[:NAMED]:
         yield (
             f"At {in_words(float(peaks[at]), 's')} the force falls by "
-            f"{in_words(float(drop[at]), 'N')}, {drop[at] / np.median(drop):.2g} times the median "
+            f"{in_words(float(drop[at]), 'N')}, {times(drop[at] / np.median(drop))} the median "
             f"of all falls, {in_words(float(np.median(drop)), 'N')}: a knock, or a slip of another "
             "kind. Means over the cycles leave it out."
         )
@@ -77,7 +77,7 @@ def doubt_cycles_apart(cycles: CycleTable) -> Iterator[str]:
     long[1:] &= ~deep[:-1]  # a loading after a deep fall is as long as that is deep
     found = [
         f"from {in_words(float(starts[at]), 's')} on takes {in_words(float(period[at]), 's')}, "
-        f"{period[at] / middle:.2g} times the median, {in_words(middle, 's')}"
+        f"{times(period[at] / middle)} the median, {in_words(middle, 's')}"
         for at in np.flatnonzero(long)[:NAMED]
     ]
     if found:

@@ -37,7 +37,7 @@ from stiction.analysis.record import ACROSS, Record, across_force
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
+from stiction.text.units import in_words, times
 from stiction.trajectory import Trajectory
 
 LARGEST_MU = 3.0
@@ -211,7 +211,7 @@ def _loading(its: Sequence[StatedQuantity]) -> Iterator[str]:
         others = [each for each in its if each.agrees is None and each.part]
         found = [
             f"{each.part} at {in_words(each.found, 'N/s')}, "
-            f"{each.found / good[0].stated:.3g} times that"
+            f"{times(each.found / good[0].stated, 3)} that"
             for each in others
         ]
         if found:
@@ -228,7 +228,7 @@ def _loading(its: Sequence[StatedQuantity]) -> Iterator[str]:
         if each.agrees is False:
             yield (
                 f"{f'{each.part} the'.strip().capitalize()} force rises at "
-                f"{in_words(each.found, 'N/s')}, {each.ratio:.3g} times stiffness times "
+                f"{in_words(each.found, 'N/s')}, {times(each.ratio, 3)} stiffness times "
                 f"drive velocity as stated, {in_words(each.stated, 'N/s')}: {_remedy(each.ratio)}."
             )
 
@@ -251,7 +251,7 @@ def _mass(its: StatedQuantity | None, kind: str) -> Iterator[str]:
     lasts = 2.0 if kind == HARMONIC else 1.0
     yield (
         f"By the {its.how} ({in_words(lasts * pi / its.found**0.5, 's')}), "
-        f"stiffness over mass is {its.ratio:.2g} times {its.stated:.3g} 1/s², as stated: "
+        f"stiffness over mass is {times(its.ratio)} {in_words(its.stated, '1/s²', 3)}, as stated: "
         f"{_remedy_of_mass(its.ratio, kind)}."
     )
 
