@@ -1,11 +1,12 @@
 """Mechanisms told apart: on records that no part has seen, and of laws that no library holds.
 
-``python -m benchmarks.accuracy.mechanisms --library FOLDER``: for two rigs and four sets of
+``python -m benchmarks.accuracy.mechanisms --library FOLDER``: for three rigs and four sets of
 channels, the classifier's balanced accuracy, how often a claim is wrong, how often rotation is
-called so, and what becomes of records by laws in no library: a Stribeck curve with a static peak,
-with and without misalignment; a friction limit that is an ellipse; coefficients that drift. From
-force alone, how many of these a classifier finds that has learned this law too. Records are those
-of `benchmarks.accuracy.fits`. FOLDER holds the simulations, so that a second call only compares.
+called so, and what becomes of records by laws that are not claimed: a Stribeck curve with a static
+peak, with and without misalignment; constant friction with one, misaligned; a friction limit that
+is an ellipse; coefficients that drift. From force alone, how many of these a classifier finds that
+has learned this law too. Records are those of `benchmarks.accuracy.fits`. FOLDER holds the
+simulations, so that a second call only compares.
 """
 
 from __future__ import annotations
@@ -26,9 +27,17 @@ from stiction.inference.columns import bend_features, features_from
 from stiction.inference.features import USED
 from stiction.inference.mechanism import likeness
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
+from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE, surely
-from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
+from stiction.inference.mechanism.rivals import (
+    MISALIGNED_STATIC,
+    Levels,
+    Mechanism,
+    levels,
+    mechanisms,
+)
+from stiction.inference.mechanism.static_check import StaticCheck
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
 from stiction.inference.priors import Prior, Uniform
@@ -126,7 +135,10 @@ def angles(rotation: Plan, count: int, folder: Path | None) -> Floats:
     return np.degrees(rotation.priors["phi"].quantile(shares))
 
 
-def call(classifier: Classifier, references: Sequence[Reference], records: Part) -> Called:
+def call(
+    classifier: Classifier, references: Sequence[Reference], records: Part, check: StaticCheck,
+    names: Sequence[str],
+) -> Called:  # fmt: skip
     """Return what each of some records is called, and whether it may be claimed."""
     probabilities = classifier.probabilities(records.features)
     likeliest = probabilities.argmax(axis=1)
@@ -137,7 +149,11 @@ def call(classifier: Classifier, references: Sequence[Reference], records: Part)
     ]
     sure = surely(probabilities, classifier.probabilities_by_halves(records.features))
     usual = [its.farther >= UNLIKE and its.larger >= BENT for its in found]
-    return Called(likeliest, sure, sure & np.array(usual))
+    claimed = sure & np.array(usual)
+    for place, name in enumerate(names):
+        its = np.nonzero(claimed & (likeliest == place))[0]
+        claimed[its] = check.probability(name, records.features[its]) >= CLAIM
+    return Called(likeliest, sure, claimed)
 
 
 def found_when_known(known: Part, other: Part) -> float:
@@ -159,15 +175,16 @@ def trends(of: Plan, count: int, seed: int) -> Floats:
 
 
 def report(
-    known: Part, unseen: Part, others: Sequence[tuple[str, Part]], phi: Floats,
-    steady: Floats, drifts: Floats,
+    known: Part, checked: Simulations, unseen: Part, others: Sequence[tuple[str, Part]],
+    phi: Floats, steady: Floats, drifts: Floats,
 ) -> None:  # fmt: skip
     """Print what becomes of records that no part has seen, with some channels."""
     start = perf_counter()
     classifier = learn_or_read(known.simulations)
     references = likeness.learn_or_read(known.simulations, classifier.whole.scores, known.bends)
+    check = StaticCheck.of(checked)
     took = perf_counter() - start
-    its, labels = call(classifier, references, unseen), unseen.labels
+    its, labels = call(classifier, references, unseen, check, known.names), unseen.labels
     right = its.likeliest == labels
     recall = [float(right[labels == label].mean()) for label in range(len(known.names))]
     print(
@@ -184,7 +201,7 @@ def report(
         f"{CLAIM} and above {shares[1]:.1%}, claimed {claimed[some].mean():.1%}"
     )
     for name, records in others:
-        found = call(classifier, references, records)
+        found = call(classifier, references, records, check, known.names)
         claimed = found.claimed & (drifts >= TREND) if name == DRIFTING else found.claimed
         counts = np.bincount(found.likeliest[claimed], minlength=len(known.names))
         listed = ", ".join(
@@ -206,9 +223,12 @@ def main() -> None:
         rig, conditions = rig_of(name)
         rivals, strange = mechanisms(rig, [conditions]), [*foreign(rig, conditions)]
         folder = options.library
-        known = simulate(rivals, options.simulations, folder)
-        unseen = simulate(rivals, options.records, folder, seed=1)
+        checked = simulate(rivals, options.simulations, folder)
+        known = checked.among(CLAIMED)
+        tested = simulate(rivals, options.records, folder, seed=1)
+        unseen = tested.among(CLAIMED)
         others = [simulate([each], options.records, folder, seed=2) for each in strange]
+        others.append(tested.among((MISALIGNED_STATIC,)))
         print(
             f"{name}: {len(known.labels)} records to learn from, {len(unseen.labels)} to test on; "
             f"{perf_counter() - start:.0f} s"
@@ -226,8 +246,10 @@ def main() -> None:
             print(f"  {' + '.join(channels)}", flush=True)
             which = features_from(channels, conditions, rig.slider)
             parts = [Part.of(each, which, bend) for each in (known, unseen, *others)]
-            named = [*zip((each.name for each in strange), parts[2:], strict=True)]
-            report(parts[0], parts[1], named, phi, steady, drifts)
+            names = [*(each.name for each in strange), MISALIGNED_STATIC]
+            named = [*zip(names, parts[2:], strict=True)]
+            every = checked._replace(features=checked.features[:, which])
+            report(parts[0], every, parts[1], named, phi, steady, drifts)
             if channels == USED[:1]:
                 for law, part in named:
                     print(f"    {law}: {found_when_known(parts[0], part):.1%} found when known")

@@ -34,7 +34,16 @@ from stiction.inference.mechanism.classifier import (
 from stiction.inference.mechanism.comparison import confusion
 from stiction.inference.mechanism.likeness import CURVES, Likeness
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
-from stiction.inference.mechanism.rivals import RATE_AND_STATE, ROTATION, STATIC, levels, mechanisms
+from stiction.inference.mechanism.rivals import (
+    LUGRE,
+    MISALIGNED_STATIC,
+    RATE_AND_STATE,
+    ROTATION,
+    STATIC,
+    levels,
+    mechanisms,
+)
+from stiction.inference.mechanism.static_check import StaticCheck
 from stiction.inference.observation import observe, steadiness, trend
 from stiction.inference.simulated.jitter import Jitter, laws, move
 from stiction.plotting import plot_mechanism
@@ -451,6 +460,46 @@ def test_trends_are_found_where_there_are_some_and_only_there():
     assert found[1] > 0.9
 
 
+# static friction on the misaligned rig
+
+CROWD = (ROTATION, RATE_AND_STATE, LUGRE, MISALIGNED_STATIC)
+
+
+@pytest.fixture(scope="module")
+def crowd():
+    """Four clouds, each 3 standard deviations from the next in the first of three features."""
+    labels = np.repeat(np.arange(len(CROWD)), 200)
+    features = np.random.default_rng(8).standard_normal((len(labels), 3))
+    features[:, 0] += 3.0 * labels
+    return Simulations(CROWD, features, labels)
+
+
+def test_contacts_with_memory_are_told_from_a_static_peak_on_the_misaligned_rig(crowd, tmp_path):
+    check = StaticCheck.of(crowd, tmp_path / "check.npz")
+    new = np.outer([6.0, 7.5, 9.0], [1.0, 0.0, 0.0])  # LuGre, between, static friction
+    sure, even, none = check.probability(LUGRE, new)
+    assert sure > 0.9
+    assert even == pytest.approx(0.5, abs=0.2)
+    assert none < 0.1
+    assert np.array_equal(check.probability(ROTATION, new), np.ones(3))
+    stored = StaticCheck.of(crowd, tmp_path / "check.npz")
+    assert np.array_equal(stored.probability(LUGRE, new), check.probability(LUGRE, new))
+
+
+def test_without_simulations_of_a_static_peak_nothing_is_told_from_it(crowd):
+    for names in (CROWD[:3], (ROTATION, MISALIGNED_STATIC)):
+        check = StaticCheck.of(crowd.among(names))
+        assert np.array_equal(check.probability(LUGRE, np.zeros((2, 3))), np.ones(2))
+
+
+def test_static_friction_on_the_misaligned_rig_is_simulated_but_not_claimed(rig, rotating, odds):
+    conditions = [observe(rotating, rig.slider).conditions]
+    *_, last = mechanisms(rig, conditions)
+    assert last.name == MISALIGNED_STATIC
+    assert "phi" in last.plans[0].priors
+    assert MISALIGNED_STATIC not in odds.names
+
+
 # what is claimed
 
 USUAL = Likeness(0.5, np.zeros((CURVES, len(EDGES) - 1)), 0.5)
@@ -476,6 +525,7 @@ def test_a_claim_needs_every_part_to_agree():
         ({"likeness": (far, USUAL, USUAL)}, "are less like the others"),
         ({"likeness": (bent, USUAL, USUAL)}, "loading curve is not like"),
         ({"steady": 1e-3}, "Friction drifts"),
+        ({"beside_static": 0.7}, f"Beside {MISALIGNED_STATIC}, which is not claimed"),
     ):
         found = odds_with(**change)
         assert found.decision == UNDECIDED

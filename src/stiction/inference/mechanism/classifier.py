@@ -53,6 +53,24 @@ class Simulations(NamedTuple):
     absent: tuple[str, ...] = ()
     parameters: tuple[Floats, ...] = ()
 
+    def among(self, names: Sequence[str]) -> Self:
+        """Return those of the mechanisms with these names.
+
+        >>> two = Simulations(("a", "b"), np.array([[1.0], [2.0]]), np.array([0, 1]))
+        >>> its = two.among(("b", "c"))
+        >>> its.names, its.features, its.labels
+        (('b',), array([[2.]]), array([0]))
+        """
+        places = [place for place, name in enumerate(self.names) if name in names]
+        rows = np.isin(self.labels, places)
+        return self._replace(
+            names=tuple(self.names[place] for place in places),
+            features=self.features[rows],
+            labels=np.searchsorted(places, self.labels[rows]),
+            absent=tuple(name for name in self.absent if name in names),
+            parameters=tuple(self.parameters[place] for place in places if self.parameters),
+        )
+
 
 def simulate(
     rivals: Sequence[Mechanism],

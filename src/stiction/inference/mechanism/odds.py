@@ -11,7 +11,13 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats, xr
 from stiction.inference.features import MIDDLES
 from stiction.inference.mechanism.likeness import Likeness
-from stiction.inference.mechanism.rivals import LUGRE, RATE_AND_STATE, ROTATION, STATIC
+from stiction.inference.mechanism.rivals import (
+    LUGRE,
+    MISALIGNED_STATIC,
+    RATE_AND_STATE,
+    ROTATION,
+    STATIC,
+)
 from stiction.inference.observation import TREND
 from stiction.inference.posterior import RARE, STATE_DRIFT
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
@@ -67,6 +73,9 @@ class Odds(Report):
         What may explain that the records are unlike simulations, as sentences; may be empty.
     doubt : str
         What else speaks against a claim, found by other means, as a sentence; may be empty.
+    beside_static : float
+        Probability of the likeliest mechanism, if it is rate and state or LuGre, as told from
+        static friction on the misaligned rig, which is never claimed; else 1.
     """
 
     names: tuple[str, ...]
@@ -81,6 +90,7 @@ class Odds(Report):
     channels: tuple[str, ...]
     explanation: str = field(default="", compare=False)
     doubt: str = field(default="", compare=False)
+    beside_static: float = 1.0
 
     @property
     def needed(self) -> float:
@@ -124,6 +134,11 @@ class Odds(Report):
             found.append(
                 f"By each half of the simulations, {name} has a probability of {halves}; a claim "
                 f"needs {BY_HALF} by both: simulate more."
+            )
+        if self.beside_static < CLAIM:
+            found.append(
+                f"Beside {MISALIGNED_STATIC}, which is not claimed but may look the same, {name} "
+                f"has a probability of {near_one(self.beside_static)}; a claim needs {CLAIM}."
             )
         if its.farther < UNLIKE:
             found.append(
@@ -195,13 +210,15 @@ class Odds(Report):
             )
         if self.decision == ROTATION:
             found.append(
-                "Not excluded: a static coefficient of its own beside the rotation, which was not "
-                "simulated; where it is small it does not show."
+                "Not excluded: a static coefficient of its own beside the rotation, or in place of "
+                "friction that weakens with speed. Rotation was not compared with it; often it "
+                "does not show."
             )
         if self.decision in (LUGRE, RATE_AND_STATE):
             found.append(
-                "Not excluded: a Stribeck curve with a static peak on a misaligned rig, which is "
-                f"not among the mechanisms compared and may pass for {self.decision}."
+                "Not excluded: friction that weakens with speed below a static peak on a "
+                "misaligned rig. Constant friction below one was compared, and is less probable; "
+                f"but with a Stribeck curve it may pass for {self.decision}."
             )
         if self.decision == STATIC and RATE_AND_STATE in self.names:
             found.append(

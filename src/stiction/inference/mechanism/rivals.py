@@ -7,6 +7,9 @@
   aligned or not;
 - LuGre: bristles that bend and slip, aligned.
 
+And one that is never claimed: static friction on the rig as it is misaligned. Where it does not
+show, it passes for rotation; a claim of rate and state or of LuGre has to hold beside it.
+
 Every mechanism has the apparatus of the description and its priors. Coefficients of another law
 have the range of those that the description's law has at rest and in rapid slip; its other
 parameters follow from the scales of the rig, over one or two decades (docs/how-to/mechanism.md).
@@ -36,6 +39,7 @@ ROTATION = "rotation of the friction vector"
 STATIC = "static friction in one dimension"
 RATE_AND_STATE = "rate and state"
 LUGRE = "LuGre"
+MISALIGNED_STATIC = "static friction on the misaligned rig"
 
 DRAWN = 400  # of the description's law, for the range of its coefficients
 WIDER = 0.1  # by which the range is widened on either side: another law, other coefficients
@@ -67,7 +71,10 @@ class Levels(NamedTuple):
 
 
 def mechanisms(rig: Rig, conditions: Sequence[Conditions]) -> tuple[Mechanism, ...]:
-    """Return the mechanisms that are compared for records under these conditions."""
+    """Return the mechanisms that are compared for records under these conditions.
+
+    The last one, `MISALIGNED_STATIC`, is never claimed.
+    """
     slider, level = rig.slider, levels(rig)
     rotation = plan_for(rig, conditions)  # that of a fit, whose simulations are shared
     own, turned = split(rotation.priors)
@@ -99,6 +106,7 @@ def mechanisms(rig: Rig, conditions: Sequence[Conditions]) -> tuple[Mechanism, .
             ),
         ),
         Mechanism(LUGRE, (with_law(straight, LuGre, aligned),)),
+        Mechanism(MISALIGNED_STATIC, (with_law(slider, Coulomb, turned),)),
     )
 
 
