@@ -36,10 +36,10 @@ class Misalignment(NamedTuple):
     Under a measured load that varies F_0 is that at the record's `normal_load`.
     `stiffness` (N/m) is the fitted one, if any; `misfit` is the typical relative deviation of the
     creep from Eq. (7) beyond two standard errors, `scatter` the root mean square of all deviations
-    in standard errors. `weakening` is -V F'(0)/F_0, the mean of those under which the creep is as
-    likely as it was seen: phi, F_0 and their errors are over all of them. `contact` is how many
-    times as stiff as the spring a contact would be that creeps so by presliding alone, and `worse`
-    by how much the sum of squares, in standard errors, is larger then.
+    in standard errors. `weakening` is -V F'(0)/F_0, the median of those under which the creep is as
+    likely as it was seen, as phi and F_0 are; the errors of these are over all of them. `contact`
+    is how many times as stiff as the spring a contact would be that creeps so by presliding alone,
+    and `worse` by how much the sum of squares, in standard errors, is larger then.
     """
 
     phi: float
@@ -253,7 +253,7 @@ def _over_weakenings(
         float(F_0_error) * peak,
         misfit=float(np.median(np.maximum(off - SURE * used.error, 0.0) / size)),
         scatter=float(np.sqrt(np.mean((off / used.error) ** 2))),
-        weakening=float(likely @ list(weakenings)),
+        weakening=_median(np.array(list(weakenings)), likely),
     )
     return middle_of_all, best
 

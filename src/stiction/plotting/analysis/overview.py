@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from stiction.analysis.creep.curve import mean_creep
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.misalignment import REST_SPEED, STRETCH, implied_velocity
-from stiction.analysis.creep.normal_load import typical_load
+from stiction.analysis.creep.normal_load import at_one_load, typical_load
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
 from stiction.arrays import Floats
@@ -70,17 +71,19 @@ def _creep_lines(found: Analysis, V: float) -> dict[str, Line]:
     run = found.source if isinstance(found.source, Trajectory) else None
     across = found.record.stiffness_across if run is None else run.slider.k_y
     stiffness = fit.stiffness if isfinite(fit.stiffness) else stiffness
-    load = typical_load(found.record, found.curves["slip_time"].values)
-    l_x, ratio = fit.F_0 * load / stiffness, stiffness / (across or inf)
-    middle, force = 0.5 * (mean["begin"] + mean["end"]).values, mean["force"].values / load
+    ratio, loading_time = stiffness / (across or inf), fit.F_0 / stiffness / V
+    if found.record.load is not None:  # F_0 is that at one load
+        mean = mean_creep(at_one_load(found.curves, found.record))
+    middle, force = 0.5 * (mean["begin"] + mean["end"]).values, mean["force"].values
 
     def fitted(to_slip: Floats) -> Floats:
-        far = np.where(to_slip < STRETCH[0] * l_x / V, np.nan, to_slip)
+        far = np.where(to_slip < STRETCH[0] * loading_time, np.nan, to_slip)
         return V * implied_velocity(fit, np.interp(far, middle, force), ratio)
 
-    near = creep_theory(V, fit.phi, l_x, _loading(found))
+    load = typical_load(found.record, found.curves["slip_time"].values)
     name = "Eq. (8), corrected"
-    return {"Eq. (7), fitted": fitted, f"{name}, at fitted φ, F₀": near[name]}
+    near = creep_theory(V, fit.phi, fit.F_0 * load / stiffness, _loading(found))[name]
+    return {"Eq. (7), fitted": fitted, f"{name}, at fitted φ, F₀": near}
 
 
 def _loading(found: Analysis) -> float | None:

@@ -13,7 +13,12 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.creep.curve import between_rests, bin_edges
 from stiction.analysis.creep.findings import BETTER, MISSED
-from stiction.analysis.creep.misalignment import SLIDING, WEAKENINGS, turning_creep
+from stiction.analysis.creep.misalignment import (
+    SLIDING,
+    WEAKENINGS,
+    implied_velocity,
+    turning_creep,
+)
 from stiction.analysis.parts import creep as creep_part
 from stiction.analysis.parts.creep import EXCLUDED
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
@@ -645,3 +650,44 @@ def test_the_fitted_line_goes_through_the_creep_that_was_fitted():
     assert seen.sum() > 10
     off = np.interp(middle[seen], at, drawn) * V - found.creep["velocity"].values[seen]
     assert np.abs(off / found.creep["velocity"].values[seen]).max() < 0.05
+
+
+def test_the_fitted_line_reaches_all_that_was_fitted():
+    """With the mean of the likely weakenings, beside medians of phi and F_0, it ended halfway."""
+    run = st.simulate(st.presets.nakano_popov_2020(), "12 s", sample_rate="1 kHz")
+    time, force, place = (run.data[name].values for name in ("time", "spring_x", "X"))
+    noise = np.random.default_rng(0).standard_normal((2, len(time)))
+    record = st.Record(
+        time=time,
+        force=force + 1e-4 * np.ptp(force) * noise[0],
+        position=place + 1e-4 * np.ptp(place) * noise[1],
+        stiffness=K,
+        drive_velocity=V,
+    )
+    found = st.analyse(record)
+    middle = 0.5 * (found.creep["begin"] + found.creep["end"]).values
+    fitted = middle > 0.06 * L_X / V
+    drawn = implied_velocity(found.misalignment, found.creep["force"].values[fitted])
+    assert np.isfinite(drawn).all()
+    creeps, error = (
+        found.creep[name].values[fitted] / V for name in ("velocity", "velocity_error")
+    )
+    assert np.sqrt(np.mean(((drawn - creeps) / error) ** 2)) < 2.0
+
+
+def test_the_fitted_line_is_at_the_load_that_varies():
+    """The load doubles: with the forces as read the line was at 0.7 of the creep."""
+    load = st.protocols.LoadProgram(program=[st.protocols.Ramp("20 N", "6 s")])
+    slider = st.presets.nakano_popov_2020().replace(load=load)
+    found = st.analyse(st.simulate(slider, "6 s", sample_rate="4 kHz"))
+    assert found.misalignment is not None
+    line = next(
+        each
+        for each in figures(found)["creep"].axes[0].get_lines()
+        if each.get_label() == "Eq. (7), fitted"
+    )
+    at, drawn = (values[np.isfinite(line.get_ydata())] for values in line.get_data())
+    middle = 0.5 * (found.creep["begin"] + found.creep["end"]).values
+    seen = (middle > at.min()) & (middle < at.max())
+    creeps = found.creep["velocity"].values[seen] / V
+    assert np.median(np.abs(np.interp(middle[seen], at, drawn) / creeps - 1.0)) < 0.05
