@@ -209,8 +209,7 @@ def _with_base(mean: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
     if record.position is not None or not stated.stiffness or not record.stiffness:
         return mean
     base = (record.drive_velocity or 0.0) * abs(1.0 - record.stiffness / stated.stiffness)
-    error = mean["velocity_error"]
-    return mean.assign(velocity_error=error.copy(data=np.hypot(np.nan_to_num(error), base)))
+    return _with_error(mean, base)
 
 
 def _with_rounding(mean: xr.Dataset, record: Record, cycles: xr.Dataset) -> xr.Dataset:
@@ -229,9 +228,7 @@ def _with_rounding(mean: xr.Dataset, record: Record, cycles: xr.Dataset) -> xr.D
     loading = record.drive_velocity - mean["velocity"].values
     passed = 0.5 * np.abs(loading) * lasts * record.stiffness / step
     place = rounding_error(record.force, step) * alike / record.stiffness
-    rounding = 8.0**0.5 * place / lasts / np.maximum(passed, 1.0)
-    error = mean["velocity_error"]
-    return mean.assign(velocity_error=error.copy(data=np.hypot(np.nan_to_num(error), rounding)))
+    return _with_error(mean, 8.0**0.5 * place / lasts / np.maximum(passed, 1.0))
 
 
 def _with_slip_time(mean: xr.Dataset, record: Record) -> xr.Dataset:
@@ -244,10 +241,15 @@ def _with_slip_time(mean: xr.Dataset, record: Record) -> xr.Dataset:
     if V is None:
         return mean
     lasts = float(mean["begin"][0] - mean["end"][0])
-    error = mean["velocity_error"].values.copy()
-    unsure = ROUNDING_SPREAD * abs(V - velocity) / record.sample_rate / lasts
-    error[0] = np.hypot(np.nan_to_num(error[0]), unsure)
-    return mean.assign(velocity_error=mean["velocity_error"].copy(data=error))
+    unsure = np.zeros(mean.sizes["bin"])
+    unsure[0] = ROUNDING_SPREAD * abs(V - velocity) / record.sample_rate / lasts
+    return _with_error(mean, unsure)
+
+
+def _with_error(mean: xr.Dataset, other: Floats | float) -> xr.Dataset:
+    """Return mean creep whose error has another one (m/s) beside its own."""
+    own = mean["velocity_error"]
+    return mean.assign(velocity_error=own.copy(data=np.hypot(np.nan_to_num(own), other)))
 
 
 def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
