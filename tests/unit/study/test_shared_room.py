@@ -3,7 +3,8 @@
 import numpy as np
 
 import stiction as st
-from stiction.study.execution.sweep import SharedRoom
+from stiction.study.execution.sweep import SharedRoom, run_one
+from stiction.study.store.kept import stored_variables
 from stiction.study.variables.measures import MEASURES, TRACES
 from stiction.study.variables.observed_run import ObservedRun, observe_run
 
@@ -22,3 +23,22 @@ def test_runs_in_shared_memory_are_what_they_are_by_themselves():
         np.testing.assert_array_equal(numbers(shared), numbers(alone))
         counts.append(len(alone.solution.samples))
     assert counts[1] < counts[0] < counts[2]  # fewer, more than there was room for, fewer
+
+
+def test_a_block_keeps_what_its_runs_were(tmp_path):
+    """Whatever a later run writes over their samples."""
+    settings = st.Settings(duration="0.3 s")
+    base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), settings)
+    angles = {"phi": st.Grid("1 deg", "9 deg", 60)}
+    study = st.Study(base=base, axes=angles, traces=[*TRACES], trace_samples=20)
+    st.sweep(study, tmp_path / "a.zarr")
+    found, wanted = st.open_study(tmp_path / "a.zarr"), stored_variables(study)
+    assert study.layout.block[0] > 1
+    for place in range(60):
+        for its, value in zip(wanted, run_one(study, wanted, (place,), never).values, strict=True):
+            np.testing.assert_array_equal(found[its.name].values[place], value)
+
+
+def never() -> bool:
+    """Return that a run is wanted until its end."""
+    return False

@@ -5,6 +5,9 @@ import pytest
 from tests.drawn import inside
 
 import stiction as st
+from stiction.analysis.motion.changes import sizes
+from stiction.analysis.motion.changes.cycles import FEW_CYCLES
+from stiction.analysis.signals.turning_points import FEWEST_PER_CYCLE, turning_points
 
 STIFFNESS, SPEED, RATE = 1e3, 1e-3, 250.0  # N/m, m/s, Hz
 
@@ -84,3 +87,58 @@ def test_a_build_up_is_not_a_part():
     force = 2.0 + np.interp(time, 0.25 * np.arange(len(corners)), corners)
     cycles = st.analysis.find_cycles(st.Record(time=time, force=force))
     assert cycles["drop"].min() > 0.5 * cycles["drop"].median()
+
+
+def cycles_of(time, force):
+    return sizes.find_corners(time, force, turning_points(force))
+
+
+def test_the_nearest_periods_tell_a_ripple():
+    """Far away, where the mass slides, there is one; next to the smaller slips there is none."""
+    time, force = stick_slip([5.0, 0.5], [60, 40])
+    smaller = cycles_of(time[time > 62.0], force[time > 62.0])
+    period = np.median(smaller.period)
+    count = int(3.0 * sizes.ENOUGH * period * RATE)
+    quiet = np.full(count, 1.5)
+    ripple = 1.5 + 0.5 * np.median(smaller.drop) * np.sin(2.0 * np.pi * np.arange(count) / 25.0)
+    force = np.concatenate([force, quiet, ripple])
+    time = np.arange(len(force)) / RATE
+    its = sizes.Larger(time, force, cycles_of(*stick_slip([5.0], [60])), [])
+    edges = time[-2 * count], time[-count], time[-1]
+    parts = [edges[:2], edges[1:]]
+    assert not sizes._is_ripple(smaller, its, parts)
+    assert sizes._is_ripple(smaller, its, parts[::-1])
+
+
+def test_the_nearest_parts_are_looked_at_first(monkeypatch):
+    time, force = stick_slip([5.0, 0.5, 5.0], [30, 30, 30])
+    begin, end = time[force > 2.3][[0, -1]]
+    middle = 0.5 * (begin + end)
+    larger = cycles_of(*stick_slip([5.0], [30]))
+    parts = [(0.0, 5.0), (5.0, middle - 9.0), (middle + 9.0, end - 5.0), (end - 5.0, end)]
+    asked = []
+
+    def note(cycles, its, parts):
+        asked.extend(parts)
+        return True
+
+    monkeypatch.setattr(sizes, "_is_ripple", note)
+    its = sizes.Larger(time, force, larger, parts)
+    small = time[(force < 0.4) & (time > 5.0) & (time < end)][[0, -1]]
+    assert sizes._smaller_cycles(its, *small) is None
+    away = [max(part[0] - small[1], small[0] - part[1]) for part in asked]
+    assert len(away) == len(parts)
+    assert away == sorted(away)
+
+
+def test_a_stretch_too_short_for_a_few_cycles_is_not_searched(monkeypatch):
+    """46 000 were, in a record of 4 million readings, by which nothing could be found."""
+    time, force = stick_slip([5.0, 0.5, 5.0], [30, 30, 30])
+    larger, asked = cycles_of(time, force), []
+    monkeypatch.setattr(sizes, "turning_points", lambda part: asked.append(len(part)))
+    monkeypatch.setattr(sizes, "find_corners", lambda *_: larger)
+    its = sizes.Larger(time, force, larger, [])
+    least = FEW_CYCLES * FEWEST_PER_CYCLE
+    for length in (least - 1, least):
+        sizes._smaller_cycles(its, time[100], time[100 + length])
+    assert asked == [least]

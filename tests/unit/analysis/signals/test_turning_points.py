@@ -481,3 +481,13 @@ def test_turning_points_stay_in_the_order_of_time():
             assert np.diff(found.time).min() > 0.0
             seen += 1
     assert seen > 30
+
+
+def test_a_top_that_is_put_back_may_change_places_with_the_next_one():
+    """The first two are put where they are sampled, and then the third one, too."""
+    rows = np.array([2, 4, 6]), np.array([True, False, True]), np.arange(9.0)
+    points = turning_points.TurningPoints(*rows, width=1, noise=0.0, clearness=1.0)
+    found = peak_refinement.Vertices(np.array([3.45, 3.4, 3.5]), np.full(3, 7.0))
+    ordered = peak_refinement._in_order(np.arange(9.0), points, found)
+    np.testing.assert_array_equal(ordered.time, [2.0, 4.0, 6.0])
+    np.testing.assert_array_equal(ordered.value, [2.0, 4.0, 6.0])
