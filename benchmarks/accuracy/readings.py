@@ -24,13 +24,13 @@ import stiction as st
 from benchmarks.accuracy.fits import RIGS, compare, report, rig_of
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.signals.hum import without_bands
+from stiction.analysis.signals.robust import block_means
 from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.features import features
 from stiction.inference.learning.calibration import learn_or_read
 from stiction.inference.observation import (
     Conditions,
     Noise,
-    block_means,
     grid_of,
     noise_of,
     readings_to_simulate,

@@ -15,6 +15,7 @@ from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.even_grid import MOST_MISSING, EvenGrid, even_grid
 from stiction.analysis.signals.hum import Band, lines_like, without_bands
+from stiction.analysis.signals.robust import block_means
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
@@ -392,13 +393,6 @@ def with_lasting_noise(
         return noise
     level, lasting = round_up(found.white), round_up(found.deviation)
     return noise._replace(level=level, lasting=lasting, lasts=near(found.time * step))
-
-
-def block_means(values: Floats, block: int) -> Floats:
-    """Return the means of blocks of samples, the last incomplete one left out."""
-    whole = len(values) // block * block
-    means: Floats = values[:whole].reshape(-1, block).mean(axis=1)
-    return means
 
 
 def near(value: float) -> float:

@@ -8,12 +8,12 @@ import stiction as st
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Band, without_bands
+from stiction.analysis.signals.robust import block_means
 from stiction.errors import ResultError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.observation import (
     Conditions,
     Noise,
-    block_means,
     noise_of_means,
     observe,
     with_lasting_noise,

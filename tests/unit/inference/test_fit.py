@@ -10,6 +10,7 @@ import xarray as xr
 from tests.uncertain import SIMULATIONS, TEXT, record_of
 
 import stiction as st
+from stiction.analysis.signals.robust import block_means
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features, of_trend
@@ -17,7 +18,6 @@ from stiction.inference.fit import check, plan_for
 from stiction.inference.observation import (
     Noise,
     Trend,
-    block_means,
     near,
     observe,
     observe_all,

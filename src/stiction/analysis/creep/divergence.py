@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.least_squares import fit_parameters, used_bins
+from stiction.analysis.creep.least_squares import best_fit, used_bins
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 
@@ -106,7 +106,7 @@ def fit_divergence(
     low, high = stretch[0] * loading_time, stretch[1] * loading_time
     velocity, error, _, begin, end = used_bins(curve, low, high)
 
-    def mean(_: Floats, amplitude: float, exponent: float, lag: float) -> Floats:
+    def mean(amplitude: float, exponent: float, lag: float) -> Floats:
         early, late = (1.0 - (T + lag) / loading_time for T in (begin, end))
         rest = 1.0 - exponent or 1e-12  # at n = 1 the integral is a logarithm, its limit
         powers = [np.maximum((1.0 - tau) * (1.0 + tau), 1e-12) ** rest for tau in (early, late)]
@@ -120,18 +120,14 @@ def fit_divergence(
     if lag is None:
         bounds = ((*low_n, -0.9 * float(end.min())), (*high_n, loading_time))
         more = *sizes, LAG * loading_time
-        fit = fit_parameters(mean, begin, velocity, error, (*start, 0.0), bounds, more)
+        fit = best_fit(mean, velocity, error, [(*start, 0.0)], bounds, more)
         found, errors = fit.values, fit.errors
     else:
-        fit = fit_parameters(
-            lambda at, a, n: mean(at, a, n, lag),
-            begin,
-            velocity,
-            error,
-            start,
-            (low_n, high_n),
-            sizes,
-        )
+
+        def with_lag(amplitude: float, exponent: float) -> Floats:
+            return mean(amplitude, exponent, lag)
+
+        fit = best_fit(with_lag, velocity, error, [start], (low_n, high_n), sizes)
         found, errors = (*fit.values, lag), (*fit.errors, 0.0)
     (a, n, late), (a_error, n_error, late_error) = found, errors
     if not low_n[1] + EDGE < n < high_n[1] - EDGE:

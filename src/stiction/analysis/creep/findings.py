@@ -235,10 +235,10 @@ def _with_slip_time(mean: xr.Dataset, record: Record) -> xr.Dataset:
     """Return mean creep whose error next to the slip has that of when the mass slips.
 
     That is known to a sample, for all phases alike. With a part of it more, or less, the last bin
-    has more or less of a motion that goes as fast as the drive.
+    has more or less of a motion that goes as fast as the drive. A bin before it has not.
     """
     V, velocity = record.drive_velocity, float(mean["velocity"][0])
-    if V is None:
+    if V is None or mean["end"][0] > 0.0:
         return mean
     lasts = float(mean["begin"][0] - mean["end"][0])
     unsure = np.zeros(mean.sizes["bin"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import NamedTuple
 from warnings import catch_warnings, simplefilter
 
@@ -50,35 +50,52 @@ class CreepFit(NamedTuple):
         return tuple(np.sqrt(np.diag(self.covariance)).tolist())
 
 
-def fit_parameters(
+def best_fit(
     model: Callable[..., Floats],
-    at: Floats,
     values: Floats,
     errors: Floats,
-    start: tuple[float, ...],
+    starts: Iterable[tuple[float, ...]],
     bounds: tuple[tuple[float, ...], tuple[float, ...]],
     sizes: tuple[float, ...],
 ) -> CreepFit:
-    """Return the parameters of the best fit.
+    """Return the best of the fits of a model of some parameters from several starts.
 
     Parameters are varied in units of their `sizes`: the optimiser's steps have no unit.
 
     Raises
     ------
     ResultError
-        If the fit does not converge.
+        If a fit does not converge.
     """
-    from scipy.optimize import OptimizeWarning, curve_fit
 
-    def scaled(at: Floats, *shares: float) -> Floats:
-        return model(at, *np.multiply(shares, sizes))
+    def fit_from(start: tuple[float, ...]) -> CreepFit:
+        found, covariance = _minimise(model, values, errors, start, bounds, sizes)
+        missed = (values - model(*found * sizes)) / errors
+        chi_square = float(np.sum(missed**2))
+        excess = max(1.0, chi_square / (len(values) - len(found)))
+        best = tuple((found * sizes).tolist())
+        return CreepFit(best, covariance * excess * np.outer(sizes, sizes), chi_square, excess)
+
+    return min((fit_from(start) for start in starts), key=lambda fit: fit.chi_square)
+
+
+def _minimise(
+    model: Callable[..., Floats],
+    values: Floats,
+    errors: Floats,
+    start: tuple[float, ...],
+    bounds: tuple[tuple[float, ...], tuple[float, ...]],
+    sizes: tuple[float, ...],
+) -> tuple[Floats, Floats]:
+    """Return the parameters of the best fit over their sizes, and their covariance."""
+    from scipy.optimize import OptimizeWarning, curve_fit
 
     try:
         with catch_warnings():
             simplefilter("ignore", OptimizeWarning)  # then the standard errors are infinite
             found, covariance = curve_fit(  # type: ignore[no-untyped-call]
-                scaled,
-                at,
+                lambda _, *shares: model(*np.multiply(shares, sizes)),
+                values,
                 values,
                 np.divide(start, sizes),
                 sigma=errors,
@@ -88,8 +105,4 @@ def fit_parameters(
             )
     except RuntimeError:
         raise ResultError("the creep curve does not have the shape that is fitted") from None
-    missed = (values - scaled(at, *found)) / errors
-    chi_square = float(np.sum(missed**2))
-    excess = max(1.0, chi_square / (len(values) - len(found)))
-    best = tuple((found * sizes).tolist())
-    return CreepFit(best, covariance * excess * np.outer(sizes, sizes), chi_square, excess)
+    return found, covariance

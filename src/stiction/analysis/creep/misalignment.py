@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.creep.curve import Bins
-from stiction.analysis.creep.least_squares import THEORY, fit_parameters, used_bins
+from stiction.analysis.creep.least_squares import THEORY, best_fit, used_bins
 from stiction.analysis.creep.presliding import fit_presliding
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
@@ -202,19 +202,14 @@ def _fit(
 
     # below zero Eq. (7) creeps against the drive; with two springs it has its mirror image above
     low, high = (-1.5 if ratio == 0.0 else 0.0, 1e-6, -OFF), (1.5, 10.0, OFF)
-    fits = [
-        fit_parameters(
-            lambda _, *at: np.append(velocity(*at), at[2]),
-            used.force,
-            np.append(used.velocity, 0.0),
-            np.append(used.error, THEORY),
-            tuple(np.clip((*start, 0.0), low, high).tolist()),
-            (low, high),
-            SIZES,
-        )
-        for start in starts
-    ]
-    best = min(fits, key=lambda fit: fit.chi_square)
+    best = best_fit(
+        lambda *known: np.append(velocity(*known), known[-1]),
+        np.append(used.velocity, 0.0),
+        np.append(used.error, THEORY),
+        (tuple(np.clip((*start, 0.0), low, high).tolist()) for start in starts),
+        (low, high),
+        SIZES,
+    )
     phi, excess, off = best.values
     known = np.array([phi, F_0(phi, excess)])
     moved = [[phi + SIZES[2], F_0(phi + SIZES[2], excess)], [phi, F_0(phi, excess + SIZES[2])]]

@@ -34,9 +34,7 @@ def load_change(record: Record, begin: Floats, end: Floats) -> float:
     `begin` and `end` (s) are those of the phases. Readings without load count as neighbours do; 0
     where the load's noise may be all of its variation.
     """
-    load = record.relative_load()
-    loaded = np.isfinite(load)
-    time, load = record.time[loaded], load[loaded]
+    time, load = _load_readings(record)
     if len(time) < 2 or not record.load_variation() > 0.0:
         return 0.0
     steps = np.diff(time) * 0.5 * (load[1:] + load[:-1])
@@ -48,8 +46,18 @@ def load_change(record: Record, begin: Floats, end: Floats) -> float:
 
 
 def typical_load(record: Record, times: Floats) -> float:
-    """Return the median of the load over `normal_load` at some times (s)."""
-    return float(np.median(np.interp(times, record.time, record.relative_load())))
+    """Return the median of the load over `normal_load` at some times (s).
+
+    Readings without load count as neighbours do.
+    """
+    return float(np.median(np.interp(times, *_load_readings(record))))
+
+
+def _load_readings(record: Record) -> tuple[Floats, Floats]:
+    """Return the times (s) at which there is a load, and that over `normal_load`."""
+    load = record.relative_load()
+    its = np.isfinite(load)
+    return record.time[its], load[its]
 
 
 def refuse_change(change: float, most: float, why: str) -> None:

@@ -7,7 +7,7 @@ from math import exp
 import numpy as np
 
 from stiction.analysis.creep.curve import Bins
-from stiction.analysis.creep.least_squares import THEORY, CreepFit, fit_parameters
+from stiction.analysis.creep.least_squares import THEORY, CreepFit, best_fit
 from stiction.arrays import Floats
 
 STARTS = ((3.0, 0.005), (3.0, 0.05), (6.0, 0.005), (6.0, 0.05))  # ln stiffness, excess of F_0
@@ -25,13 +25,9 @@ def fit_presliding(used: Bins) -> CreepFit:
     """
     largest = float(used.force.max())
 
-    def model(_: Floats, log_ratio: float, excess: float, off: float) -> Floats:
+    def model(log_ratio: float, excess: float, off: float) -> Floats:
         left = 1.0 - used.force / (largest + excess)
         return np.append((1.0 + off) / (1.0 + exp(log_ratio) * left), off)
 
     values, errors = np.append(used.velocity, 0.0), np.append(used.error, THEORY)
-    fits = (
-        fit_parameters(model, used.force, values, errors, (*start, 0.0), (LOW, HIGH), SIZES)
-        for start in STARTS
-    )
-    return min(fits, key=lambda fit: fit.chi_square)
+    return best_fit(model, values, errors, [(*start, 0.0) for start in STARTS], (LOW, HIGH), SIZES)

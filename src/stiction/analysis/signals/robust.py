@@ -77,6 +77,13 @@ def part_means(values: Floats, parts: int) -> Floats:
     return np.asarray(np.add.reduceat(values, starts) / np.diff(starts, append=len(values)))
 
 
+def block_means(values: Floats, block: int) -> Floats:
+    """Return the means of blocks of samples, the last incomplete one left out."""
+    whole = len(values) // block * block
+    means: Floats = values[:whole].reshape(-1, block).mean(axis=1)
+    return means
+
+
 def uniform_mean(values: Floats, length: int) -> Floats:
     """Return the running mean over `length` values."""
     from scipy.ndimage import uniform_filter1d  # type: ignore[attr-defined]

@@ -10,9 +10,10 @@ import numpy as np
 
 from stiction.analysis.record import cell_axis
 from stiction.analysis.signals.hum import without_bands
+from stiction.analysis.signals.robust import block_means
 from stiction.arrays import Floats
 from stiction.inference.cycles import Cycles, slip_cycles
-from stiction.inference.observation import MOST_PLACES, Conditions, block_means
+from stiction.inference.observation import MOST_PLACES, Conditions
 from stiction.inference.simulated.jitter import SPARE, Jitter, SampledMotion, first_loading, move
 from stiction.inference.simulated.plan import Plan
 from stiction.recording.coloured_noise import draw_lasting

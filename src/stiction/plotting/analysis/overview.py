@@ -72,15 +72,16 @@ def _creep_lines(found: Analysis, V: float) -> dict[str, Line]:
     across = found.record.stiffness_across if run is None else run.slider.k_y
     stiffness = fit.stiffness if isfinite(fit.stiffness) else stiffness
     ratio, loading_time = stiffness / (across or inf), fit.F_0 / stiffness / V
-    if found.record.load is not None:  # F_0 is that at one load
-        mean = mean_creep(at_one_load(found.curves, found.record))
-    middle, force = 0.5 * (mean["begin"] + mean["end"]).values, mean["force"].values
+    load = typical_load(found.record, found.curves["slip_time"].values)
+    force = mean["force"].values / load  # F_0 is that at one load
+    if found.record.load is not None and found.record.position is not None:
+        force = mean_creep(at_one_load(found.curves, found.record))["force"].values
+    middle = 0.5 * (mean["begin"] + mean["end"]).values
 
     def fitted(to_slip: Floats) -> Floats:
         far = np.where(to_slip < STRETCH[0] * loading_time, np.nan, to_slip)
         return V * implied_velocity(fit, np.interp(far, middle, force), ratio)
 
-    load = typical_load(found.record, found.curves["slip_time"].values)
     name = "Eq. (8), corrected"
     near = creep_theory(V, fit.phi, fit.F_0 * load / stiffness, _loading(found))[name]
     return {"Eq. (7), fitted": fitted, f"{name}, at fitted φ, F₀": near}

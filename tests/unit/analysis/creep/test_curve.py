@@ -1,7 +1,7 @@
 """Creep curves against Eq. (7), from runs and from noisy records."""
 
 import re
-from math import radians
+from math import isnan, radians
 
 import numpy as np
 import pytest
@@ -12,7 +12,7 @@ from tests.parts import creep_of
 import stiction as st
 from stiction import theory
 from stiction.analysis.creep.curve import between_rests, bin_edges
-from stiction.analysis.creep.findings import BETTER, MISSED
+from stiction.analysis.creep.findings import BETTER, MISSED, _with_slip_time
 from stiction.analysis.creep.misalignment import (
     SLIDING,
     WEAKENINGS,
@@ -21,9 +21,10 @@ from stiction.analysis.creep.misalignment import (
 )
 from stiction.analysis.parts import creep as creep_part
 from stiction.analysis.parts.creep import EXCLUDED
+from stiction.analysis.record import record_of
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
-from stiction.plotting.analysis.overview import figures
+from stiction.plotting.analysis.overview import _creep_lines, figures
 from stiction.plotting.page.canvas import figure_of
 
 V, K, F_0 = 1e-3, 1e3, 2.0
@@ -679,10 +680,45 @@ def test_the_fitted_line_reaches_all_that_was_fitted():
     assert np.sqrt(np.mean(((drawn - creeps) / error) ** 2)) < 2.0
 
 
-def test_the_fitted_line_is_at_the_load_that_varies():
-    """The load doubles: with the forces as read the line was at 0.7 of the creep."""
+@pytest.mark.parametrize(("known", "most"), [(("run",), 0.02), (("position",), 0.02), ((), 0.15)])
+def test_the_fitted_line_is_at_the_load_that_varies(known, most):
+    """The load doubles: with the forces as read the line was at 0.7 of the creep.
+
+    Without a position, creep is known to the stiffness that the loading shows.
+    """
     load = st.protocols.LoadProgram(program=[st.protocols.Ramp("20 N", "6 s")])
     slider = st.presets.nakano_popov_2020().replace(load=load)
-    found = st.analyse(st.simulate(slider, "6 s", sample_rate="4 kHz"))
+    source = run = st.simulate(slider, "6 s", sample_rate="2 kHz")
+    if "run" not in known:
+        sensors = {"force": st.Sensor(noise="0.2 mN"), "load": st.Sensor(noise="1 mN")}
+        sensors |= {name: st.Sensor(noise="2 nm", unit="m") for name in known}
+        source = st.measure(run, sensors)
+    found = st.analyse(source)
     assert found.misalignment is not None
-    assert np.median(np.abs(fitted_line_over_creep(found) - 1.0)) < 0.05
+    assert np.median(np.abs(fitted_line_over_creep(found) - 1.0)) < most
+
+
+def test_the_fitted_line_knows_the_spring_across():
+    """Its share in Eq. (7) is k_x/k_y: here the fit's stiffness over that of the record."""
+    run = st.simulate(st.presets.nakano_popov_2020(), "8 s", sample_rate="4 kHz")
+    found = st.analyse(st.measure(run, {"force": st.Sensor(), "position": st.Sensor(unit="m")}))
+    stiffness = found.misalignment.stiffness
+    assert isnan(stiffness)  # the mass is seen to move, so that it is that of the record
+    softer = found.record.model_copy(update={"stiffness_across": 4.0 * K})
+    line = _creep_lines(found._replace(record=softer), V)["Eq. (7), fitted"]
+    middle, force = 0.5 * (found.creep["begin"] + found.creep["end"]), found.creep["force"]
+    at = middle.values > 0.2 * L_X / V
+    expected = V * implied_velocity(found.misalignment, force.values[at], 0.25)
+    assert line(middle.values[at]) == pytest.approx(expected, rel=1e-9)
+
+
+def test_when_the_mass_slips_is_unsure_only_in_the_bin_next_to_it(paper_run):
+    """A bin that ends before slip has none of the motion that goes as fast as the drive."""
+    mean, record = st.analyse(paper_run).creep, record_of(paper_run)
+    assert mean["end"][0] == 0.0
+    unsure = _with_slip_time(mean, record)["velocity_error"].values
+    own = mean["velocity_error"].values
+    assert unsure[0] > 1.05 * own[0]
+    np.testing.assert_array_equal(unsure[1:], own[1:])
+    later = mean.isel(bin=slice(1, None))
+    assert _with_slip_time(later, record).equals(later)

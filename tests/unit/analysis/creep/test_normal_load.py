@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.analysis.creep.normal_load import load_change
+from stiction.analysis.creep.normal_load import load_change, typical_load
 from stiction.analysis.record import record_of
 
 PAPER = st.presets.nakano_popov_2020()
@@ -93,3 +93,12 @@ def test_a_load_that_hardly_varies_loses_no_angle():
     its = st.analyse(st.simulate(PAPER.replace(load=load), "3 s", sample_rate="2 kHz")).misalignment
     assert degrees(its.phi) == pytest.approx(1.0, abs=2.0 * degrees(its.phi_error))
     assert its.phi_error < 0.02 * its.phi
+
+
+def test_a_load_that_reads_nothing_counts_as_beside_it():
+    """The median was not a number, and no line of Eq. (8) was drawn."""
+    time = np.linspace(0.0, 10.0, 1001)
+    load = np.where(np.abs(time - 5.0) < 0.2, 0.0, 10.0 + time)
+    record = st.Record(time=time, force=np.sin(time), load=load)
+    found = typical_load(record, np.array([4.9, 5.0, 5.1]))
+    assert found == pytest.approx(15.0 / record.normal_load, rel=0.02)

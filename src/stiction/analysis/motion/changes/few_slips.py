@@ -13,7 +13,7 @@ import numpy as np
 from stiction.analysis.motion.rest import STICKING, rise_share
 from stiction.analysis.signals.peak_refinement import Vertices, vertices
 from stiction.analysis.signals.reversals import remove_reversals
-from stiction.analysis.signals.robust import MEANS_OF_RECORD, part_means
+from stiction.analysis.signals.robust import MEANS_OF_RECORD, block_means, part_means
 from stiction.analysis.signals.straight_line import line
 from stiction.analysis.signals.turning_points import CLEAR, TurningPoints, without_spikes
 from stiction.arrays import TINY, Floats, Indices
@@ -68,7 +68,7 @@ def few_slips(time: Floats, force: Floats) -> FewSlips | None:
     width = int(max((FALLS * noise / max(height, TINY)) ** 2, 1.0))
     if len(force) < PARTS * width:
         return None
-    values, times = (_means(each, width) for each in (without_spikes(force), time))
+    values, times = (block_means(each, width) for each in (without_spikes(force), time))
     points = _without_small_ends(values, remove_reversals(values, height)[0], height)
     falls = np.flatnonzero(np.diff(values[points]) < 0.0)
     if not 0 < len(falls) <= FEW or falls[0] == 0 or falls[-1] >= len(points) - 2:
@@ -83,10 +83,6 @@ def few_slips(time: Floats, force: Floats) -> FewSlips | None:
     low = np.arange(len(index)) % 2 == 1
     reach = REACH * noise / width**0.5
     return FewSlips(TurningPoints(index, low, values, width, reach, CLEAR, height), begin)
-
-
-def _means(values: Floats, width: int) -> Floats:
-    return np.asarray(values[: len(values) // width * width].reshape(-1, width).mean(axis=1))
 
 
 def _without_small_ends(values: Floats, points: Indices, height: float) -> Indices:
