@@ -108,6 +108,7 @@ def tab(opened, explorer):
     """The page as the last test left it; whatever a test does to it, it does in silence."""
     opened.said, opened.asked = [], []
     yield opened
+    opened.tab.emulate_media(color_scheme="light")
     assert opened.said == []  # no error, no warning, in any of these tests
     away = [
         url for url in opened.asked if f"//127.0.0.1:{explorer.port}/{explorer.token}/" not in url
@@ -573,23 +574,63 @@ def test_tooltips_are_plain_words_and_one_stick_is_one_interval(page):
     assert page.tab.inner_text("#status").startswith("1 stick interval, ")
 
 
-def test_letters_have_contrast(modules):
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_letters_have_contrast(modules, scheme):
     """Those of k_y had 2.05 : 1 on the floor, and the ring about what is focused 2.25 : 1."""
 
-    def light(color):
-        parts = [int(color[i : i + 2], 16) / 255 for i in (1, 3, 5)]
-        linear = [x / 12.92 if x <= 0.03928 else ((x + 0.055) / 1.055) ** 2.4 for x in parts]
-        return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
+    def contrast(*colors):
+        parts = [[x / 255 for x in each] for each in colors]
+        linear = [
+            [x / 12.92 if x <= 0.03928 else ((x + 0.055) / 1.055) ** 2.4 for x in each]
+            for each in parts
+        ]
+        low, high = sorted(0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in linear)
+        return (high + 0.05) / (low + 0.05)
 
+    modules.tab.emulate_media(color_scheme=scheme)
     known = modules.value(module("drawing.js", "({ ...all }) => all"))
-    ground = light(known["FLOOR"])  # darker than the paper
-    for name in ("INK", "SOFT", "BLUE", "RED", "GREEN", "ORANGE", "PURPLE", "GREY"):
-        color = known["LETTERS"].get(known[name], known[name])
-        assert (ground + 0.05) / (light(color) + 0.05) >= 4.5, name
+    names = ("INK", "SOFT", "BLUE", "RED", "GREEN", "ORANGE", "PURPLE", "GREY")
+    letters = [known["LETTERS"].get(known[name], known[name]) for name in names]
+    drawn = modules.value(
+        module("drawing.js", f"({{ shade }}) => {[*letters, known['FLOOR']]}.map(shade)")
+    )
+    *drawn, floor = modules.value(f"({CHANNELS})({drawn})")
+    for name, color in zip(names, drawn, strict=True):
+        assert contrast(color, floor) >= 4.5, name
+    variables = ["--ink", "--soft", "--blue", "--bad", "--paper", "--ground", "--on-blue"]
+    *letters, paper, ground, on_blue = modules.value(f"({CHANNELS})({variables})")
+    assert min(contrast(each, under) for each in letters for under in (paper, ground)) >= 4.5
+    assert contrast(letters[variables.index("--blue")], on_blue) >= 4.5
     modules.tab.focus("#series")
     modules.tab.keyboard.press("Shift")
     ring = "getComputedStyle(document.activeElement).outlineColor"
-    assert modules.value(ring) == "rgb(0, 114, 178)"
+    assert modules.value(ring) == f"rgb({', '.join(map(str, letters[2]))})"
+
+
+# Red, green and blue of colours, or of variables of the page's style
+CHANNELS = """(colors) => {
+  const style = getComputedStyle(document.body);
+  const context = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
+  return colors.map((color) => {
+    context.fillStyle = color.startsWith("--") ? style.getPropertyValue(color).trim() : color;
+    context.fillRect(0, 0, 1, 1);
+    return [...context.getImageData(0, 0, 1, 1).data.subarray(0, 3)];
+  });
+}"""
+
+
+def test_a_page_that_turns_dark_is_drawn_anew(page):
+    """Its curves were light ones on a dark ground until the next run."""
+    shown = page.drawn_picture("#series-still")
+    page.tab.emulate_media(color_scheme="dark")
+    white = page.value(module("drawing.js", '({ shade }) => shade("#fff")'))
+    paper = "getComputedStyle(document.querySelector('.layers')).backgroundColor"
+    assert page.value(paper) == white.replace(",1)", ")").replace("rgba", "rgb").replace(",", ", ")
+    page.settle()
+    assert page.picture("#series-still") != shown
+    page.tab.emulate_media(color_scheme="light")
+    page.settle()
+    assert page.picture("#series-still") == shown
 
 
 def test_ticks_of_a_study_have_the_prefix_of_its_axis(modules):

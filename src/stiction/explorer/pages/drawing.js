@@ -9,12 +9,43 @@ export const LETTERS = { [RED]: "#b34d00", [GREEN]: "#00714f", [ORANGE]: "#8f5f0
 export const FONT = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 export const SERIF = 'italic 14px "STIX Two Text", "DejaVu Serif", Georgia, serif';
 
+// In a dark page a colour is as light as its negative on a ground of 8 %, and keeps its hue.
+const DARK = matchMedia("(prefers-color-scheme: dark)");
+const shades = new Map();
+
+export function shade(color) {
+  if (!DARK.matches || typeof color !== "string") return color; // a pattern has colours of its own
+  if (!shades.has(color)) shades.set(color, negative(color));
+  return shades.get(color);
+}
+
+function negative(color) {
+  const parts = color.startsWith("#")
+    ? (color.length < 7 ? color.match(/\w/g).map((each) => each + each) : color.match(/\w\w/g)).map((each) => parseInt(each, 16))
+    : color.match(/[\d.]+/g).map(Number);
+  const [red, green, blue, alpha = 1] = parts;
+  const lightness = 0.213 * red + 0.715 * green + 0.072 * blue;
+  const turned = [red, green, blue].map((each) => Math.round(0.92 * 255 + 0.84 * (each - 2 * lightness)));
+  return `rgba(${turned.join(",")},${alpha})`;
+}
+
+// The context of a canvas whose colours are as light or dark as the page.
+function contextOf(canvas) {
+  const context = canvas.getContext("2d");
+  for (const name of ["fillStyle", "strokeStyle"]) {
+    const { get, set } = Object.getOwnPropertyDescriptor(CanvasRenderingContext2D.prototype, name);
+    Object.defineProperty(context, name, { get, set(color) { set.call(this, shade(color)); } });
+  }
+  return context;
+}
+
 // Two canvases, one over the other: what changes with the run below, and what moves.
 export class Layers {
   constructor(canvas, still, moving) {
     Object.assign(this, { canvas, still, moving });
-    this.context = canvas.getContext("2d");
+    this.context = contextOf(canvas);
     this.back = document.createElement("canvas");
+    this.below = contextOf(this.back);
     this.back.id = canvas.id && `${canvas.id}-still`;
     this.back.ariaHidden = "true";
     this.place = document.createElement("div");
@@ -23,6 +54,7 @@ export class Layers {
     this.place.append(this.back, canvas);
     this.observer = new ResizeObserver(() => this.resize());
     this.observer.observe(this.place);
+    DARK.addEventListener("change", () => this.refresh());
     this.resize();
   }
 
@@ -48,9 +80,8 @@ export class Layers {
     if (!this.stale && key === this.key) return;
     this.key = key;
     if (this.stale) {
-      const context = this.back.getContext("2d");
-      prepare(context, this);
-      this.still(context, this.width, this.height);
+      prepare(this.below, this);
+      this.still(this.below, this.width, this.height);
       this.stale = false;
       this.drawn = (this.drawn ?? 0) + 1;
     }
