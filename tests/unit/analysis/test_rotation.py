@@ -155,7 +155,7 @@ def test_what_does_not_rise_or_is_too_short_is_refused():
     ("across", "known", "said"),
     [
         (TURN, None, "falls from 1.6"),
-        (TURN, 0.02, "It turns rather than grows"),
+        (TURN, 0.02, "It turns at nearly constant magnitude"),
         (TURN, None, "The zero of the force across, 3.00"),
         (0.0 * RISE, None, "Its path is straight"),
         (0.0 * RISE, 0.02, "It grows rather than turns"),

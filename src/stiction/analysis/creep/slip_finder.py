@@ -16,8 +16,8 @@ def find_slip(
     """Return the samples of `FirstLoading`, for a gain of at least so much on the drive (m).
 
     While the drive holds, its way is that of its last motion; before its first, that of this one.
-    `lag` (n,) is room for the way by which the spring was loaded. Nothing here is NumPy's: its
-    functions have compiled code of their own, with which a process would load numba's copy of it.
+    `lag` (n,) is filled with the way by which the spring was loaded. No NumPy function is called:
+    a process would have to load the compiled copy of each.
     """
     fastest, way = 0.0, 0.0
     for v in drive:

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 TITLE = "Rotation of the force"
 CONCLUSIONS = {
-    TURNING: "It turns rather than grows: this apparent stick is slow creep.",
+    TURNING: "It turns at nearly constant magnitude: this apparent stick is slow creep.",
     GROWING: "It grows rather than turns at one magnitude: the mass rests, or its contact yields "
     "before it slips.",
     BOTH: "It grows and turns: the mass rests for a part of the loading and creeps for another, or "

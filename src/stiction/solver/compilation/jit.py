@@ -34,7 +34,7 @@ def switch(value: bool) -> bool:
 def compiled(function: F) -> F:
     """Compile an entry point that Python calls, cached on disk, without the GIL.
 
-    It makes no arrays: numba compiles what counts who keeps them in each process, for 20 ms.
+    It must make no arrays: numba's count of references to them takes each process 20 ms to compile.
     """
     return _entry(function, Shelf(function, counts=False))
 
@@ -48,7 +48,7 @@ def entry_by_address(*kinds: Any) -> Callable[[F], F]:
     """Compile an entry point that compiled code calls by its address, cached on disk.
 
     `kinds` are the types of its arguments after the first, a law (see `pointer`). Our laws make no
-    arrays, and keep none: to count who else does takes longer than most laws.
+    arrays, and keep none: to count references to them takes longer than most laws.
     """
 
     def compile_entry(function: F) -> F:
@@ -88,7 +88,7 @@ def _part(function: F, **options: Any) -> F:
 def compiled_for(function: Any, digest: str | None) -> Any:
     """Return a `compiled` function for types of a user's law, cached under its digest.
 
-    Such a law may make arrays, which are counted.
+    Such a law may make arrays, so that references to them are counted.
     The digest is None if the law's text is unknown; then each process compiles it anew.
     """
     own = python_of(function)

@@ -230,7 +230,7 @@ def _goes_on(cycles: CycleCorners, begin: float, end: float) -> bool:
 def _is_ripple(cycles: CycleCorners, its: Larger, parts: list[tuple[float, float]]) -> bool:
     """Return whether cycles go on beside larger ones, in parts of these (s), as ripple does.
 
-    The first parts count, as far as they have enough periods.
+    Parts are looked at in their order until they have enough periods.
     """
     least, period = AS_HIGH * float(np.median(cycles.drop)), float(np.median(cycles.period))
     most = _limit(cycles, its.cycles)
