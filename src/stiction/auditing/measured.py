@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.analysis.report import analyse
-from stiction.analysis.signals.correlated_noise import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import interval_95
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
@@ -279,7 +279,7 @@ def curve(found: Predictive | None) -> str:
     """Return how the loading curve agrees with simulations."""
     if found is None:
         return "With the fitted values hardly any simulated record has cycles of stick and slip."
-    low, high = (in_words(x, "N/s") for x in np.quantile(found.simulated.rate, BOUNDS_95))
+    low, high = (in_words(x, "N/s") for x in interval_95(found.simulated.rate))
     force, bend = (
         ((values >= low) & (values <= high)).mean()
         for values, (low, high) in zip(

@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.correlated_noise import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.arrays import Floats
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import creep_before_slip, simulate_coarsely
@@ -118,7 +118,7 @@ class Budget:
         for i, column in enumerate(self.drawn.T):
             values = column[np.isfinite(column)]
             if len(values):
-                found[:, i] = np.quantile(values, BOUNDS_95)
+                found[:, i] = interval_95(values)
         return found
 
 
@@ -272,8 +272,8 @@ def section(found: Budget) -> Section:
         limit(found.alignment),
         f"The error is relative to what this rig reads without misalignment, {static}, at the same "
         "drive, load and friction.",
-        f"{_misalignment(found)} The last column holds 95 % of {len(found.drawn)} simulated tests "
-        "with parameters drawn from their priors.",
+        f"{_misalignment(found)} The last column holds 95 % of tests with parameters drawn from "
+        f"their priors, as estimated from {len(found.drawn)}.",
     ]
     if found.others:
         start = "Uncertain" if found.certain else "Also uncertain"

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.correlated_noise import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import interval_95
 from stiction.arrays import Floats
 from stiction.inference.cycles import Cycles
 from stiction.inference.observation import Observation
@@ -68,10 +68,7 @@ class Predictive(NamedTuple):
     @property
     def bands(self) -> tuple[Floats, Floats]:
         """The predictive intervals, 95 %, of force and bend, (2, s) each."""
-        force, bend = (
-            np.quantile(each, BOUNDS_95, axis=0)
-            for each in (self.simulated.force, self.simulated.bend)
-        )
+        force, bend = (interval_95(each) for each in (self.simulated.force, self.simulated.bend))
         return force, bend
 
 

@@ -13,6 +13,8 @@ from stiction.auditing.page import page
 from stiction.auditing.tolerance import (
     ALLOWED,
     Alignment,
+    Budget,
+    Reading,
     budget,
     crossing,
     limit,
@@ -187,3 +189,11 @@ def test_a_misalignment_of_the_other_sign_is_sought_on_its_side(found):
     # which does not depend on the draws
     assert mirrored.alignment.angle == pytest.approx(found.budget.alignment.angle, rel=1e-3)
     assert np.median(mirrored.angles) < 0.0
+
+
+def test_the_interval_holds_95_percent_of_other_tests():
+    """Quantiles between the smallest and the largest of 64 tests held 93.5 % of others."""
+    shares = (np.arange(64) + 0.5) / 64  # of Sobol's sequence, one in each 64th
+    drawn = np.repeat(shares[:, None], 4, axis=1)
+    made = Budget(shares, drawn, shares[:3], drawn[:3], Reading(*drawn[0]), Alignment(1, 1, 1), ())
+    assert np.diff(made.intervals, axis=0)[0] == pytest.approx(0.95, abs=0.01)

@@ -18,6 +18,18 @@ FEWEST = 3  # samples that deviate from a straight line
 UNSEEN = 8.0
 
 
+def interval_95(values: Floats) -> Floats:
+    """Return the ends (2, ...) between which 95 % of all values lie, of which (n, ...) are drawn.
+
+    They are median-unbiased, whatever the distribution (R. J. Hyndman & Y. Fan, Am. Stat. 50, 361
+    (1996)). Interpolated from the smallest to the largest value, those of 64 hold 93 % of others.
+
+    >>> interval_95((np.arange(64) + 0.5) / 64).round(2)
+    array([0.02, 0.98])
+    """
+    return np.asarray(np.quantile(values, BOUNDS_95, axis=0, method="median_unbiased"))
+
+
 def correlation_time(values: Floats) -> float:
     """Return the integrated autocorrelation time of evenly spaced values, at least 1.
 

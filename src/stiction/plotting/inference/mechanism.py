@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.correlated_noise import BOUNDS_95
+from stiction.analysis.signals.correlated_noise import interval_95
 from stiction.arrays import Floats
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, LINES, PAGE, style
@@ -85,7 +85,7 @@ def draw_loading(ax: Axes, odds: Odds) -> None:
         bends = 100.0 * its.bends[:, :parts]
         ax.plot(share, bends.mean(axis=0), color=color, linestyle=line, label=name)
         if i == odds.likeliest:
-            low, high = np.quantile(bends, BOUNDS_95, axis=0)
+            low, high = interval_95(bends)
             ax.fill_between(share, low, high, color=color, alpha=0.2, linewidth=0.0)
     record = 100.0 * odds.bend[:parts]
     ax.plot(share, record, "o-", color=BLACK, markersize=2.0, linewidth=0.5, label="this record")
