@@ -236,6 +236,7 @@ def test_a_test_that_is_surely_better_is_named_though_another_may_be_better_stil
     text = " ".join(advice.sentences())
     assert f"Whether it tells more than {AGAIN} is not sure" not in text
     assert f"Not surely better than {AGAIN}" not in text
+    assert text.endswith("falls by more or by less: intervals are those of the mean.")
     unsure = replace(advice, tests=(tests[0], tests[1], tests[3]))
     assert unsure.sentences()[0].startswith("None of these tests clearly tells more of jitter")
 

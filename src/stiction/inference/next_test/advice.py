@@ -160,7 +160,8 @@ class Advice(Report):
         )
         found += self.assumed
         found.append(
-            f"Expected over {self.simulations} rigs drawn from the priors, with cycles now."
+            f"Expected over {self.simulations} rigs drawn from the priors, with cycles now. "
+            "Of one of them the error falls by more or by less: intervals are those of the mean."
         )
         return found
 
