@@ -4,9 +4,10 @@
 channels, the classifier's balanced accuracy, how often a claim is wrong, how often rotation is
 called so, and what becomes of records by laws that are not claimed: a Stribeck curve with a static
 peak, with and without misalignment; constant friction with one, misaligned; a friction limit that
-is an ellipse; coefficients that drift. From force alone, how many of these a classifier finds that
-has learned this law too. Records are those of `benchmarks.accuracy.fits`. FOLDER holds the
-simulations, so that a second call only compares.
+is an ellipse; coefficients that drift. Where rotation is claimed, whether its mass is told to be
+held, and whether it is, by the simulated truth. From force alone, how many of these a classifier
+finds that has learned this law too. Records are those of `benchmarks.accuracy.fits`. FOLDER holds
+the simulations, so that a second call only compares.
 """
 
 from __future__ import annotations
@@ -30,6 +31,7 @@ from stiction.inference.mechanism.classifier import Classifier, Simulations, lea
 from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE, surely
+from stiction.inference.mechanism.rest import ALIKE, MOSTLY, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import (
     MISALIGNED_STATIC,
     Levels,
@@ -120,26 +122,33 @@ class Part(NamedTuple):
 
 
 class Called(NamedTuple):
-    """The most probable mechanism of records, whether that is sure, and whether it is claimed."""
+    """The most probable mechanism of records, whether that is sure, and whether it is claimed.
+
+    `held` is whether rotation is said to be static friction on the misaligned rig.
+    """
 
     likeliest: NDArray[np.int64]
     sure: NDArray[np.bool_]
     claimed: NDArray[np.bool_]
+    held: NDArray[np.bool_]
 
 
-def angles(rotation: Plan, count: int, folder: Path | None) -> Floats:
+def angles(rotation: Plan, count: int, folder: Path | None, seed: int) -> Floats:
     """Return the misalignment (deg) of each test record of rotation that has cycles."""
-    place = None if folder is None else folder / f"{rotation.key}-1"
-    scores, features = simulate_all(rotation, count, place, seed=1)
+    place = None if folder is None else folder / f"{rotation.key}-{seed}"
+    scores, features = simulate_all(rotation, count, place, seed=seed)
     shares = ndtr(scores[have_cycles(features), [*rotation.priors].index("phi")])
     return np.degrees(rotation.priors["phi"].quantile(shares))
 
 
 def call(
     classifier: Classifier, references: Sequence[Reference], records: Part, check: StaticCheck,
-    names: Sequence[str],
+    names: Sequence[str], rest: Floats,
 ) -> Called:  # fmt: skip
-    """Return what each of some records is called, and whether it may be claimed."""
+    """Return what each of some records is called, and whether it may be claimed.
+
+    `rest` is how far the mass rests in each simulation of rotation.
+    """
     probabilities = classifier.probabilities(records.features)
     likeliest = probabilities.argmax(axis=1)
     scores = classifier.standard.scores(records.features)
@@ -153,7 +162,9 @@ def call(
     for place, name in enumerate(names):
         its = np.nonzero(claimed & (likeliest == place))[0]
         claimed[its] = check.probability(name, records.features[its]) >= CLAIM
-    return Called(likeliest, sure, claimed)
+    alike = [references[0].typicality.alike(each, ALIKE) for each in scores]
+    held = np.array([Rest.among(rest[some]).held for some in alike]) & (likeliest == 0)
+    return Called(likeliest, sure, claimed, held)
 
 
 def found_when_known(known: Part, other: Part) -> float:
@@ -174,9 +185,17 @@ def trends(of: Plan, count: int, seed: int) -> Floats:
     return np.array([steadiness(pair) for pair in pairs])
 
 
+class AtRest(NamedTuple):
+    """How far the mass rests in a loading: in the library's records of rotation, and in tests."""
+
+    known: Floats
+    unseen: Floats
+    others: tuple[Floats, ...]
+
+
 def report(
     known: Part, checked: Simulations, unseen: Part, others: Sequence[tuple[str, Part]],
-    phi: Floats, steady: Floats, drifts: Floats,
+    phi: Floats, steady: Floats, drifts: Floats, rest: AtRest,
 ) -> None:  # fmt: skip
     """Print what becomes of records that no part has seen, with some channels."""
     start = perf_counter()
@@ -184,7 +203,8 @@ def report(
     references = likeness.learn_or_read(known.simulations, classifier.whole.scores, known.bends)
     check = StaticCheck.of(checked)
     took = perf_counter() - start
-    its, labels = call(classifier, references, unseen, check, known.names), unseen.labels
+    named = known.names, rest.known
+    its, labels = call(classifier, references, unseen, check, *named), unseen.labels
     right = its.likeliest == labels
     recall = [float(right[labels == label].mean()) for label in range(len(known.names))]
     print(
@@ -198,16 +218,36 @@ def report(
     claimed = (its.claimed & right)[turning] & (steady >= TREND)
     print(
         f"    rotation at {PHI[0]} to {PHI[1]} deg: most probable {shares[0]:.1%}, with "
-        f"{CLAIM} and above {shares[1]:.1%}, claimed {claimed[some].mean():.1%}"
+        f"{CLAIM} and above {shares[1]:.1%}, claimed {claimed[some].mean():.1%}; "
+        f"{held_in_words(its.held[turning][some & claimed], rest.unseen[some & claimed])}"
     )
-    for name, records in others:
-        found = call(classifier, references, records, check, known.names)
+    for (name, records), at_rest in zip(others, rest.others, strict=True):
+        found = call(classifier, references, records, check, *named)
         claimed = found.claimed & (drifts >= TREND) if name == DRIFTING else found.claimed
         counts = np.bincount(found.likeliest[claimed], minlength=len(known.names))
         listed = ", ".join(
             f"{known.names[i]} {counts[i] / len(claimed):.0%}" for i in np.nonzero(counts)[0]
         )
-        print(f"    {name}: undecided {1.0 - claimed.mean():.1%}; called {listed or 'none'}")
+        said = found.likeliest[claimed] == 0
+        print(
+            f"    {name}: undecided {1.0 - claimed.mean():.1%}; called {listed or 'none'}; "
+            f"{held_in_words(found.held[claimed][said], at_rest[claimed][said])}"
+        )
+
+
+def held_in_words(held: NDArray[np.bool_], rest: Floats) -> str:
+    """Return how many of some claims of rotation say that the mass is held, and how many rightly.
+
+    `rest` is the true share of the drive's way across for which it rests.
+    """
+    if not len(held):
+        return "never rotation"
+    right = f", rightly {(rest[held] >= MOSTLY).mean():.1%}" if held.any() else ""
+    return (
+        f"of rotation {held.mean():.1%} said to be held{right}; in truth the mass rests for "
+        f"{MOSTLY:.0%} of the way and more in {(rest >= MOSTLY).mean():.1%}, in the middle for "
+        f"{np.median(rest):.0%}"
+    )
 
 
 def main() -> None:
@@ -217,26 +257,33 @@ def main() -> None:
     parser.add_argument("--records", type=int, default=384)
     parser.add_argument("--rigs", nargs="+", default=[*RIGS])
     parser.add_argument("--library", type=Path)
+    parser.add_argument("--seed", type=int, default=0, help="the first of three")
     options = parser.parse_args()
     for name in options.rigs:
         start = perf_counter()
         rig, conditions = rig_of(name)
         rivals, strange = mechanisms(rig, [conditions]), [*foreign(rig, conditions)]
         folder = options.library
-        checked = simulate(rivals, options.simulations, folder)
+        first, second, third = range(options.seed, options.seed + 3)
+        checked = simulate(rivals, options.simulations, folder, seed=first)
         known = checked.among(CLAIMED)
-        tested = simulate(rivals, options.records, folder, seed=1)
+        tested = simulate(rivals, options.records, folder, seed=second)
         unseen = tested.among(CLAIMED)
-        others = [simulate([each], options.records, folder, seed=2) for each in strange]
+        others = [simulate([each], options.records, folder, seed=third) for each in strange]
         others.append(tested.among((MISALIGNED_STATIC,)))
+        plans = [each.plans[0] for each in (*strange, rivals[-1])]
+        pairs = [(rivals[0].plans[0], known), (rivals[0].plans[0], unseen)]
+        pairs += zip(plans, others, strict=True)
+        at_rest = [shares_at_rest(plan, each.parameters[0]) for plan, each in pairs]
+        rest = AtRest(at_rest[0], at_rest[1], (*at_rest[2:],))
         print(
             f"{name}: {len(known.labels)} records to learn from, {len(unseen.labels)} to test on; "
             f"{perf_counter() - start:.0f} s"
         )
-        phi = angles(rivals[0].plans[0], options.records, folder)
+        phi = angles(rivals[0].plans[0], options.records, folder, second)
         (drifting,) = [each.plans[0] for each in strange if each.name == DRIFTING]
-        drifts = trends(drifting, options.records, 2)
-        steady = trends(rivals[0].plans[0], options.records, 1)
+        drifts = trends(drifting, options.records, third)
+        steady = trends(rivals[0].plans[0], options.records, second)
         print(
             f"  a trend is seen in {(drifts < TREND).mean():.1%} of the records that drift, and in "
             f"{(steady < TREND).mean():.1%} of the others"
@@ -249,7 +296,7 @@ def main() -> None:
             names = [*(each.name for each in strange), MISALIGNED_STATIC]
             named = [*zip(names, parts[2:], strict=True)]
             every = checked._replace(features=checked.features[:, which])
-            report(parts[0], every, parts[1], named, phi, steady, drifts)
+            report(parts[0], every, parts[1], named, phi, steady, drifts, rest)
             if channels == USED[:1]:
                 for law, part in named:
                     print(f"    {law}: {found_when_known(parts[0], part):.1%} found when known")

@@ -17,8 +17,8 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
 from stiction.inference.mechanism.comparison import SHARE, mechanism
-from stiction.inference.mechanism.odds import BENT, UNDECIDED, UNLIKE, Odds, near_one
-from stiction.inference.mechanism.rivals import ROTATION
+from stiction.inference.mechanism.odds import BENT, TURNING, UNDECIDED, UNLIKE, Odds, near_one
+from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit
 from stiction.inference.predictive import Predictive, predict
@@ -42,6 +42,11 @@ BOTH_HOLD = (
 )
 WITHDRAWN = (
     "The fit assumes that friction rotates and is not like this record, so rotation is not claimed."
+)
+ROTATES = ": what looks like static friction is the apparatus, whose friction vector rotates"
+HELD = (
+    ": the friction at rest of its law holds the mass between slips, while the force on it turns "
+    "as it grows"
 )
 WARNINGS, GROUNDS = "Warnings about the record", "What that rests on"
 CHANGES = "What would change it"
@@ -141,7 +146,7 @@ def withdraw(found: RecordComparison) -> RecordComparison:
     Both compare the record with simulations of a rig whose friction rotates, by measures and
     limits of their own.
     """
-    if found.like or found.odds is None or found.odds.decision != ROTATION:
+    if found.like or found.odds is None or found.odds.decision not in TURNING:
         return found
     return replace(found, odds=replace(found.odds, doubt=WITHDRAWN))
 
@@ -161,13 +166,13 @@ def sections(found: RecordComparison) -> list[Section]:
 
 def rotates(found: RecordComparison) -> bool:
     """Return whether the fit, which assumes that friction rotates, means something."""
-    return found.like and (found.odds is None or found.odds.decision in (ROTATION, UNDECIDED))
+    return found.like and (found.odds is None or found.odds.decision in (*TURNING, UNDECIDED))
 
 
 def verdict(found: RecordComparison) -> str:
     """Return the verdict in one sentence."""
     claimed = "" if found.odds is None else found.odds.decision
-    if found.odds is not None and claimed not in (ROTATION, UNDECIDED):
+    if found.odds is not None and claimed not in (*TURNING, UNDECIDED):
         probability = near_one(found.odds.probabilities.max())
         return (
             f"Friction, not misalignment: this record is like simulations of {claimed} "
@@ -212,7 +217,7 @@ def explanation(found: RecordComparison) -> str:
 
 def alternatives(odds: Odds | None) -> str:
     """Return what the comparison with other mechanisms adds to an explanation, a clause."""
-    if odds is not None and odds.decision == ROTATION:
+    if odds is not None and odds.decision in TURNING:
         others = (its for name, its in zip(odds.names, odds.likeness, strict=True)
                   if name != ROTATION)  # fmt: skip
         excluded = all(its.farther < UNLIKE or its.larger < BENT for its in others)
@@ -221,7 +226,7 @@ def alternatives(odds: Odds | None) -> str:
             "the other mechanisms compared do not explain it"
             if excluded
             else f"of the mechanisms compared this is the most probable ({probability})"
-        ) + ": what looks like static friction is the apparatus, whose friction vector rotates"
+        ) + (HELD if odds.decision == MISALIGNED_STATIC else ROTATES)
     if odds is not None and odds.decision == UNDECIDED:
         return "that it is another mechanism is not excluded"
     return "no static friction beyond that law is needed, and none is excluded"

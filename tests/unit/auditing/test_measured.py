@@ -23,7 +23,8 @@ from stiction.auditing.page import page
 from stiction.errors import DescriptionError
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.mechanism.odds import UNDECIDED
-from stiction.inference.mechanism.rivals import ROTATION, STATIC
+from stiction.inference.mechanism.rest import Rest
+from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION, STATIC
 from stiction.inference.predictive import SHARES, loading_curve
 from stiction.plotting import plot_predictive, plot_ranks
 
@@ -109,6 +110,11 @@ def test_the_verdict_says_what_other_mechanisms_leave_open(found):
     sure = np.eye(len(seen.odds.names))[seen.odds.names.index(ROTATION)]
     claimed = replace(seen, odds=replace(seen.odds, probabilities=sure, steady=1.0))
     assert "is the apparatus, whose friction vector rotates" in verdict(claimed)
+    held = replace(claimed, odds=replace(claimed.odds, rest=Rest(0.9, 0.96, 1.0)))
+    assert held.odds.decision == MISALIGNED_STATIC
+    assert "holds the mass between slips" in verdict(held)
+    assert "rotates" not in verdict(held)
+    assert "must turn with it" in str(sections(held))
     open_still = replace(seen, odds=replace(seen.odds, probabilities=np.full(len(sure), 0.2)))
     assert "another mechanism is not excluded" in verdict(open_still)
     alone = replace(seen, odds=None, incomparable="nothing rotates")
@@ -130,6 +136,9 @@ def test_a_record_without_a_verdict_claims_nothing(found):
     assert "Claimed" not in said
     assert WITHDRAWN in said
     assert far.odds.decision == UNDECIDED
+    held = replace(claimed, odds=replace(odds, rest=Rest(0.9, 0.96, 1.0)))
+    assert held.odds.decision == MISALIGNED_STATIC
+    assert withdraw(replace(held, fit=far.fit)).odds.decision == UNDECIDED
 
 
 def test_a_fit_that_ends_at_its_prior_says_so_where_records_are_unlike(found):

@@ -12,10 +12,11 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.columns import bend_features
-from stiction.inference.fit import check
+from stiction.inference.fit import check, plan_for
 from stiction.inference.mechanism import classifier, likeness
 from stiction.inference.mechanism.classifier import Simulations, simulate
 from stiction.inference.mechanism.odds import Odds, surely
+from stiction.inference.mechanism.rest import ALIKE, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
     RATE_AND_STATE,
@@ -53,7 +54,8 @@ def mechanism(
     are simulated by each, as for `stiction.fit`; a classifier learns to tell them apart. It says
     "undecided" when no mechanism is probable enough, when the record or its loading curve is unlike
     simulations of the most probable one, or when friction drifts; and for rate and state or LuGre,
-    when static friction on the misaligned rig, which is not claimed, may look the same.
+    when static friction on the misaligned rig may look the same. That is claimed in place of
+    rotation where the mass rests in simulations with the record's parameters.
 
     Experimental: how often simulated records are called rightly is reported beside the odds, but a
     law that was not simulated may pass for one that was.
@@ -142,6 +144,12 @@ def compare(
     if name in ELASTIC:
         static = StaticCheck.of(every, beside(path, "check"), to_check)
         beside_static = float(static.probability(name, observed[None])[0])
+    rest = None
+    if name == ROTATION:
+        place = simulated.names.index(name)
+        rows = references[place].typicality.alike(record, ALIKE)
+        plan = plan_for(rig, [each.conditions for each in seen])
+        rest = Rest.among(shares_at_rest(plan, simulated.parameters[place][rows]))
     return Odds(
         names=simulated.names,
         probabilities=probabilities,
@@ -155,6 +163,7 @@ def compare(
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),
         explanation=explain_unlike([each.changes for each in seen]),
         beside_static=beside_static,
+        rest=rest,
     )
 
 

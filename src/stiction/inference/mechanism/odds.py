@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats, xr
 from stiction.inference.features import MIDDLES
 from stiction.inference.mechanism.likeness import Likeness
+from stiction.inference.mechanism.rest import Rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
     MISALIGNED_STATIC,
@@ -38,6 +39,7 @@ EXPLAINED = (
     "of their parameters; more bent: of those with its parameters, the share whose loading departs "
     "more from their mean. Experimental: a law that was not simulated may pass for one that was."
 )
+TURNING = ROTATION, MISALIGNED_STATIC  # the friction force turns, the mass creeping or at rest
 CHANNEL = "force_across"  # without which the shape of the friction limit is not seen
 
 
@@ -75,7 +77,10 @@ class Odds(Report):
         What else speaks against a claim, found by other means, as a sentence; may be empty.
     beside_static : float
         Probability of the likeliest mechanism, if it is rate and state or LuGre, as told from
-        static friction on the misaligned rig, which is never claimed; else 1.
+        static friction on the misaligned rig; else 1.
+    rest : Rest or None
+        How far the mass rests in simulations of rotation with the record's parameters, if that is
+        the likeliest mechanism.
     """
 
     names: tuple[str, ...]
@@ -91,6 +96,7 @@ class Odds(Report):
     explanation: str = field(default="", compare=False)
     doubt: str = field(default="", compare=False)
     beside_static: float = 1.0
+    rest: Rest | None = field(default=None, compare=False)
 
     @property
     def needed(self) -> float:
@@ -109,8 +115,15 @@ class Odds(Report):
 
     @property
     def decision(self) -> str:
-        """The mechanism that is claimed, or "undecided"."""
-        return UNDECIDED if self.objections() else self.names[self.likeliest]
+        """The mechanism that is claimed, or "undecided".
+
+        Where rotation is claimed and its mass rests, it is static friction on the misaligned rig.
+        """
+        if self.objections():
+            return UNDECIDED
+        name = self.names[self.likeliest]
+        held = name == ROTATION and self.rest is not None and self.rest.held
+        return MISALIGNED_STATIC if held else name
 
     @property
     def straight_excluded(self) -> bool | None:
@@ -137,7 +150,7 @@ class Odds(Report):
             )
         if self.beside_static < CLAIM:
             found.append(
-                f"Beside {MISALIGNED_STATIC}, which is not claimed but may look the same, {name} "
+                f"Beside {MISALIGNED_STATIC}, which may look the same, {name} "
                 f"has a probability of {near_one(self.beside_static)}; a claim needs {CLAIM}."
             )
         if its.farther < UNLIKE:
@@ -202,7 +215,9 @@ class Odds(Report):
                 "The loading is not as straight as static friction in one dimension makes it: that "
                 "alone does not explain this record."
             )
-        if self.decision == ROTATION and CHANNEL not in self.channels:
+        if self.rest is not None:
+            found.append(self._at_rest(self.rest))
+        if self.decision in TURNING and CHANNEL not in self.channels:
             found.append(
                 "Whether friction is the same in all directions cannot be told without the force "
                 "across the drive: a friction limit that is an ellipse looks like another "
@@ -213,6 +228,11 @@ class Odds(Report):
                 "Not excluded: a static coefficient of its own beside the rotation, or in place of "
                 "friction that weakens with speed. Rotation was not compared with it; often it "
                 "does not show."
+            )
+        if self.decision == MISALIGNED_STATIC:
+            found.append(
+                "By which law friction falls once the mass slips is not told: constant friction "
+                "below a static coefficient may look the same."
             )
         if self.decision in (LUGRE, RATE_AND_STATE):
             found.append(
@@ -233,6 +253,18 @@ class Odds(Report):
             )
         return found
 
+    def _at_rest(self, rest: Rest) -> str:
+        """Return how far the mass rests in the simulations of rotation, as a sentence."""
+        low, middle, high = map(percent, rest)
+        said = (
+            f"Where {ROTATION} is simulated with the parameters that this record seems to have, "
+            f"the mass rests, while the spring is loaded, for {middle} of the drive's way across "
+            f"(80 %: {low} to {high})"
+        )
+        if rest.held:
+            return f"{said}: it is held by static friction, while the force on it turns and grows."
+        return f"{said} and follows the rest of it."
+
     @property
     def data(self) -> xr.Dataset:
         """Probabilities and confusion as a dataset over ``mechanism`` and ``called``."""
@@ -244,6 +276,8 @@ class Odds(Report):
         }
         places = {"mechanism": [*self.names], "called": [*self.names, UNDECIDED]}
         about = {"decision": self.decision, "probability_of_such_a_trend": self.steady}
+        if self.rest is not None:
+            about["share_at_rest"] = self.rest.middle
         return xr.Dataset(columns, places, about)
 
     def __repr__(self) -> str:

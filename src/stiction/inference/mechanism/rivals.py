@@ -7,8 +7,9 @@
   aligned or not;
 - LuGre: bristles that bend and slip, aligned.
 
-And one that is never claimed: static friction on the rig as it is misaligned. Where it does not
-show, it passes for rotation; a claim of rate and state or of LuGre has to hold beside it.
+And one beside which a claim of rate and state or of LuGre has to hold: static friction on the rig
+as it is misaligned. Where it does not show, it passes for rotation; it is claimed in place of that
+where the mass is held between slips by both (`rest`).
 
 Every mechanism has the apparatus of the description and its priors. Coefficients of another law
 have the range of those that the description's law has at rest and in rapid slip; its other

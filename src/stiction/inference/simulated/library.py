@@ -95,7 +95,7 @@ def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
     for conditions, made in zip(plan.conditions, records, strict=True):
         scale = conditions.scale(plan.basis or plan.slider)
         blank = dummy(conditions)
-        channels, cycles = made or (blank, slip_cycles(blank["force"]))
+        channels, cycles = made[:2] if made else (blank, slip_cycles(blank["force"]))
         its = features(conditions.step, channels, scale, cycles)
         found.append(its if made else np.full_like(its, np.nan))
     return drawn, np.concatenate(found)

@@ -53,8 +53,8 @@ def plot_mechanism(odds: Odds, axes: Sequence[Axes] | None = None) -> NDArray[np
 def draw_odds(ax: Axes, odds: Odds, names: Sequence[str]) -> None:
     """Draw a bar for each mechanism, and the line from which a claim is made."""
     places = np.arange(len(names))
-    claimed = [name == odds.decision for name in odds.names]
-    colors = [BLUE if each else GREY for each in claimed]
+    claimed = None if odds.objections() else odds.likeliest
+    colors = [BLUE if place == claimed else GREY for place in range(len(names))]
     ax.barh(places, odds.probabilities, color=colors, height=0.6)
     ax.axvline(odds.needed, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
     ax.set_yticks(places, names)
