@@ -485,6 +485,21 @@ def _along_cell(x: float, y: float, f_x: Floats, f_y: Floats) -> Floats:
     return force if np.abs(force).max() > ROUND * whole else np.zeros_like(force)
 
 
+def apparatus(slider: Slider) -> dict[str, float | None]:
+    """Return what a record states of its apparatus, as a slider has it, by the record's fields."""
+    cell = cell_axis(slider)
+    share = _share(cell.x, cell.y, slider)
+    stiffness = (
+        slider.along_drive(cell.x * slider.k_x, cell.y * slider.k_y) / share if share else 0.0
+    )
+    return {
+        "normal_load": slider.normal_load,
+        "stiffness": stiffness if stiffness > 0.0 else None,  # loading across may unload the cell
+        "drive_velocity": abs(cell.velocity) or None,
+        "mass": slider.masses[0],
+    }
+
+
 def record_of(run: Trajectory) -> Record:
     """Return a run as its load cell records it, with position, slip speed and stick intervals.
 
@@ -503,9 +518,8 @@ def record_of(run: Trajectory) -> Record:
     slider, samples = run.slider, run.samples
     cell = cell_axis(slider)
     c, s = slider.direction
-    x, y, way, along = cell.x, cell.y, cell.way, cell.velocity
+    x, y, way = cell.x, cell.y, cell.way
     share = _share(x, y, slider)
-    stiffness = slider.along_drive(x * slider.k_x, y * slider.k_y) / share if share else 0.0
     stiffer = ("v_x", "v_y")[slider.stiffer_axis]
     names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", stiffer)
     columns = np.stack([samples[name] for name in names])
@@ -515,10 +529,7 @@ def record_of(run: Trajectory) -> Record:
     record = Record(
         time=time,
         force=way * _along_cell(x, y, f_x, f_y),
-        normal_load=slider.normal_load,
-        stiffness=stiffness if stiffness > 0.0 else None,  # loading across may unload the cell
-        drive_velocity=abs(along) or None,
-        mass=slider.masses[0],
+        **apparatus(slider),
         position=way * X,
         slip_speed=slip_speed,
         load=None if slider.load is None else load,

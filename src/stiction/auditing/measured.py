@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stiction.analysis.record import Record
+from stiction.analysis.record import Record, apparatus
 from stiction.analysis.report import analyse
 from stiction.analysis.signals.correlated_noise import interval_95
 from stiction.auditing.words.verdict import RECORD
@@ -48,6 +48,7 @@ HELD = (
     ": the friction at rest of its law holds the mass between slips, while the force on it turns "
     "as it grows"
 )
+FIELDS = {"k_x": "stiffness", "drive": "drive_velocity"}  # of a record, for a description's
 WARNINGS, GROUNDS = "Warnings about the record", "What that rests on"
 CHANGES = "What would change it"
 NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
@@ -73,6 +74,8 @@ class RecordComparison:
         Of mechanisms.
     incomparable : str
         Why there are no odds.
+    stated : Record or None
+        The record with what the description states of its apparatus.
     """
 
     record: Record
@@ -82,6 +85,7 @@ class RecordComparison:
     reason: str = ""
     odds: Odds | None = None
     incomparable: str = ""
+    stated: Record | None = None
 
     @property
     def like(self) -> bool:
@@ -93,8 +97,8 @@ class RecordComparison:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What an analysis of the record warns of, which a fit does not see."""
-        return analyse(self.record).warnings
+        """What an analysis of the record beside its description warns of; a fit sees none of it."""
+        return analyse(self.stated or self.record).warnings
 
     @property
     def absent(self) -> list[str]:
@@ -119,7 +123,7 @@ def compare(
     """
     check(rig)
     library_folder(library)  # refused at once, and not as a reason why there is no verdict
-    report = progress or silent
+    report, stated = progress or silent, with_description(record, rig)
     try:
         seen = observe(record, rig.slider)
         found = fit(
@@ -127,7 +131,7 @@ def compare(
             progress=lambda fraction: report(0.5 * fraction),
         )  # fmt: skip
     except ResultError as error:
-        return RecordComparison(record, reason=str(error))
+        return RecordComparison(record, reason=str(error), stated=stated)
     made = predict(found, seen, lambda fraction: report(0.5 + 0.05 * fraction))
     odds, why = None, ""
     try:
@@ -137,7 +141,24 @@ def compare(
         )  # fmt: skip
     except (ResultError, DescriptionError) as error:
         why = str(error)
-    return withdraw(RecordComparison(record, seen, found, made, odds=odds, incomparable=why))
+    return withdraw(
+        RecordComparison(record, seen, found, made, odds=odds, incomparable=why, stated=stated)
+    )
+
+
+def with_description(record: Record, rig: Rig) -> Record:
+    """Return a record that states what its description is sure of, where it states nothing itself.
+
+    Its force may contradict that: a stiffness, a mass, a load or a unit that is wrong.
+    """
+    unsure = {FIELDS.get(path.partition(".")[0], path) for path in rig.priors}
+    unsure |= {"stiffness", "mass"} if "springs" in unsure else set()
+    known = {
+        name: value
+        for name, value in apparatus(rig.slider).items()
+        if getattr(record, name) is None and name not in unsure
+    }
+    return record.model_copy(update=known)
 
 
 def withdraw(found: RecordComparison) -> RecordComparison:
@@ -153,11 +174,12 @@ def withdraw(found: RecordComparison) -> RecordComparison:
 
 def sections(found: RecordComparison) -> list[Section]:
     """Return the sections of a report."""
+    doubts = [Section(WARNINGS, [*found.warnings])] if found.warnings else []
     if found.fit is None:
-        return [Section(RECORD, [f"No verdict: {found.reason}."])]
+        return [Section(RECORD, [f"No verdict: {found.reason}."]), *doubts]
     parts = [
         Section(RECORD, [verdict(found), f"{DESCRIBED}{REPEAT * rotates(found)}."]),
-        *([Section(WARNINGS, [*found.warnings])] if found.warnings else []),
+        *doubts,
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]

@@ -201,3 +201,26 @@ def test_the_loading_curve_of_a_sawtooth_is_straight():
     assert curve.force == pytest.approx(SHARES)
     assert curve.time == pytest.approx(SHARES)
     assert curve.bend == pytest.approx(0.0 * SHARES, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({}, ""),
+        ({"k_x": "2.3 N/m"}, "is the force in millinewtons?"),
+        ({"k_x": "1.3 kN/m"}, "times stiffness times drive velocity as stated"),
+        ({"drive.velocity": "0.2 mm/s"}, "times stiffness times drive velocity as stated"),
+        ({"mass": "80 kg"}, "stiffness over mass is"),
+        ({"normal_load": "4 mN"}, "A friction coefficient of"),
+        ({"k_x": "1.3 +- 0.5 kN/m"}, ""),
+    ],
+)
+def test_a_record_that_contradicts_its_description_is_told_even_without_a_fit(rig, changes, said):
+    """A record of few cycles is not fitted, but its force rises, slips and has a size."""
+    run = st.simulate(rig.slider, 4.5, sample_rate=2e3)
+    plain = st.analysis.record_of(run)
+    record = st.Record(time=plain.time, force=plain.force)
+    text = rig.slider.replace(phi="2 deg").to_toml().replace('"2 deg"', '"2 +- 1 deg"')
+    _, *doubts = sections(compare(record, st.Rig.from_toml(text, changes)))
+    assert said in " ".join(sentence for part in doubts for sentence in part.sentences)
+    assert bool(said) == bool(doubts)
