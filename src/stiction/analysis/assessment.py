@@ -11,7 +11,7 @@ from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import without_cut_off
-from stiction.analysis.motion.doubts.sampling import with_smear
+from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
     turns_round,
@@ -99,6 +99,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     off = error_of_zero(record, cycles, drift)
     if off and friction.kinetic is not None and record.load_variation() <= VARIES:
         friction = friction._replace(kinetic=friction.kinetic.with_error(off))
+    friction = with_supposed_filter(friction, record, cycles.part(~apart), stated)
     unreal = why_no_friction(friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from math import hypot, inf
+from collections.abc import Iterator, Sequence
+from math import hypot, inf, pi
 
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import FEWEST_PER_FALL
+from stiction.analysis.motion.metadata import (
+    BY_SLIPS,
+    FEWEST_PER_FALL,
+    SLOW_SLIP,
+    StatedQuantity,
+)
 from stiction.analysis.record import Record
 from stiction.analysis.signals.even_grid import even_grid, why_not
-from stiction.recording.sensor import low_pass
+from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -166,7 +171,8 @@ def with_smear(friction: Friction, record: Record, cycles: CycleTable) -> Fricti
     lasts = max(_usual_fall(cycles) * rate - 1.0, 1.0)  # samples: a fall seems to last one more
     lower = BETWEEN / lasts * cycles.median("stick_slope") / rate
     between = hypot(lower, _above_samples(record, cycles))
-    peak, trough = _smear(record, cycles)
+    sensor = (record.sensors or {}).get("force")
+    peak, trough = _smear(cycles, sensor.filters if sensor else ())
     static = hypot(peak, between)
     kinetic = hypot(0.5 * max(peak, trough), 0.25 * between)
     return friction.with_errors(break_away=peak, static=static, kinetic=kinetic)
@@ -182,17 +188,34 @@ def _above_samples(record: Record, cycles: CycleTable) -> float:
     return max(float(np.median(cycles["peak"] - largest)), 0.0)
 
 
-def _smear(record: Record, cycles: CycleTable) -> tuple[float, float]:
-    """Return what a stated filter does to peaks and troughs between straight lines, N.
+def with_supposed_filter(
+    friction: Friction, record: Record, cycles: CycleTable, stated: Sequence[StatedQuantity]
+) -> Friction:
+    """Return the friction with the errors of a filter that nobody stated, where slips suggest one.
+
+    They last so long beside the swing of mass and spring as stated that friction alone hardly makes
+    them: the filter is that by which a slip of half a swing would last as long.
+    """
+    its = next((each for each in stated if each.how == BY_SLIPS), None)
+    if its is None or not its.ratio < SLOW_SLIP or not len(cycles):
+        return friction
+    if "force" in (record.sensors or {}):
+        return friction
+    swing = pi / its.stated**0.5
+    peak, trough = _smear(cycles, (LowPass((_usual_fall(cycles) ** 2 - swing**2) ** -0.5, 2),))
+    return friction.with_errors(break_away=peak, static=peak, kinetic=0.5 * max(peak, trough))
+
+
+def _smear(cycles: CycleTable, filters: Sequence[LowPass]) -> tuple[float, float]:
+    """Return what filters do to peaks and troughs between straight lines, N.
 
     The lines are those of the cycles, but for their falls, which are smeared already: a period of
     the cut-off, in quadrature, is what a sudden one takes.
     """
-    sensor = (record.sensors or {}).get("force")
-    if sensor is None or not sensor.filters:
+    if not filters:
         return 0.0, 0.0
-    slowest = sensor.cut_off
-    filters = [each for each in sensor.filters if each.cut < ALONE * slowest]
+    slowest = min(each.cut for each in filters)
+    filters = [each for each in filters if each.cut < ALONE * slowest]
     rate = FINE * max(each.cut for each in filters)
     period, drop = cycles.median("period"), cycles.median("drop")
     fall = max(_usual_fall(cycles) ** 2 - slowest**-2, rate**-2) ** 0.5

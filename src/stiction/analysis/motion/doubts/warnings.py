@@ -270,7 +270,13 @@ def _remedy_of_mass(ratio: float, kind: str) -> str:
             "check mass and stiffness; or a slip takes the spring across as well, as at a "
             "misalignment of some degrees"
         )
-    return "check mass and stiffness"
+    if kind == HARMONIC:
+        return "check mass and stiffness"
+    return (
+        "check mass and stiffness; or a low-pass filter, as of an amplifier, draws slips out and "
+        "smears peaks and troughs: give its cut-off (sensors); or friction that weakens slowly "
+        "makes slips last"
+    )
 
 
 def _drift(record: Record, drift: Drift | None) -> Iterator[str]:
