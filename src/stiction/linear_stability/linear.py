@@ -242,17 +242,28 @@ def growth_rate(slider: Slider) -> float:
     >>> [st.linear_stability.growth_rate(each) > 0 for each in (slider, turned)]
     [True, False]
     """
-    return leading_eigenvalue(disturbance(slider)[0]).real
+    return leading_mode(slider).real
+
+
+def leading_mode(slider: Slider) -> complex:
+    """Return the eigenvalue (1/s) of the mode that grows fastest."""
+    return leading_eigenvalue(quick_matrix(slider)[0])
 
 
 def disturbance(slider: Slider) -> tuple[Floats, Floats]:
     """Return matrix and errors of `Linearisation` at little cost; NaN for errors that cost more."""
+    matrix, response = quick_matrix(slider)
+    return matrix, errors_of(slider, response.error)
+
+
+def quick_matrix(slider: Slider) -> tuple[Floats, Response]:
+    """Return the matrix of `disturbance`, and the response of friction that it is made from."""
     slip = drive_velocity(slider)
     response = quick_response(slider, slip)
     matrix = system(slider, response.slopes)
     if not np.isfinite(matrix).all() or np.isinf(response.error).any():
         raise StictionError(NOT_SMOOTH.format(hypot(*slip)))
-    return matrix, errors_of(slider, response.error)
+    return matrix, response
 
 
 def system(slider: Slider, slopes: Floats) -> Floats:

@@ -13,11 +13,10 @@ from stiction.arrays import Floats
 from stiction.linear_stability.axis import axis, steadily_driven
 from stiction.linear_stability.eigenvalues import (
     CLEAR,
-    leading_eigenvalue,
     leading_growth,
     refined_growth,
 )
-from stiction.linear_stability.linear import BOUNDARY, disturbance, steady_sliding
+from stiction.linear_stability.linear import BOUNDARY, disturbance, leading_mode, steady_sliding
 from stiction.system.slider import Slider
 from stiction.text.units import Quantity
 from stiction.text.validation import equal
@@ -150,7 +149,7 @@ def signed_growth(slider: Slider) -> float:
 
 def leading_frequency(slider: Slider) -> float:
     """Return the frequency (Hz) of the mode that grows fastest."""
-    return abs(leading_eigenvalue(disturbance(slider)[0]).imag) / (2.0 * pi)
+    return abs(leading_mode(slider).imag) / (2.0 * pi)
 
 
 def sign_changes(

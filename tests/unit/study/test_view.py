@@ -12,6 +12,7 @@ from stiction.plotting.page.canvas import figure_of
 from stiction.study.presets import PRESETS, preset
 from stiction.study.store.seal import seal
 from stiction.study.variables.fast_regime import KINDS
+from stiction.study.view import mapping
 from stiction.study.view.boundaries import PHI_C, ZETA, plane
 
 PAPER = st.presets.nakano_popov_2020()
@@ -28,6 +29,21 @@ def store(tmp_path_factory):
     path = tmp_path_factory.mktemp("map") / "a.zarr"
     st.sweep(st.Study(base=BASE, axes=AXES), path)
     return path
+
+
+@pytest.fixture(scope="module", autouse=True)
+def one_plane_for_each_cut():
+    """Theory over the plane of a cut takes longer than its map; six tests draw the same."""
+    known = {}
+
+    def remember(study, x, y, at):
+        key = study.to_json(), x, y, *sorted(at.items())
+        known[key] = known.get(key) or plane(study, x, y, at)
+        return known[key]
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(mapping, "plane", remember)
+        yield
 
 
 def draw(fig):
@@ -85,7 +101,7 @@ def test_what_has_no_value_is_explained(store):
 def test_theory_over_the_plane(store):
     """Where the fields vanish, against the closed forms."""
     study = st.Study(base=BASE, axes=AXES)
-    found = plane(study, "phi", "drive.velocity", {"friction.mu_inf": 0})
+    found = mapping.plane(study, "phi", "drive.velocity", {"friction.mu_inf": 0})
     row = found.y.tolist().index(min(found.y, key=lambda V: abs(V - 1e-3)))
     growth, damping = (field[:, row] for field in found.fields.values())
     phi = [np.interp(0.0, -growth, found.x), np.interp(0.0, damping, found.x)]

@@ -31,8 +31,9 @@ def extrema(values: Counts | Floats) -> Indices:
     """Return the indices of extrema and both ends; of equal neighbours, the first."""
     if len(values) < 2:
         return np.arange(len(values))
-    distinct = np.flatnonzero(np.diff(values, prepend=values[0] - 1))
-    rising = np.diff(values[distinct]) > 0
+    distinct = np.append(0, np.flatnonzero(values[1:] != values[:-1]) + 1)
+    its = values[distinct]
+    rising = its[1:] > its[:-1]
     turns = np.flatnonzero(rising[1:] != rising[:-1]) + 1
     inner = distinct[turns]
     last = len(values) - 1

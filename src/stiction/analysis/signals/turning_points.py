@@ -10,6 +10,7 @@ by hand.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import cache
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -97,12 +98,18 @@ def widest_gap(heights: ArrayLike, step: float, most: float) -> Gap:
     if not few.size:
         return NO_GAP
     first = few[0]  # from there on all are few enough
-    low, high = first + np.array(np.triu_indices(len(edges) - first, 1))
+    low, high = first + pairs_of(len(edges) - first)
     share = ((edges[low] + OVERSHOOT * step) / (edges[high] + OVERSHOOT * step)) ** 2
     worth = _surprise(above_high[high], above_low[low], share)
     worth[worth < EACH * above_high[high]] = 0.0
     best = int(np.argmax(worth))
     return Gap(float(edges[low[best]]), float(edges[high[best]]), float(worth[best]))
+
+
+@cache
+def pairs_of(count: int) -> Indices:
+    """Return the lower and the higher place of each pair of so many, (2, n)."""
+    return np.array(np.triu_indices(count, 1))
 
 
 def _surprise(found: ArrayLike, among: ArrayLike, chance: ArrayLike) -> Floats:
