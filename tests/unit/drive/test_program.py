@@ -349,7 +349,7 @@ def test_ten_thousand_pieces_cost_no_more_each():
     travelled, _ = drive.travel(0.0, times)
     wave = 1e-3 * (1e-3 - np.abs(times % 2e-3 - 1e-3))
     # the breaks are sums of so many durations: 20,000 roundings of 20 s, at 1 mm/s
-    assert travelled == pytest.approx(wave, abs=2e4 * 2.2e-16 * 20.0 * 1e-3)
+    assert np.abs(travelled - wave).max() <= 2e4 * 2.2e-16 * 20.0 * 1e-3
     assert float(drive.rate(19.9995)[0]) == -1e-3
     with pytest.raises(st.DescriptionError, match="has no end"):
         st.protocols.DriveProgram(velocity=1.0, program=[st.protocols.Hold()], repeat=2)
