@@ -19,7 +19,7 @@ from stiction.analysis.motion.doubts.warnings import (
     warnings_of_run,
 )
 from stiction.analysis.motion.doubts.zero import why_no_friction
-from stiction.analysis.motion.drift import error_of_zero, shown_drift
+from stiction.analysis.motion.drift import find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
 from stiction.analysis.motion.metadata import (
     LOADING_RATE,
@@ -88,17 +88,17 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     cycles, turns = found.lasting, imposed_reversal(None, regime)
     none, apart = cycles.part(slice(0)), cycles_apart(cycles)
     friction = _friction(record, found, cycles.part(~apart), regime, turns)
-    drift = shown_drift(record, regime.kind, cycles)
+    drift = find_drift(record, cycles)
+    shown = drift if is_shown(drift, regime.kind) else None
     ends = flat_ends(record.force)
     kind, slips = regime.kind, cycles
     if "slips_at" in regime.evidence and found.few is not None:
         kind, slips = STICK_SLIP, found.few
-    stated = compare_metadata(record, kind, slips, drift, ends)
+    stated = compare_metadata(record, kind, slips, shown, ends)
     alike = none if turns else cycles  # those of two strokes are none
-    doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
-    off = error_of_zero(record, cycles, drift)
-    if off and friction.kinetic is not None and record.load_variation() <= VARIES:
-        friction = friction._replace(kinetic=friction.kinetic.with_error(off))
+    doubts = warnings(record, regime.kind, alike, friction, stated, shown, ends)
+    if record.load_variation() <= VARIES:
+        friction = with_drift(friction, record, cycles, drift)
     friction = with_supposed_filter(friction, record, cycles.part(~apart), stated)
     unreal = why_no_friction(friction, cycles)
     if unreal:

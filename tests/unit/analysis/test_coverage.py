@@ -91,6 +91,48 @@ def test_the_drift_of_a_force(share):
     assert not beyond(*np.transpose(found), 1e-3)
 
 
+def drifts(random, force):
+    """Return a record of a force whose zero drifts by a few per cent to a fifth of it."""
+    time = 5e-3 * np.arange(len(force))
+    change = random.choice([-1.0, 1.0]) * random.uniform(0.02, 0.2) * 2.0
+    return st.Record(time=time, force=force + change * time / time[-1], normal_load=W)
+
+
+def test_friction_of_slips_while_the_zero_drifts():
+    """Peaks held their mean within two errors in half of the records, the break-away in a third."""
+    random, found = np.random.default_rng(8), []
+    for _ in range(40):
+        force = np.r_[np.linspace(0.0, 1.0, 180)[:-1], saw(random, 12, 0.01)]
+        force += 2e-3 * random.normal(size=len(force))
+        friction = assess(drifts(random, force)).friction
+        truth = force[:380].max(), 2.0, 1.5
+        measured = friction.break_away, friction.static, friction.kinetic
+        found.append([(its.force - at, its.error) for its, at in zip(measured, truth, strict=True)])
+    for its in np.moveaxis(found, 0, -1):
+        assert not beyond(*its, 0.0)
+
+
+def test_friction_of_a_mass_that_settles_while_the_zero_drifts():
+    """Its error had nothing of the drift: most means were four errors off."""
+    random, found = np.random.default_rng(9), []
+    for _ in range(40):
+        force = 2.0 * (1.0 - np.exp(-TIME) * np.cos(8.0 * TIME))
+        force += 5e-3 * random.normal(size=len(TIME))
+        seen = assess(drifts(random, force))
+        if seen.friction.kinetic is not None:
+            found.append((seen.friction.kinetic.force - 2.0, seen.friction.kinetic.error))
+    assert len(found) > 30
+    assert not beyond(*np.transpose(found), 0.0)
+
+
+def test_no_line_is_removed_from_a_force_with_several_levels():
+    """It changes from one level to the next, which is no drift."""
+    force = np.repeat([1.0, 1.4, 1.8], len(TIME) // 3 + 1)[: len(TIME)]
+    force += 5e-3 * np.random.default_rng(1).normal(size=len(TIME))
+    record = st.Record(time=TIME, force=force)
+    assert np.array_equal(st.analysis.detrend(record).force, record.force)
+
+
 def test_creep_by_a_stiffness_of_the_loading():
     """A mass that creeps at a tenth of V while it is loaded "crept no faster than" nothing."""
     random, V, k = np.random.default_rng(5), 1e-3, 1e3

@@ -9,6 +9,7 @@ import numpy as np
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import part_means
@@ -40,13 +41,14 @@ class Drift(NamedTuple):
 def find_drift(record: Record, cycles: CycleTable) -> Drift:
     """Fit a line to the middles between peaks and troughs, or to a force without cycles.
 
-    The standard error allows for neighbours that deviate alike.
+    The standard error allows for neighbours that deviate alike. A force that stays at several
+    levels changes from one to the next, and shows none.
     """
     if len(cycles) >= FEWEST_CYCLES:
         at = 0.5 * (cycles["peak_time"] + cycles["trough_time"])
         middle = 0.5 * (cycles["peak"] + cycles["trough"])
         start = float(record.time[0])
-    elif not len(cycles) and len(record) >= 4 * PARTS:
+    elif not len(cycles) and len(record) >= 4 * PARTS and not levels(record):
         half = len(record) // 2
         at, middle = (part_means(each[half:], PARTS) for each in (record.time, record.force))
         start = float(record.time[half])
@@ -65,29 +67,32 @@ def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
     return found.slope, found.correlated_error(at, middle)
 
 
-def shown_drift(record: Record, kind: str, cycles: CycleTable) -> Drift | None:
-    """Return the steady drift of a force; None of a motion whose force does not show one.
+def is_shown(drift: Drift, kind: str) -> bool:
+    """Return whether a motion of some kind shows a steady drift, or none, by its force."""
+    known = kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY)
+    return known and bool(np.isfinite(drift.error))
 
-    A force that stays at several levels changes from one to the next.
+
+def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Drift) -> Friction:
+    """Return the friction with the errors that it has if a drift is that of the zero.
+
+    The zero is right at the first sample, as `detrend` takes it. Each is off by what it drifts
+    until then: peaks and means by that of the middle of their times, where there are no cycles the
+    mean by that of the second half. A drift may be that of friction instead: then they are right,
+    at that time.
     """
-    if kind not in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY):
-        return None
-    drift = find_drift(record, cycles)
-    if not np.isfinite(drift.error) or (not len(cycles) and levels(record)):
-        return None
-    return drift
-
-
-def error_of_zero(record: Record, cycles: CycleTable, drift: Drift | None) -> float:
-    """Return how far a mean force without cycles is off (N) if its drift is that of the zero.
-
-    The zero is right at the first sample, as `detrend` takes it; the mean is that of the second
-    half. A drift may be that of friction instead: then the mean is right, at that time.
-    """
-    if drift is None or not drift.sure or len(cycles):
-        return 0.0
-    first, last = float(record.time[0]), float(record.time[-1])
-    return abs(drift.rate) * (0.5 * (drift.start + last) - first)
+    if not drift.sure:
+        return friction
+    rate, first = abs(drift.rate), float(record.time[0])
+    middle = peak = 0.5 * (drift.start + float(record.time[-1]))
+    if len(cycles):
+        peak = float(cycles["peak_time"].mean())
+        middle = 0.5 * (peak + float(cycles["trough_time"].mean()))
+    broken = peak
+    if friction.break_away is not None:
+        broken = float(record.time[np.argmax(record.force >= friction.break_away.force)])
+    lasts = {"break_away": broken, "static": peak, "kinetic": middle}
+    return friction.with_errors(**{name: rate * (at - first) for name, at in lasts.items()})
 
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:

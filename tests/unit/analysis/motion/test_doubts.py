@@ -9,7 +9,9 @@ from tests.parts import assess
 
 import stiction as st
 from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.doubts.sampling import with_supposed_filter
 from stiction.analysis.motion.friction import friction_of
+from stiction.analysis.motion.metadata import BY_SLIPS, StatedQuantity
 from stiction.presets.preset import on_a_line
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import fastest_slip
@@ -149,6 +151,20 @@ def test_a_filter_that_nobody_stated_is_supposed_where_slips_last_too_long(force
         (found.friction.kinetic, true.kinetic),
     ):
         assert abs(seen.force - truth.force) < 2.0 * seen.error
+
+
+def test_no_filter_is_supposed_by_slips_that_are_not_long(force) -> None:
+    """A part of a record may have longer slips than the whole: no filter makes that shorter."""
+    record = st.Record(time=force[0], force=force[1], **KNOWN)
+    seen, swing = assess(record), 4000.0
+    part = StatedQuantity("k/m", "1/s²", 0.3 * swing, 1.0, swing, 0.4, 1.4, BY_SLIPS, "later")
+    short = swings(record).lasting
+    falls = short["trough_time"] - short["peak_time"]
+    assert np.median(falls) > np.pi / swing**0.5  # longer slips than a half swing
+    assert with_supposed_filter(seen.friction, record, short, [part]) != seen.friction
+    long = part._replace(stated=100.0, found=30.0)
+    assert np.median(falls) < np.pi / long.stated**0.5
+    assert with_supposed_filter(seen.friction, record, short, [long]) == seen.friction
 
 
 def test_a_break_away_before_steady_sliding() -> None:

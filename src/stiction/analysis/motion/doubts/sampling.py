@@ -201,8 +201,10 @@ def with_supposed_filter(
         return friction
     if "force" in (record.sensors or {}):
         return friction
-    swing = pi / its.stated**0.5
-    peak, trough = _smear(cycles, (LowPass((_usual_fall(cycles) ** 2 - swing**2) ** -0.5, 2),))
+    longer = _usual_fall(cycles) ** 2 - pi**2 / its.stated
+    if not longer > 0.0:  # of other slips than those that are too long
+        return friction
+    peak, trough = _smear(cycles, (LowPass(longer**-0.5, 2),))
     return friction.with_errors(break_away=peak, static=peak, kinetic=0.5 * max(peak, trough))
 
 
