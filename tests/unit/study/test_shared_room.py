@@ -32,7 +32,7 @@ def test_a_block_keeps_what_its_runs_were(tmp_path):
     angles = {"phi": st.Grid("1 deg", "9 deg", 60)}
     study = st.Study(base=base, axes=angles, traces=[*TRACES], trace_samples=20)
     st.sweep(study, tmp_path / "a.zarr")
-    found, wanted = st.open_study(tmp_path / "a.zarr"), stored_variables(study)
+    found, wanted = st.open_study(tmp_path / "a.zarr").load(), stored_variables(study)
     assert study.layout.block[0] > 1
     for place in range(60):
         for its, value in zip(wanted, run_one(study, wanted, (place,), never).values, strict=True):
