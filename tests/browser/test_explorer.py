@@ -606,6 +606,8 @@ def test_letters_have_contrast(modules, scheme):
         return (high + 0.05) / (low + 0.05)
 
     modules.tab.emulate_media(color_scheme=scheme)
+    white = module("drawing.js", '({ shade }) => shade("#fff")')
+    until(lambda: (modules.value(white) == "#fff") == (scheme == "light"), scheme)
     known = modules.value(module("drawing.js", "({ ...all }) => all"))
     names = ("INK", "SOFT", "BLUE", "RED", "GREEN", "ORANGE", "PURPLE", "GREY")
     letters = [known["LETTERS"].get(known[name], known[name]) for name in names]
@@ -641,14 +643,12 @@ def test_a_page_that_turns_dark_is_drawn_anew(page):
     """Its curves were light ones on a dark ground until the next run."""
     shown = page.drawn_picture("#series-still")
     page.tab.emulate_media(color_scheme="dark")
+    until(lambda: page.picture("#series-still") != shown, "dark curves")
     white = page.value(module("drawing.js", '({ shade }) => shade("#fff")'))
     paper = "getComputedStyle(document.querySelector('.layers')).backgroundColor"
     assert page.value(paper) == white.replace(",1)", ")").replace("rgba", "rgb").replace(",", ", ")
-    page.settle()
-    assert page.picture("#series-still") != shown
     page.tab.emulate_media(color_scheme="light")
-    page.settle()
-    assert page.picture("#series-still") == shown
+    until(lambda: page.picture("#series-still") == shown, "the curves as they were")
 
 
 def test_ticks_of_a_study_have_the_prefix_of_its_axis(modules):

@@ -12,9 +12,11 @@ export const SERIF = 'italic 14px "STIX Two Text", "DejaVu Serif", Georgia, seri
 // In a dark page a colour is as light as its negative on a ground of 8 %, and keeps its hue.
 const DARK = matchMedia("(prefers-color-scheme: dark)");
 const shades = new Map();
+let dark = DARK.matches; // who asks it between a change and its event takes the event away
+DARK.addEventListener("change", (event) => { dark = event.matches; });
 
 export function shade(color) {
-  if (!DARK.matches || typeof color !== "string") return color; // a pattern has colours of its own
+  if (!dark || typeof color !== "string") return color; // a pattern has colours of its own
   if (!shades.has(color)) shades.set(color, negative(color));
   return shades.get(color);
 }
