@@ -3,11 +3,11 @@
 ``python -m benchmarks.accuracy.mechanisms --library FOLDER``: for three rigs and four sets of
 channels, the classifier's balanced accuracy, how often a claim is wrong, how often rotation is
 called so, and what becomes of records by laws that are not claimed: a Stribeck curve with a static
-peak, with and without misalignment; constant friction with one, misaligned; a friction limit that
-is an ellipse; coefficients that drift. Where rotation is claimed, whether its mass is told to be
-held, and whether it is, by the simulated truth. From force alone, how many of these a classifier
-finds that has learned this law too. Records are those of `benchmarks.accuracy.fits`. FOLDER holds
-the simulations, so that a second call only compares.
+peak, with and without misalignment; constant friction and the rig's own law with one, misaligned; a
+friction limit that is an ellipse; coefficients that drift. Where rotation is claimed, whether its
+mass is told to be held, and whether it is, by the simulated truth. From force alone, how many of
+these a classifier finds that has learned this law too. Records are those of
+`benchmarks.accuracy.fits`. FOLDER holds the simulations, so that a second call only compares.
 """
 
 from __future__ import annotations
@@ -32,13 +32,7 @@ from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE, surely
 from stiction.inference.mechanism.rest import ALIKE, MOSTLY, Rest, shares_at_rest
-from stiction.inference.mechanism.rivals import (
-    MISALIGNED_STATIC,
-    Levels,
-    Mechanism,
-    levels,
-    mechanisms,
-)
+from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.mechanism.static_check import StaticCheck
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
@@ -76,6 +70,13 @@ def foreign(rig: Rig, conditions: Conditions) -> Iterator[Mechanism]:
     kept.pop("phi")
     yield Mechanism("Stribeck with a static peak, aligned",
                     (with_law(straight, law, {**kept, **own}, conditions),))  # fmt: skip
+
+
+def peaks(rivals: Sequence[Mechanism]) -> Iterator[Mechanism]:
+    """Yield each law of static friction on the misaligned rig by itself."""
+    for its in rivals[-1].plans:
+        law = type(its.slider.friction).__name__
+        yield Mechanism(f"{law} with a static peak, misaligned", (its,))
 
 
 def stribeck(rig: Rig, level: Levels) -> tuple[dict[str, Prior], Stribeck]:
@@ -262,16 +263,15 @@ def main() -> None:
     for name in options.rigs:
         start = perf_counter()
         rig, conditions = rig_of(name)
-        rivals, strange = mechanisms(rig, [conditions]), [*foreign(rig, conditions)]
+        rivals = mechanisms(rig, [conditions])
+        strange = [*foreign(rig, conditions), *peaks(rivals)]
         folder = options.library
         first, second, third = range(options.seed, options.seed + 3)
         checked = simulate(rivals, options.simulations, folder, seed=first)
         known = checked.among(CLAIMED)
-        tested = simulate(rivals, options.records, folder, seed=second)
-        unseen = tested.among(CLAIMED)
+        unseen = simulate(rivals[:-1], options.records, folder, seed=second).among(CLAIMED)
         others = [simulate([each], options.records, folder, seed=third) for each in strange]
-        others.append(tested.among((MISALIGNED_STATIC,)))
-        plans = [each.plans[0] for each in (*strange, rivals[-1])]
+        plans = [each.plans[0] for each in strange]
         pairs = [(rivals[0].plans[0], known), (rivals[0].plans[0], unseen)]
         pairs += zip(plans, others, strict=True)
         at_rest = [shares_at_rest(plan, each.parameters[0]) for plan, each in pairs]
@@ -293,8 +293,7 @@ def main() -> None:
             print(f"  {' + '.join(channels)}", flush=True)
             which = features_from(channels, conditions, rig.slider)
             parts = [Part.of(each, which, bend) for each in (known, unseen, *others)]
-            names = [*(each.name for each in strange), MISALIGNED_STATIC]
-            named = [*zip(names, parts[2:], strict=True)]
+            named = [*zip((each.name for each in strange), parts[2:], strict=True)]
             every = checked._replace(features=checked.features[:, which])
             report(parts[0], every, parts[1], named, phi, steady, drifts, rest)
             if channels == USED[:1]:

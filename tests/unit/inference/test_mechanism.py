@@ -139,18 +139,25 @@ def test_an_aligned_rig_is_refused_because_nothing_rotates(rig, rotating):
 
 
 def test_every_law_drawn_from_a_mechanism_is_a_valid_one(rig, rotating):
-    """Corners of the priors and 200 points between, through the law's own validation."""
+    """Corners of the priors and 200 points between, through the law's own validation.
+
+    Where priors overlap so that a static peak may lie below the coefficient at rest, as they draw.
+    """
     random = np.random.default_rng(3)
     conditions = [observe(rotating, rig.slider).conditions]
     for rival in mechanisms(rig, conditions):
         for plan in rival.plans:
             law = plan.slider.friction
             own = {path: prior for path, prior in plan.priors.items() if "friction." in path}
-            for shares in (*random.integers(0, 2, (60, len(own))), *random.random((200, len(own)))):
-                values = {
-                    path.removeprefix("friction."): float(prior.quantile(share))
-                    for (path, prior), share in zip(own.items(), shares, strict=True)
-                }
+            corners, between = random.integers(0, 2, (60, len(own))), random.random((200, len(own)))
+            draws = [
+                {path: prior.quantile(share) for (path, prior), share in
+                 zip(own.items(), shares, strict=True)} for shares in (*corners, *between)
+            ]  # fmt: skip
+            if plan.restricted:
+                draws = [plan.parameters(plan.draw(random)) for _ in range(60)]
+            for each in draws:
+                values = {path.removeprefix("friction."): float(each[path]) for path in own}
                 drawn = type(law)(**{**law._asdict(), **values})
                 assert {path: getattr(drawn, path) for path in values} == pytest.approx(values)
 
@@ -499,8 +506,37 @@ def test_static_friction_on_the_misaligned_rig_is_simulated_but_not_claimed(rig,
     conditions = [observe(rotating, rig.slider).conditions]
     *_, last = mechanisms(rig, conditions)
     assert last.name == MISALIGNED_STATIC
-    assert "phi" in last.plans[0].priors
+    assert all("phi" in plan.priors for plan in last.plans)
     assert MISALIGNED_STATIC not in odds.names
+
+
+def test_the_static_peak_stands_above_constant_friction_and_above_the_law_of_the_rig(rig, rotating):
+    conditions = [observe(rotating, rig.slider).conditions]
+    *_, last = mechanisms(rig, conditions)
+    constant, weakening = last.plans
+    assert type(constant.slider.friction) is st.Coulomb
+    assert type(weakening.slider.friction) is type(rig.slider.friction)
+    assert weakening.basis == constant.basis == rig.slider
+    random = np.random.default_rng(6)
+    for values in (weakening.parameters(weakening.draw(random)) for _ in range(50)):
+        assert values["friction.mu_static"] >= values["friction.mu_0"]
+        assert values["friction.mu_0"] > values["friction.mu_inf"]
+
+
+@pytest.mark.parametrize(
+    "law",
+    [
+        st.Coulomb(mu_0=0.2),  # the first law already
+        st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f="10 mm/s", mu_static=0.22),  # its own
+        st.laws.Anisotropic(st.Coulomb(mu_0=0.2), ratio=0.8),  # takes none
+    ],
+)
+def test_a_law_without_room_for_a_static_peak_is_simulated_with_none(rig, rotating, law):
+    conditions = [observe(rotating, rig.slider).conditions]
+    priors = {path: its for path, its in rig.priors.items() if not path.startswith("friction.")}
+    other = rig._replace(slider=rig.slider.model_copy(update={"friction": law}), priors=priors)
+    *_, last = mechanisms(other, conditions)
+    assert [type(plan.slider.friction) for plan in last.plans] == [st.Coulomb]
 
 
 # whether the mass rests where rotation is claimed

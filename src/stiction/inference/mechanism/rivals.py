@@ -8,8 +8,9 @@
 - LuGre: bristles that bend and slip, aligned.
 
 And one beside which a claim of rate and state or of LuGre has to hold: static friction on the rig
-as it is misaligned. Where it does not show, it passes for rotation; it is claimed in place of that
-where the mass is held between slips by both (`rest`).
+as it is misaligned, above constant friction or above the law of the description. Where it does not
+show, it passes for rotation; it is claimed in place of that where the mass is held between slips by
+both (`rest`).
 
 Every mechanism has the apparatus of the description and its priors. Coefficients of another law
 have the range of those that the description's law has at rest and in rapid slip; its other
@@ -44,6 +45,7 @@ MISALIGNED_STATIC = "static friction on the misaligned rig"
 
 DRAWN = 400  # of the description's law, for the range of its coefficients
 WIDER = 0.1  # by which the range is widened on either side: another law, other coefficients
+PEAK = 1.5  # largest static coefficient over the largest of the description's law at rest
 DIRECT = 0.01, 0.15  # direct effect a over the fall of the coefficient
 EVOLVING = 0.05, 0.5  # evolution effect b over it
 DISTANCE = 1e-3, 0.1  # D_c over the distance that the spring is let go by this fall
@@ -74,7 +76,7 @@ class Levels(NamedTuple):
 def mechanisms(rig: Rig, conditions: Sequence[Conditions]) -> tuple[Mechanism, ...]:
     """Return the mechanisms that are compared for records under these conditions.
 
-    The last one, `MISALIGNED_STATIC`, is never claimed.
+    The last one, `MISALIGNED_STATIC`, is what claims are checked against.
     """
     slider, level = rig.slider, levels(rig)
     rotation = plan_for(rig, conditions)  # that of a fit, whose simulations are shared
@@ -107,8 +109,26 @@ def mechanisms(rig: Rig, conditions: Sequence[Conditions]) -> tuple[Mechanism, .
             ),
         ),
         Mechanism(LUGRE, (with_law(straight, LuGre, aligned),)),
-        Mechanism(MISALIGNED_STATIC, (with_law(slider, Coulomb, turned),)),
+        Mechanism(
+            MISALIGNED_STATIC,
+            (with_law(slider, Coulomb, turned), *with_peak(rig, level, conditions)),
+        ),
     )
+
+
+def with_peak(rig: Rig, level: Levels, conditions: Sequence[Conditions]) -> Iterator[Plan]:
+    """Yield the plan of the rig's own law below a static coefficient.
+
+    None if that law has such a coefficient already or cannot have one, or is constant without it.
+    """
+    slider, path = rig.slider, "friction.mu_static"
+    law: Any = slider.friction
+    has_none = "mu_static" in getattr(law, "_fields", ()) and law.mu_static == 0.0
+    if isinstance(law, Coulomb) or path in rig.priors or not has_none:
+        return
+    peak = Uniform(level.static[0], PEAK * level.static[1])
+    held = slider.model_copy(update={"friction": law._replace(mu_static=peak.high)})
+    yield plan(held, {**rig.priors, path: peak}, conditions)._replace(basis=slider)
 
 
 def split(priors: Mapping[str, Prior]) -> tuple[dict[str, Prior], dict[str, Prior]]:
