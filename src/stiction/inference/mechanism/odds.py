@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats, xr
 from stiction.inference.features import MIDDLES
 from stiction.inference.mechanism.likeness import Likeness
-from stiction.inference.mechanism.rest import Rest
+from stiction.inference.mechanism.rest import ALIKE, Rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
     MISALIGNED_STATIC,
@@ -171,6 +171,12 @@ class Odds(Report):
                 f"{self.steady:.1g}), which is not simulated. Take cycles after running in "
                 f"(--begin). {STATE_DRIFT}"
             )
+        if self.rest is not None and not self.rest.known:
+            found.append(
+                f"Whether the mass creeps or is held is not known: of {ALIKE} simulations of "
+                f"{name} with the parameters that this record seems to have, hardly any have as "
+                "many cycles of stick and slip."
+            )
         return [*found, self.doubt] if self.doubt else found
 
     def tables(self) -> list[Section]:
@@ -215,7 +221,7 @@ class Odds(Report):
                 "The loading is not as straight as static friction in one dimension makes it: that "
                 "alone does not explain this record."
             )
-        if self.rest is not None:
+        if self.rest is not None and self.rest.known:
             found.append(self._at_rest(self.rest))
         if self.decision in TURNING and CHANNEL not in self.channels:
             found.append(
@@ -276,7 +282,7 @@ class Odds(Report):
         }
         places = {"mechanism": [*self.names], "called": [*self.names, UNDECIDED]}
         about = {"decision": self.decision, "probability_of_such_a_trend": self.steady}
-        if self.rest is not None:
+        if self.rest is not None and self.rest.known:
             about["share_at_rest"] = self.rest.middle
         return xr.Dataset(columns, places, about)
 

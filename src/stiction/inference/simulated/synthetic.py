@@ -28,12 +28,13 @@ NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names o
 class Synthetic(NamedTuple):
     """A synthetic record: channels of samples a step apart, and the cycles that are used.
 
-    `rest` is the share of the drive's way across, in these loadings, that the mass does not follow.
+    `motion` is what its sensors measure, and `slider` the rig that moves so.
     """
 
     channels: dict[str, Floats]
     cycles: Cycles
-    rest: float
+    motion: SampledMotion
+    slider: Slider
 
 
 def draw(plan: Plan, number: int, seed: int) -> tuple[Floats, Iterator[Synthetic | None]]:
@@ -68,20 +69,7 @@ def synthesise(
         found = slip_cycles(channels["force"], noise)
         enough = min(len(found.peak), len(motion.troughs)) >= wanted  # not of noise
         last = Cycles(*(each[-wanted:] for each in found))
-        yield Synthetic(channels, last, rest(motion, rig, last, conditions)) if enough else None
-
-
-def rest(motion: SampledMotion, rig: Slider, cycles: Cycles, conditions: Conditions) -> float:
-    """Return the share of the drive's way across, in all loadings, that the mass does not follow.
-
-    That way stretches the spring across. It is 1 where the mass is held from slip to slip, and 0
-    where it follows from the beginning, creeping or by small slips of its own; 1 without any way.
-    """
-    places = min(conditions.block, MOST_PLACES)
-    ends = np.stack([cycles.before + 1, cycles.peak]) * places  # the slip is over, and not begun
-    (stretched,), (lasts,) = (np.diff(x[ends], axis=0) for x in (motion.rows[:, 1], motion.time))
-    way = conditions.velocity * rig.direction[1] * float(lasts.sum())
-    return min(max(float(stretched.sum()) / way, 0.0), 1.0) if way else 1.0
+        yield Synthetic(channels, last, motion, rig) if enough else None
 
 
 def measure(
