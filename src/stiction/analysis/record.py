@@ -487,17 +487,24 @@ def _along_cell(x: float, y: float, f_x: Floats, f_y: Floats) -> Floats:
 
 def apparatus(slider: Slider) -> dict[str, float | None]:
     """Return what a record states of its apparatus, as a slider has it, by the record's fields."""
-    cell = cell_axis(slider)
-    share = _share(cell.x, cell.y, slider)
-    stiffness = (
-        slider.along_drive(cell.x * slider.k_x, cell.y * slider.k_y) / share if share else 0.0
-    )
     return {
         "normal_load": slider.normal_load,
-        "stiffness": stiffness if stiffness > 0.0 else None,  # loading across may unload the cell
-        "drive_velocity": abs(cell.velocity) or None,
+        "stiffness": stiffness_of_cell(slider, slider.k_y),
+        "drive_velocity": abs(cell_axis(slider).velocity) or None,
         "mass": slider.masses[0],
     }
+
+
+def stiffness_of_cell(slider: Slider, k_y: float) -> float | None:
+    """Return by how much the force along a load cell rises over the drive's way along it, N/m.
+
+    That is while the mass rests, with a stiffness `k_y` across; with 0 while the mass follows the
+    drive across. None where loading unloads the cell.
+    """
+    cell = cell_axis(slider)
+    share = _share(cell.x, cell.y, slider)
+    stiffness = slider.along_drive(cell.x * slider.k_x, cell.y * k_y) / share if share else 0.0
+    return stiffness if stiffness > 0.0 else None
 
 
 def record_of(run: Trajectory) -> Record:

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
-from stiction.analysis.record import Record, apparatus
+from stiction.analysis.record import Record, apparatus, stiffness_of_cell
 from stiction.analysis.report import analyse
-from stiction.analysis.signals.correlated_noise import interval_95
+from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
@@ -26,6 +26,9 @@ from stiction.inference.progress import silent
 from stiction.inference.rig import Rig
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.library import library_folder
+from stiction.inference.simulated.synthetic import NOT_OF_THE_SLIDER
+from stiction.system.parameter import change_unchecked
+from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
@@ -48,7 +51,9 @@ HELD = (
     ": the friction at rest of its law holds the mass between slips, while the force on it turns "
     "as it grows"
 )
-FIELDS = {"k_x": "stiffness", "drive": "drive_velocity"}  # of a record, for a description's
+# relative: a value that priors change by more is not sure; by more of the stiffness along a cell's
+# axis, the spring across loads it
+SURE_OF, BY_ACROSS = 0.02, 0.1
 WARNINGS, GROUNDS = "Warnings about the record", "What that rests on"
 CHANGES = "What would change it"
 NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
@@ -149,16 +154,42 @@ def compare(
 def with_description(record: Record, rig: Rig) -> Record:
     """Return a record that states what its description is sure of, where it states nothing itself.
 
-    Its force may contradict that: a stiffness, a mass, a load or a unit that is wrong.
+    Its force may contradict that: a stiffness, a mass, a load or a unit that is wrong. Of a cell at
+    an angle the stiffness is not stated where the spring across loads it as well: that does so
+    until the mass follows the drive across, and no longer.
     """
-    unsure = {FIELDS.get(path.partition(".")[0], path) for path in rig.priors}
-    unsure |= {"stiffness", "mass"} if "springs" in unsure else set()
-    known = {
+    slider = turn(rig.slider, record)
+    known, alone = apparatus(slider), stiffness_of_cell(slider, 0.0)
+    sure = {"stiffness": _is_same(known["stiffness"], alone, BY_ACROSS)}
+    for one in _at_ends(rig):
+        for name, value in apparatus(turn(one, record)).items():
+            sure[name] = sure.get(name, True) and _is_same(value, known[name], SURE_OF)
+    stated = {
         name: value
-        for name, value in apparatus(rig.slider).items()
-        if getattr(record, name) is None and name not in unsure
+        for name, value in known.items()
+        if getattr(record, name) is None and sure.get(name, True)
     }
-    return record.model_copy(update=known)
+    return record.model_copy(update=stated)
+
+
+def turn(slider: Slider, record: Record) -> Slider:
+    """Return the slider as it stood for a record, which may state that the rig was turned."""
+    return slider.model_copy(update={"phi": slider.phi + (record.turned or 0.0)})
+
+
+def _at_ends(rig: Rig) -> Iterator[Slider]:
+    """Yield the slider with each uncertain value at either end of its prior."""
+    for path, prior in rig.priors.items():
+        if path not in NOT_OF_THE_SLIDER:
+            for value in prior.quantile(np.array(BOUNDS_95)).tolist():
+                yield change_unchecked(rig.slider, path, value)
+
+
+def _is_same(value: float | None, other: float | None, apart: float) -> bool:
+    """Return whether two values are known, and differ relatively by no more than `apart`."""
+    if value is None or other is None:
+        return False
+    return abs(value - other) <= apart * abs(other)
 
 
 def withdraw(found: RecordComparison) -> RecordComparison:

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.uncertain import SIMULATIONS, record_of
+from tests.uncertain import SIMULATIONS, TEXT, record_of
 
 import stiction as st
 from stiction.auditing import tolerance
@@ -17,6 +17,7 @@ from stiction.auditing.measured import (
     compare,
     sections,
     verdict,
+    with_description,
     withdraw,
 )
 from stiction.auditing.page import page
@@ -39,6 +40,7 @@ def found(rig, record, libraries):
 def test_a_record_of_the_rig_is_explained_and_its_misalignment_found(found):
     phi = found.measured.fit["phi"]
     assert phi.low < np.radians(2.5) < phi.high
+    assert found.measured.stated.mass == 0.08
     first = found.tables()[0]
     assert first.title == "What the record says"
     said, described = first.sentences
@@ -224,3 +226,76 @@ def test_a_record_that_contradicts_its_description_is_told_even_without_a_fit(ri
     _, *doubts = sections(compare(record, st.Rig.from_toml(text, changes)))
     assert said in " ".join(sentence for part in doubts for sentence in part.sentences)
     assert bool(said) == bool(doubts)
+
+
+SURE = {"normal_load", "stiffness", "drive_velocity", "mass"}
+SPRINGS = """
+[[slider.springs]]
+name = "leaf"
+k_x = {leaf}
+k_y = "0.9 MN/m"
+[[slider.springs]]
+name = "load cell"
+k_x = "46 kN/m"
+k_y = {across}
+"""
+
+
+def facts(changes, springs="", **of_record):
+    """Return what a record that states nothing takes from a description, by field."""
+    text = TEXT.replace("+- 0.1 ", "").replace(
+        '{value = "0.9 MN/m", uncertainty = "10 %"}', '"0.9 MN/m"'
+    )
+    if springs:
+        kept = [line for line in text.splitlines() if not line.startswith("k_")]
+        text = "\n".join(kept).replace("[friction]", f"{springs}[friction]")
+    record = st.Record(time=np.arange(9.0), force=np.arange(9.0), **of_record)
+    found = with_description(record, st.Rig.from_toml(text, changes))
+    return {name: its for name in SURE if (its := getattr(found, name)) is not None}
+
+
+@pytest.mark.parametrize(
+    ("changes", "unsure"),
+    [
+        ({}, set()),
+        ({"k_x": "2.3 +- 0.1 kN/m"}, {"stiffness"}),
+        ({"k_x": "2.3 +- 0.01 kN/m"}, set()),  # as sure as it needs to be
+        ({"k_y": "0.9 +- 0.4 MN/m"}, set()),  # the cell reads the spring x
+        ({"mass": "80 +- 9 g"}, {"mass"}),
+        ({"normal_load": "4 +- 1 N"}, {"normal_load"}),
+        ({"drive.velocity": "0.5 +- 0.1 mm/s"}, {"drive_velocity"}),
+        ({"phi": "5 +- 20 deg"}, {"drive_velocity"}),  # along the spring
+        ({"cell_angle": "0 deg"}, {"stiffness"}),
+        ({"cell_angle": "0 deg", "phi": "0.2 deg"}, set()),  # the spring across adds 0.5 %
+        ({"cell_angle": "0 deg", "phi": "0.2 +- 2 deg"}, {"stiffness"}),
+        ({"cell_angle": "0 +- 5 deg", "phi": "1 deg"}, {"stiffness"}),
+        ({"cell_angle": "90 deg", "phi": "1 deg"}, {"stiffness", "drive_velocity"}),
+    ],
+)  # fmt: skip
+def test_a_record_states_what_its_description_is_sure_of(changes, unsure):
+    """Along a cell at an angle k_y counts; stated, it was 12 times what a creeping mass shows."""
+    changes = {"phi": "1 deg", "friction.mu_0": "0.6 +- 0.1"} | changes
+    assert facts(changes).keys() == SURE - unsure
+
+
+@pytest.mark.parametrize(
+    ("leaf", "across", "unsure"),
+    [
+        ('"2.3 kN/m"', '"1 MN/m"', set()),
+        ('"2.3 +- 0.5 kN/m"', '"1 MN/m"', {"stiffness"}),
+        ('"2.3 kN/m"', '"1 +- 0.5 MN/m"', set()),
+    ],
+)
+def test_a_stiffness_is_as_unsure_as_the_springs_in_series_that_make_it(leaf, across, unsure):
+    found = facts({"phi": "1 +- 0.1 deg"}, SPRINGS.format(leaf=leaf, across=across))
+    assert found.keys() == SURE - unsure
+    assert found.get("stiffness", 2190.4762) == pytest.approx(2190.4762)  # 1/(1/2300 + 1/46000)
+
+
+def test_what_a_record_states_stays_and_it_is_that_of_the_rig_as_it_was_turned():
+    changes = {"phi": "2 +- 0.1 deg"}
+    found = facts(changes, stiffness=5.0, turned="58 deg")
+    assert found["stiffness"] == 5.0
+    assert found["mass"] == 0.08
+    assert "drive_velocity" in facts(changes)
+    assert found["drive_velocity"] == pytest.approx(0.25e-3)
