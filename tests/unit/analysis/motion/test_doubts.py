@@ -153,6 +153,20 @@ def test_a_filter_that_nobody_stated_is_supposed_where_slips_last_too_long(force
         assert abs(seen.force - truth.force) < 2.0 * seen.error
 
 
+def test_a_filter_is_supposed_unless_one_is_stated(force) -> None:
+    """A sensor of which the noise is known may have a filter that nobody stated."""
+    time, newtons = force
+    cut = st.presets.nakano_popov_2020().natural_frequency_x
+    smeared = low_pass(newtons, [LowPass(cut, 2)], 2e3)
+    sensors = None, st.Sensor(noise="1 mN"), st.Sensor(filter=30.0 * cut)
+    records = [
+        st.Record(time=time, force=smeared, sensors=each and {"force": each}, **KNOWN)
+        for each in sensors
+    ]
+    silent, noisy, filtered = (assess(each).friction.break_away.error for each in records)
+    assert silent == noisy > 10.0 * filtered
+
+
 def test_no_filter_is_supposed_by_slips_that_are_not_long(force) -> None:
     """A part of a record may have longer slips than the whole: no filter makes that shorter."""
     record = st.Record(time=force[0], force=force[1], **KNOWN)

@@ -199,7 +199,8 @@ def with_supposed_filter(
     its = next((each for each in stated if each.how == BY_SLIPS), None)
     if its is None or not its.ratio < SLOW_SLIP or not len(cycles):
         return friction
-    if "force" in (record.sensors or {}):
+    sensor = (record.sensors or {}).get("force")
+    if sensor is not None and sensor.filters:
         return friction
     longer = _usual_fall(cycles) ** 2 - pi**2 / its.stated
     if not longer > 0.0:  # of other slips than those that are too long
