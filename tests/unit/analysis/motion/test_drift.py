@@ -1,0 +1,68 @@
+"""Friction beside a zero that drifts: the further error is by how much each is off."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.drift import Drift, find_drift, is_shown, with_drift
+from stiction.analysis.motion.friction import Friction, Measured
+from stiction.analysis.motion.regime.kinds import (
+    HARMONIC,
+    SETTLING,
+    STEADY,
+    STICK_SLIP,
+    TRANSITIONAL,
+)
+
+RATE, BEGIN = -0.01, 100.0  # N/s, s
+KNOWN = Drift(RATE, 1e-4, 0.0, BEGIN, stands_out=False, sure=True)
+PEAKS, TROUGHS = np.array([20.0, 27.0, 34.0, 41.0]), np.array([24.0, 31.0, 38.0, 45.0])
+
+
+def exact(force: float) -> Measured:
+    return Measured(force, 0.0, 0.0)
+
+
+def further(record: st.Record, peaks: int, drift: Drift = KNOWN) -> tuple[float, float, float]:
+    """Return the errors that a drift adds to break-away (at 5 N), static and kinetic friction."""
+    columns = dict.fromkeys(COLUMNS, PEAKS) | {"peak_time": PEAKS, "trough_time": TROUGHS}
+    cycles = CycleTable({name: BEGIN + each[:peaks] for name, each in columns.items()}, 0.0)
+    found = with_drift(Friction(exact(5.0), exact(6.0), exact(4.0), {}), record, cycles, drift)
+    return tuple(each.error for each in (found.break_away, found.static, found.kinetic))
+
+
+TIME = BEGIN + np.arange(0.0, 51.0)
+LOADED = st.Record(time=TIME, force=np.minimum(TIME - BEGIN, 5.5))  # at 5 N after 5 s
+
+
+def test_each_is_off_by_what_the_zero_drifts_until_its_time():
+    assert further(LOADED, 4) == pytest.approx((0.05, 0.305, 0.325))
+    unsure = KNOWN._replace(sure=False, stands_out=True)
+    assert further(LOADED, 4, unsure) == (0.0, 0.0, 0.0)
+
+
+def test_a_mean_without_cycles_is_off_by_the_drift_until_its_middle():
+    late = KNOWN._replace(start=BEGIN + 30.0)
+    assert further(LOADED, 0, late) == pytest.approx((0.05, 0.4, 0.4))
+    record = LOADED.model_copy(update={"force": np.full(len(TIME), 4.0)})
+    slid = with_drift(Friction(None, None, exact(4.0), {}), record, swings(record).lasting, late)
+    assert slid.kinetic.error == pytest.approx(0.4)
+    assert slid.break_away is None
+
+
+@pytest.mark.parametrize("kind", [STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY])
+def test_a_steady_motion_shows_whether_its_force_drifts(kind):
+    assert is_shown(KNOWN, kind)
+    assert not is_shown(KNOWN._replace(error=np.nan), kind)
+    assert not is_shown(KNOWN, SETTLING)
+
+
+def test_a_force_at_several_levels_shows_no_drift():
+    time = np.arange(0.0, 30.0, 0.01)
+    noise = 5e-3 * np.random.default_rng(1).normal(size=len(time))
+    for force, known in ((np.repeat([1.0, 1.4, 1.8], 1000), False), (1.0 + 0.01 * time, True)):
+        record = st.Record(time=time, force=force + noise)
+        drift = find_drift(record, swings(record).lasting)
+        assert np.isfinite(drift.error) == drift.sure == known
