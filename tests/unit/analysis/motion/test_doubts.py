@@ -1,6 +1,7 @@
 """Friction of any motion, and doubts in words: what cannot be true, drift, a zero that is off."""
 
 import re
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -8,9 +9,10 @@ from tests.drawn import inside
 from tests.parts import assess
 
 import stiction as st
+from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.doubts.sampling import with_supposed_filter
-from stiction.analysis.motion.friction import friction_of
+from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
+from stiction.analysis.motion.friction import Friction, Measured, friction_of
 from stiction.analysis.motion.metadata import BY_SLIPS, StatedQuantity
 from stiction.presets.preset import on_a_line
 from stiction.recording.sensor import LowPass, low_pass
@@ -165,6 +167,59 @@ def test_a_filter_is_supposed_unless_one_is_stated(force) -> None:
     ]
     silent, noisy, filtered = (assess(each).friction.break_away.error for each in records)
     assert silent == noisy > 10.0 * filtered
+
+
+PERIOD, FALL, RATE = 1.0, 0.05, 1e3  # s, s and Hz of a force that rises and falls in lines by 1 N
+
+
+def table(fall: float, count: int = 6) -> CycleTable:
+    """Return cycles of that force, whose falls seem to last so long."""
+    columns = dict.fromkeys(COLUMNS, np.ones(count)) | {"period": np.full(count, PERIOD)}
+    columns |= {"peak_time": np.arange(count) + 1.0, "trough_time": np.arange(count) + 1.0 + fall}
+    return CycleTable(columns, 0.0)
+
+
+def lost(filters: Sequence[LowPass]) -> tuple[float, float]:
+    """Return by how much filters lower the peaks of that force, and raise its troughs, N."""
+    time = np.arange(0.0, 12.0, 1.0 / RATE)
+    force = np.interp(time % PERIOD, [0.0, PERIOD - FALL, PERIOD], [0.0, 1.0, 0.0])
+    late = low_pass(force, filters, RATE)[time > 6.0]
+    return 1.0 - late.max(), late.min()
+
+
+def further(friction: Friction) -> tuple[float, ...]:
+    return tuple(each.error for each in (friction.break_away, friction.static, friction.kinetic))
+
+
+EXACT = Friction(*[Measured(2.0, 0.0, 0.0)] * 3, {})
+
+
+@pytest.mark.parametrize("cut", [3.0, 6.0, 12.0])
+def test_a_supposed_filter_is_that_by_which_half_a_swing_lasts_so_long(cut) -> None:
+    record = st.Record(time=np.arange(9.0), force=np.arange(9.0))
+    swing = np.pi**2 / FALL**2  # of a half that lasts as long as the force falls
+    its = StatedQuantity("k/m", "1/s²", 0.3 * swing, 1.0, swing, 0.4, 1.4, BY_SLIPS)
+    seen = table(np.hypot(FALL, 1.0 / cut))
+    peak, trough = lost([LowPass(cut, 2)])
+    found = with_supposed_filter(EXACT, record, seen, [its])
+    assert further(found) == pytest.approx((peak, peak, 0.5 * max(peak, trough)), rel=0.05)
+    for cycles, stated in (
+        (seen, its._replace(found=0.45 * swing)),
+        (seen, its._replace(how="period of its swings")),
+        (seen.part(slice(0)), its),
+    ):
+        assert with_supposed_filter(EXACT, record, cycles, [stated]) == EXACT
+
+
+def test_of_two_filters_the_slower_one_makes_falls_longer() -> None:
+    """The other lowers peaks further, but what it adds to a fall is little."""
+    time = np.arange(0.0, 9.0, 1.0 / RATE)
+    sensor = st.Sensor(bandwidth=20.0, filter=4.0, filter_order=2)
+    record = st.Record(time=time, force=time, sensors={"force": sensor})
+    found = with_smear(EXACT, record, table(np.hypot(FALL, 1.0 / 4.0)))
+    peak, trough = lost(sensor.filters)
+    assert found.break_away.error == pytest.approx(peak, rel=0.05)
+    assert found.kinetic.error == pytest.approx(0.5 * max(peak, trough), rel=0.05)
 
 
 def test_no_filter_is_supposed_by_slips_that_are_not_long(force) -> None:
