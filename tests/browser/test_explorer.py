@@ -592,22 +592,50 @@ def test_tooltips_are_plain_words_and_one_stick_is_one_interval(page):
     assert page.tab.inner_text("#status").startswith("1 stick interval, ")
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
-def test_letters_have_contrast(modules, scheme):
-    """Those of k_y had 2.05 : 1 on the floor, and the ring about what is focused 2.25 : 1."""
+def contrast(*colors):
+    """Return the contrast of two colours (W3C, Web Content Accessibility Guidelines 2.2, 1.4.3)."""
+    parts = [[x / 255 for x in each] for each in colors]
+    linear = [
+        [x / 12.92 if x <= 0.03928 else ((x + 0.055) / 1.055) ** 2.4 for x in each]
+        for each in parts
+    ]
+    low, high = sorted(0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in linear)
+    return (high + 0.05) / (low + 0.05)
 
-    def contrast(*colors):
-        parts = [[x / 255 for x in each] for each in colors]
-        linear = [
-            [x / 12.92 if x <= 0.03928 else ((x + 0.055) / 1.055) ** 2.4 for x in each]
-            for each in parts
-        ]
-        low, high = sorted(0.2126 * r + 0.7152 * g + 0.0722 * b for r, g, b in linear)
-        return (high + 0.05) / (low + 0.05)
 
+def white_in(scheme, modules):
+    """Return the white of a page that is light or dark, once it is so."""
     modules.tab.emulate_media(color_scheme=scheme)
     white = module("drawing.js", '({ shade }) => shade("#fff")')
     until(lambda: (modules.value(white) == "#fff") == (scheme == "light"), scheme)
+    return modules.value(white)
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_stripes_have_contrast_and_the_ground_of_the_page(modules, scheme):
+    """In a dark page those of runs that a study lacks stood on white, with 2.4 : 1 or less."""
+    white = white_in(scheme, modules)
+    pixels = modules.value(
+        module(
+            "views.js",
+            """({ hatching }) => {
+          const context = new OffscreenCanvas(24, 24).getContext("2d");
+          context.fillStyle = hatching(document.createElement("canvas").getContext("2d"));
+          context.fillRect(0, 0, 24, 24);
+          return [...context.getImageData(0, 0, 24, 24).data];
+        }""",
+        )
+    )
+    colors = sorted({tuple(pixels[i : i + 3]) for i in range(0, len(pixels), 4)})
+    ground = tuple(modules.value(f"({CHANNELS})({[white]})")[0])
+    assert ground == colors[-1 if scheme == "light" else 0]
+    assert contrast(colors[0], colors[-1]) >= 3.0
+
+
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_letters_have_contrast(modules, scheme):
+    """Those of k_y had 2.05 : 1 on the floor, and the ring about what is focused 2.25 : 1."""
+    white_in(scheme, modules)
     known = modules.value(module("drawing.js", "({ ...all }) => all"))
     names = ("INK", "SOFT", "BLUE", "RED", "GREEN", "ORANGE", "PURPLE", "GREY")
     letters = [known["LETTERS"].get(known[name], known[name]) for name in names]

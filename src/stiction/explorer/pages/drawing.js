@@ -32,7 +32,7 @@ function negative(color) {
 }
 
 // The context of a canvas whose colours are as light or dark as the page.
-function contextOf(canvas) {
+export function contextOf(canvas) {
   const context = canvas.getContext("2d");
   for (const name of ["fillStyle", "strokeStyle"]) {
     const { get, set } = Object.getOwnPropertyDescriptor(CanvasRenderingContext2D.prototype, name);

@@ -1,7 +1,7 @@
 // The views at the side: numbers, phase portrait, damping diagram, spectrogram, stability map, study.
 
 import { barAxis, cellAxis, linearAxis, logAxis, padded, power } from "./axis.js";
-import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, curve, frame, line, offsets, symbols, text, widthOf } from "./drawing.js";
+import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, contextOf, curve, frame, line, offsets, symbols, text, widthOf } from "./drawing.js";
 import { element } from "./form.js";
 import { plain, quantity } from "./quantity.js";
 
@@ -285,13 +285,13 @@ function swatch(context, left, top, words, color) {
 }
 
 // Stripes, where there is nothing to show.
-function hatching(context) {
+export function hatching(context) {
   const tile = document.createElement("canvas");
   tile.width = tile.height = 6;
-  const inside = tile.getContext("2d");
+  const inside = contextOf(tile);
   inside.fillStyle = "#fff";
   inside.fillRect(0, 0, 6, 6);
-  for (const shift of [-6, 0, 6]) line(inside, [[shift - 1, 7], [shift + 7, -1]], "#a8a8a8", 1);
+  for (const shift of [-6, 0, 6]) line(inside, [[shift - 1, 7], [shift + 7, -1]], "#767676", 1.5);
   return context.createPattern(tile, "repeat");
 }
 
