@@ -630,6 +630,17 @@ def test_stripes_have_contrast_and_the_ground_of_the_page(modules, scheme):
     ground = tuple(modules.value(f"({CHANNELS})({[white]})")[0])
     assert ground == colors[-1 if scheme == "light" else 0]
     assert contrast(colors[0], colors[-1]) >= 3.0
+    drawn = modules.value(
+        module(
+            "drawing.js",
+            """({ contextOf }) => {
+          const context = contextOf(document.createElement("canvas"));
+          context.fillStyle = context.strokeStyle = "#fff";
+          return [context.fillStyle, context.strokeStyle];
+        }""",
+        )
+    )
+    assert modules.value(f"({CHANNELS})({drawn})") == [[*ground]] * 2
 
 
 @pytest.mark.parametrize("scheme", ["light", "dark"])
