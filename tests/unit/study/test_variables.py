@@ -7,7 +7,7 @@ from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
 from stiction.analysis.creep.first_slip import first_slip_time
-from stiction.analysis.motion.regime.kinds import TRANSVERSE, UNDETERMINED, shape
+from stiction.analysis.motion.regime.kinds import STICK_SLIP, TRANSVERSE, UNDETERMINED, shape
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.features import features, zigzag
 from stiction.study.variables.measures import MEASURES
@@ -337,3 +337,29 @@ def test_few_samples_suffice_where_the_motion_is_slow(monkeypatch):
     assert coarse.resolved
     assert not coarse.enough
     assert value("peak_force", coarse) == pytest.approx(value("peak_force", slow), rel=5e-3)
+
+
+@pytest.mark.parametrize("duration", np.linspace(0.9, 1.3, 9))
+def test_the_amplitude_is_that_of_a_run_with_many_samples(duration):
+    """Between 32 samples a period the largest of few peaks may hide by half a percent."""
+    slider = PAPER.replace(drive=st.ConstantVelocity("40 mm/s"))
+    observed = run_in_study(slider, duration)
+    fine = st.simulate(slider, duration, sample_rate=100e3).samples
+    late = fine["spring_x"][fine["time"] >= observed.time[3 * len(observed.time) // 4]]
+    assert value("amplitude", observed) == pytest.approx(0.5 * np.ptp(late), rel=3e-4)
+
+
+def test_sticking_in_a_force_that_falls_slowly_counts_in_a_study_as_in_an_analysis():
+    slider = PAPER.replace(
+        mass=0.1,
+        k_x=3186.0,
+        k_y=4e6,
+        phi="8.142 deg",
+        normal_load=9.387,
+        drive=st.ConstantVelocity("0.7489 mm/s"),
+    ).replace(friction=st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s"))
+    observed = run_in_study(slider, 3.0)
+    rise = np.median(observed.cycles.rise_share)
+    assert shape(rise) == UNDETERMINED
+    kind = st.analyse(st.simulate(slider, 3.0)).regime.kind
+    assert observed.regime == kind == STICK_SLIP

@@ -148,7 +148,7 @@ def by_shape(cycles: SwingShapes, own: float, shares: Shares) -> str:
     kind = kinds.shape(rise)
     if kinds.couples(kind, float(cycles.period.mean()), own):
         return kinds.TRANSVERSE
-    if kind in (kinds.TRANSITIONAL, kinds.HARMONIC):
+    if kind != kinds.STICK_SLIP:  # rest, where there is any, makes it one
         known = (float(np.median(share(cycles))) for share in shares)
         kind = kinds.shape(rise, *known)
     irregular = kind == kinds.HARMONIC and is_irregular(cycles.period, cycles.drop)

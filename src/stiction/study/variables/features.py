@@ -21,7 +21,8 @@ class Features(NamedTuple):
     peak : float
         Largest force, N.
     late_mean, late_span : float
-        Mean force in the last quarter, and its span from lowest to highest there, N.
+        Mean force in the last quarter, and its span from lowest to highest there, N; like the peak,
+        the ends of the span lie between samples.
     peak_velocity : float
         Largest velocity of the mass along the drive, m/s.
     means : ndarray
@@ -129,6 +130,8 @@ def features(
         else:
             turn_time[k], turn_value[k] = vertex(time, force, i)
         high = max(high, turn_value[k])
+        if turn_time[k] >= time[late]:
+            late_low, late_high = min(late_low, turn_value[k]), max(late_high, turn_value[k])
     late_mean, late_span = total / (n - late), late_high - late_low
     return Features(
         high, late_mean, late_span, fastest, means, turn_time, turn_value, trough,
