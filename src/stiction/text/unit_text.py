@@ -16,12 +16,13 @@ from typing import Any
 from stiction.errors import echo
 
 LONGEST_UNIT = 60  # characters
+RAISED = "⁰¹²³⁴⁵⁶⁷⁸⁹"  # which are letters to a regular expression, but none of a name
 TOKEN = re.compile(
-    r"\s*(?:(?P<name>[^\W\d_][^\W\d]*|°)"
-    r"(?P<power>\s*(?:\*\*|\^)\s*[+-]?\d(?!\d)|[+-]?\d(?!\d)|[⁺⁻]?[⁰¹²³⁴⁵⁶⁷⁸⁹])?"
+    rf"\s*(?:(?P<name>[^\W\d_{RAISED}][^\W\d{RAISED}]*|°)"
+    rf"(?P<power>\s*(?:\*\*|\^)\s*[+-]?\d(?!\d)|[+-]?\d(?!\d)|[⁺⁻]?[{RAISED}])?"
     r"|(?P<one>1)(?=\s*/)|(?P<sign>[*/·⋅×.()]))\s*"
 )
-SMALL = str.maketrans("⁺⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "+-0123456789")
+SMALL = str.maketrans(f"⁺⁻{RAISED}", "+-0123456789")
 # units that the registry misreads or does not know: Ns is not the plural of newton
 SPELLED = {"°": ("degree",), "Ns": ("newton", "second"), "Nm": ("newton", "meter")}
 

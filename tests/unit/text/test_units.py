@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from stiction.text.quantity_text import percent, quantity_text
-from stiction.text.unit_text import COMMON, LONGEST_UNIT, factor
+from stiction.text.unit_text import COMMON, LONGEST_UNIT, UnitError, factor
 from stiction.text.units import (
     FORCE,
     VELOCITY,
@@ -63,6 +63,24 @@ def test_a_damping_constant_is_read_however_it_is_written(text):
 )
 def test_other_quantities(text, kind, value):
     assert to_si(text, kind) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize("power", [2, 3, 4])
+@pytest.mark.parametrize("name", ["s", "mm", "µm", "lbf", "h"])
+def test_a_small_digit_is_a_power_in_a_denominator_too(name, power):
+    """It was part of the name: 1/s², as the program writes it, was the root of a second."""
+    digit = "⁰¹²³⁴⁵⁶⁷⁸⁹"[power]
+    expected = pint.Quantity(1.0, f"kg/{name}**{power}").to_root_units()
+    wanted = f"{expected.units:~C}"
+    for text in (
+        f"kg/{name}{digit}",
+        f"kg {name}⁻{digit}",
+        f"{pint.Unit(f'kg/{name}**{power}'):~P}",
+    ):
+        assert factor(text, wanted) == pytest.approx(expected.magnitude, rel=1e-14)
+    for text in (f"kg/{digit}{name}", f"kg/{name}{digit}{digit}"):
+        with pytest.raises(UnitError):
+            factor(text, wanted)
 
 
 def test_common_units_are_those_of_the_registry():
