@@ -368,16 +368,16 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
         lines.append(f"Measuring the {listed} too would tell more of the misalignment.")
     if fit.unidentified and rotates(found):
         lines.append(
-            f"Not identifiable from this record: {', '.join(fit.unidentified)}. Where the "
-            "prior of one of these is wrong, the verdict is."
+            f"Not identifiable from this record: {', '.join(fit.unidentified)}. The verdict is "
+            "wrong if one of their priors is."
         )
     if found.odds is None:
         lines.append(f"Other mechanisms were not compared: {found.incomparable}.")
     turned = "A record of the same rig, turned by a known angle, would test the verdict: "
     if rotates(found):
         lines.append(
-            f"{turned}the fitted misalignment must turn with it. What narrows its interval, "
-            "`stiction design` tells."
+            f"{turned}the fitted misalignment must turn with it. `stiction design` says which "
+            "test narrows its interval most."
         )
     elif found.odds is not None and found.odds.decision != UNDECIDED:
         lines.append(f"{turned}where the friction vector rotates, its loading curve differs.")

@@ -46,7 +46,7 @@ ALONG_X = (
 )
 OWN_UNITS = {"jitter": "", "gain": "", "zero": "N", "zero_drift": "N/s"}
 MEANINGS = {
-    "jitter": "spread of friction from cycle to cycle",
+    "jitter": "relative spread of friction from cycle to cycle",
     "gain": "gain of the load cell",
     "zero": "zero of the load cell",
     "zero_drift": "drift of the zero of the load cell",
@@ -185,21 +185,21 @@ class Fit(Report):
         ]
         if self.unidentified:
             sentences.append(
-                f"Not identifiable from these records: {', '.join(self.unidentified)}. Their "
-                f"posterior is more than {percent(NARROWER)} as wide as their prior."
+                f"Not identifiable from these records: {', '.join(self.unidentified)}. The "
+                f"posterior is more than {percent(NARROWER)} as wide as the prior."
             )
         if "phi" in self.plan.priors and self.sign_unseen:
-            sentences.append(
-                "The sign of phi is not in these channels; that of its prior is taken."
-            )
+            sentences.append("These channels do not show the sign of phi: it is that of the prior.")
         if "phi" in self.plan.priors and self.plan.slider.cell_angle is None:
             sentences.append(ALONG_X)
         sentences.append(f"Compared with {self.simulations} simulated records.")
         sentences += self.disturbances
         sentences.append(
-            "Experimental: the coverage is how many of such 95 % intervals hold the truth of "
-            "simulated records left out, which says nothing of what the simulations leave out."
+            "Experimental. Coverage: the share of such 95 % intervals that hold the truth, of "
+            "simulated records that were left out. It says nothing of what no simulation contains."
         )
+        own = [x.name for x in self.estimates if x.name in MEANINGS]
+        sentences += [f"{name} is the {MEANINGS[name]}." for name in own]
         remarks = dict.fromkeys(self.unidentified, "not identifiable")
         remarks |= dict.fromkeys(self.beyond, "beyond its prior")
         short = short_names(x.name for x in self.estimates)  # the sentences have the whole name

@@ -751,7 +751,10 @@ def test_where_rotation_is_claimed_and_its_mass_rests_it_is_static_friction_on_t
     assert held.decision == MISALIGNED_STATIC
     said = " ".join(held.sentences())
     assert f"Claimed: {MISALIGNED_STATIC} (probability 0.95)" in said
-    assert "for 96 % of the drive's way across (80 %: 90 % to 100 %): it is held" in said
+    assert (
+        "for 96 % of the drive's way across (in 80 % of the simulations 90 % to 100 %): it is held"
+        in said
+    )
     assert "constant friction below a static coefficient may look the same" in said
     assert "follows" not in said
     assert held.data.attrs["share_at_rest"] == 0.96
@@ -765,7 +768,7 @@ def test_where_simulations_may_creep_the_claim_is_rotation_and_says_how_long_the
     creeping = odds_with(rest=CREEPING)
     assert creeping.decision == ROTATION
     said = " ".join(creeping.sentences())
-    assert "(80 %: 70 % to 100 %) and follows the rest of it" in said
+    assert "(in 80 % of the simulations 70 % to 100 %) and follows the rest of it" in said
     assert MISALIGNED_STATIC not in said
 
 

@@ -34,10 +34,11 @@ BY_HALF = 0.6  # by each half of the simulations: a claim is not a matter of the
 UNLIKE, BENT = 0.8 * RARE, 0.2 * RARE
 UNDECIDED = "undecided"
 EXPLAINED = (
-    "The odds before were even. Farther: the share of the mechanism's simulated records that are "
-    "less like the others than this record is, by what they are nearest to or by what is expected "
-    "of their parameters; more bent: of those with its parameters, the share whose loading departs "
-    "more from their mean. Experimental: a law that was not simulated may pass for one that was."
+    "All mechanisms are taken to be equally probable beforehand. Farther: the share of the "
+    "mechanism's simulated records whose features are less like those of the others than this "
+    "record's are. More bent: of its simulated records with this record's parameters, the share "
+    "whose loading departs more from their mean. Experimental: a law that was not simulated may "
+    "pass for one that was."
 )
 TURNING = ROTATION, MISALIGNED_STATIC  # the friction force turns, the mass creeping or at rest
 CHANNEL = "force_across"  # without which the shape of the friction limit is not seen
@@ -145,8 +146,8 @@ class Odds(Report):
         elif self.by_halves[:, self.likeliest].min() < BY_HALF:
             halves = " and ".join(map(near_one, self.by_halves[:, self.likeliest]))
             found.append(
-                f"By each half of the simulations, {name} has a probability of {halves}; a claim "
-                f"needs {BY_HALF} by both: simulate more."
+                f"Learned from either half of the simulations, {name} has a probability of "
+                f"{halves}; a claim needs {BY_HALF} by both: simulate more."
             )
         if self.beside_static < CLAIM:
             found.append(
@@ -156,12 +157,12 @@ class Odds(Report):
         if its.farther < UNLIKE:
             found.append(
                 f"The record is not like those of {name}: {percent(its.farther)} of the simulated "
-                f"records are less like the others, {percent(UNLIKE)} are needed."
+                f"records are less like the others; a claim needs {percent(UNLIKE)}."
             )
         if its.larger < BENT:
             found.append(
                 f"The loading curve is not like those of {name}: {percent(its.larger)} of the "
-                f"simulated ones depart as far from their mean, {percent(BENT)} are needed."
+                f"simulated ones depart as far from their mean; a claim needs {percent(BENT)}."
             )
         if self.explanation and (its.farther < UNLIKE or its.larger < BENT):
             found.append(self.explanation)
@@ -199,9 +200,9 @@ class Odds(Report):
             Section(
                 "How often simulated records are called so",
                 [
-                    f"Called 1, 2, ... with a probability of {CLAIM} and above, and {BY_HALF} by "
-                    "each half of the simulations, otherwise undecided. Each record was left out "
-                    "of what calls it."
+                    f"A record is called 1, 2, ... with a probability of at least {CLAIM}, and of "
+                    f"{BY_HALF} by each half of the simulations; otherwise it is undecided. The "
+                    "classifier that calls a record has not learned from it."
                 ],
                 Table(columns, shares),
             ),
@@ -237,8 +238,8 @@ class Odds(Report):
             )
         if self.decision == MISALIGNED_STATIC:
             found.append(
-                "By which law friction falls once the mass slips is not told: constant friction "
-                "below a static coefficient may look the same."
+                "The record does not show the law of friction in slip: constant friction below "
+                "a static coefficient may look the same."
             )
         if self.decision in (LUGRE, RATE_AND_STATE):
             found.append(
@@ -265,7 +266,7 @@ class Odds(Report):
         said = (
             f"Where {ROTATION} is simulated with the parameters that this record seems to have, "
             f"the mass rests, while the spring is loaded, for {middle} of the drive's way across "
-            f"(80 %: {low} to {high})"
+            f"(in 80 % of the simulations {low} to {high})"
         )
         if rest.held:
             return f"{said}: it is held by static friction, while the force on it turns and grows."
