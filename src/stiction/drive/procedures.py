@@ -151,7 +151,7 @@ def load_ramp(levels: Quantities, *, ramp: Quantity, hold: Quantity | None = Non
 
 
 def end(*programs: ConstantVelocity | DriveProgram | LoadProgram | None) -> float | None:
-    """Return when the last of some programs of drive and load ends, s; None if none has an end.
+    """Return the end of the last of some programs, s; None if they have no end.
 
     Examples
     --------

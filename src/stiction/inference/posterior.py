@@ -82,7 +82,7 @@ class Estimate(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Fit(Report):
-    """What records say about a rig's parameters.
+    """The parameters of a rig as estimated from records.
 
     Parameters
     ----------

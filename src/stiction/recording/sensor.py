@@ -55,7 +55,7 @@ class LowPass(NamedTuple):
 
 
 class Sensor(Described):
-    """The way from a quantity to the samples of a record.
+    """A sensor: filter, noise, rounding and zero between a quantity and its samples.
 
     ``reading = gain * value + zero + zero_drift * time``, time being that since the first sample of
     the record; delayed by the cell's bandwidth and by the anti-alias filter, with white noise,

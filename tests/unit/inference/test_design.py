@@ -230,13 +230,15 @@ def test_a_test_that_is_surely_better_is_named_though_another_may_be_better_stil
     plan = PLAN._replace(priors={"jitter": Normal(0.0, 1.0)})
     advice = Advice(plan, "jitter", tuple(tests), (), (), 2000)
     sure, perhaps = advice.sentences()[:2]
-    assert sure.startswith("Most is learned of jitter from this: the force across.")
-    assert perhaps.startswith("Perhaps more from this, but that is not sure: under 8 N, to 0.53")
+    assert sure.startswith("Most is learned about jitter from: the force across.")
+    assert perhaps.startswith(
+        "Perhaps this test tells more, but that is not certain: under 8 N, to 0.53"
+    )
     assert "the force across" in repr(advice)
     text = " ".join(advice.sentences())
-    assert f"Whether it tells more than {AGAIN} is not sure" not in text
-    assert f"Not surely better than {AGAIN}" not in text
-    assert text.endswith("falls by more or by less: intervals are those of the mean.")
+    assert f"It is not certain that it tells more than {AGAIN}" not in text
+    assert f"Not certainly better than {AGAIN}" not in text
+    assert text.endswith("fall by more or by less: the intervals are those of the mean.")
     unsure = replace(advice, tests=(tests[0], tests[1], tests[3]))
     assert unsure.sentences()[0].startswith("None of these tests clearly tells more of jitter")
 
@@ -275,8 +277,8 @@ def test_a_test_that_may_be_no_better_than_the_same_again_is_not_recommended_and
     )
     plan = PLAN._replace(priors={"jitter": Normal(0.0, 1.0)})
     said = Advice(plan, "jitter", tests, (), (), 200).sentences()
-    assert said[1] == f"Whether it tells more than {AGAIN} is not sure: more simulations would say."
-    assert said[2] == f"Not surely better than {AGAIN}: under 8 N."
+    assert said[1] == f"It is not certain that it tells more than {AGAIN}: simulate more."
+    assert said[2] == f"Not certainly better than {AGAIN}: under 8 N."
 
 
 def test_too_few_cycles_say_how_many_simulations_would_do():

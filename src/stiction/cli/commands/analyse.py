@@ -23,8 +23,8 @@ def analyse(
 
     Prints a report and writes tables: cycles.csv (a row for each cycle), summary.csv, friction.csv,
     creep.csv, creep-phases.csv, oscillation.csv, oscillation-phases.csv and energy.csv; numbers in
-    analysis.json; figures of cycles, creep, oscillation and energy. What was not found has no file.
-    There is nothing to tune. Creep and oscillation need several samples per transverse period.
+    analysis.json; figures of cycles, creep, oscillation and energy. A quantity that is
+    not determined has no file. Creep and oscillation need several samples per transverse period.
 
     For example, after `stiction run my.toml -o my.nc`:
 

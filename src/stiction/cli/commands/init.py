@@ -54,7 +54,7 @@ def init(
 
 
 def presets(name: str | None = None, /) -> None:
-    """List published systems, or tell all about one.
+    """List published systems, or describe one.
 
     Each has its parameters, its reference, and the numbers that a run must give.
 

@@ -124,13 +124,13 @@ class Advice(Report):
         if best is not None:
             after = in_words(float(best.error[i]), unit, 2)
             found.append(
-                f"Most is learned of {self.of} from this: {best.test}. Its typical error falls "
+                f"Most is learned about {self.of} from: {best.test}. Its typical error falls "
                 f"from {before} to {after}, to {best.ratio[i]:.2f} of that of the present test "
                 f"(95 %: {best.low[i]:.2f} to {best.high[i]:.2f})."
             )
             if best is not first:
                 found.append(
-                    f"Perhaps more from this, but that is not sure: {first.test}, to "
+                    f"Perhaps this test tells more, but that is not certain: {first.test}, to "
                     f"{first.ratio[i]:.2f} of it (95 %: {first.low[i]:.2f} to {first.high[i]:.2f})."
                 )
         else:
@@ -140,11 +140,9 @@ class Advice(Report):
             )
         idle = self.not_surely_better()
         if best is not None and best.test in idle:
-            found.append(
-                f"Whether it tells more than {AGAIN} is not sure: more simulations would say."
-            )
+            found.append(f"It is not certain that it tells more than {AGAIN}: simulate more.")
         if others := [test for test in idle if best is None or test != best.test]:
-            found.append(f"Not surely better than {AGAIN}: {', '.join(others)}.")
+            found.append(f"Not certainly better than {AGAIN}: {', '.join(others)}.")
         if self.skipped:
             found.append(
                 "Left out, as the rig does not stick and slip there in the middle of its priors: "
@@ -161,7 +159,8 @@ class Advice(Report):
         found += self.assumed
         found.append(
             f"Expected over {self.simulations} rigs drawn from the priors, with cycles now. "
-            "Of one of them the error falls by more or by less: intervals are those of the mean."
+            "For a single rig the error may fall by more or by less: the intervals are those of "
+            "the mean."
         )
         return found
 

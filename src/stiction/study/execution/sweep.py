@@ -201,7 +201,7 @@ def sweep(
     engine: Engine | None = None,
     progress: Report | None = None,
 ) -> Summary:
-    """Do all runs of a study that are missing in its store, and keep them there.
+    """Simulate the missing runs of a study, and store their results.
 
     It may be stopped at any moment; called again, it continues. Several processes may sweep the
     same study at once, and share the work.

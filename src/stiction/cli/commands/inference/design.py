@@ -44,7 +44,7 @@ def design(
     set: Changes = None,
     measured: RecordOptions | None = None,
 ) -> None:
-    """Find what to measure next: which further test tells most of a parameter. Experimental.
+    """Find what to measure next: which further test tells most about a parameter. Experimental.
 
     Many rigs are drawn from the priors that the description RIG states, as for `stiction fit`. Each
     is tested as it is now, and in every further way: with another channel, turned by a known angle,

@@ -36,7 +36,7 @@ def sweep(
     trust: Trust = False,
     set: Changes = None,
 ) -> int:
-    """Run the study that CONFIG describes: many runs, kept in a zarr store.
+    """Run the study that CONFIG describes: many runs, stored in zarr format.
 
     CONFIG is a description, as `stiction init` writes it, with the measures to keep of each run,
     and an axis for each parameter that varies:
