@@ -66,6 +66,35 @@ def test_a_decimal_comma(write, separator):
     assert "decimal comma" in notes(record)
 
 
+@pytest.mark.parametrize("decimal", [".", ","])
+@pytest.mark.parametrize("day", ["2026-03-12", "12.03.2026", "3/12/26"])
+@pytest.mark.parametrize(
+    ("separator", "counted"),
+    [
+        ("\t", False),
+        ("\t", True),
+        (";", False),
+        (";", True),
+        ("|", False),
+        ("|", True),
+        ("  ", False),
+    ],
+)
+def test_a_date_and_a_clock_in_one_column(write, separator, day, decimal, counted):
+    header = ["#"] * counted + ["Time", "Fx [mN]", "Fn [N]"]
+    rows = (
+        ([f"{at + 1}"] * counted)
+        + [f"{day} 10:15:{x:06.3f}".replace(".000", ".0"), f"{y:.3f}", f"{4 * y:.3f}"]
+        for at, (x, y) in enumerate(zip(TIME, FORCE, strict=True))
+    )
+    first, *others = (separator.join(row) for row in [header, *rows])
+    texts = [first, *(x.replace(day, "*").replace(".", decimal).replace("*", day) for x in others)]
+    record = st.read_record(write("\n".join(texts)))
+    assert np.allclose(record.time, TIME, atol=1e-9)
+    assert np.allclose(record.force, 1e-3 * FORCE, rtol=1e-15)
+    assert np.allclose(record.load, 4.0 * FORCE, rtol=1e-15)
+
+
 def test_commas_between_numbers_with_points_separate(write):
     """A comment of one cell is no headings of columns of half numbers."""
     record = st.read_record(write(f"# a stage\n{lines()}"), time="1=s", force="2=N")

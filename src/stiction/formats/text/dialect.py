@@ -177,6 +177,7 @@ def _settle(
     layout: TextLayout,
 ) -> Dialect:
     """Return the one of several good readings that the file supports, or refuse to choose."""
+    near = [each for each in near if each.separator != " "] if _has_dates(near, lines) else near
     width = {each: scores[each][1] for each in near}
     widest = [each for each in near if width[each] == max(width.values())]
     # thousands are grouped, if only so most lines are samples
@@ -203,6 +204,12 @@ def _settle(
     if layout.decimal is None and not chosen.groups:
         _refuse_thousands(path, chosen, rows)
     return chosen
+
+
+def _has_dates(near: Sequence[Dialect], lines: Sequence[str]) -> bool:
+    """Return whether a cell between other signs than spaces is a date, a space and a clock."""
+    cells = (x for each in near if each.separator != " " for y in lines for x in each.cells(y))
+    return any(" " in x and CLOCK.fullmatch(x) is not None for x in cells)
 
 
 def _refuse_thousands(path: object, dialect: Dialect, rows: Sequence[Sequence[str]]) -> None:
@@ -246,6 +253,15 @@ def _no_samples(path: object, filled: Sequence[str]) -> str:
     if not filled:
         return f"{path}: has only empty lines; record it again"
     return f"{path}: no line has samples; the first is {filled[0].strip()[:60]!r}"
+
+
+def is_date_and_clock(date: str, clock: str) -> bool:
+    """Return whether two cells are the date and the time of day of one instant.
+
+    >>> is_date_and_clock("12.03.2024", "10:15:00.5"), is_date_and_clock("2.5", "10:15:00.5")
+    (True, False)
+    """
+    return DATE.fullmatch(date) is not None and CLOCK.fullmatch(clock) is not None
 
 
 def seconds_of(cells: Sequence[object]) -> Floats | None:

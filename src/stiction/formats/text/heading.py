@@ -67,8 +67,18 @@ def repeats(heading: Heading, text: str, dialect: Dialect) -> bool:
 
 
 def _cells(text: str, dialect: Dialect, width: int = 0) -> list[str]:
-    """Return the cells of a line without marks of comments; a unit belongs to the name before."""
-    bare = COMMENT.sub("", text.strip().strip("\ufeff"))
+    """Return the cells of a line; a unit belongs to the name before.
+
+    A mark of a comment before them is left out, but where it names a column: that of numbers.
+    """
+    whole = text.strip().strip("\ufeff")
+    cells = _split(COMMENT.sub("", whole), dialect, width)
+    marked = _split(whole, dialect, width) if len(cells) == width - 1 else []
+    return marked if len(marked) == width and marked[0] == "#" else cells
+
+
+def _split(bare: str, dialect: Dialect, width: int) -> list[str]:
+    """Return the cells of a line without a mark of a comment."""
     if dialect.separator == " ":
         bare = re.sub(r"\s+(?=[\[(][^\s\])]*[\])])", "", bare)
         wide = re.split(r"\s{2,}|\t", bare)

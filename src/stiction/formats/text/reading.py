@@ -21,6 +21,7 @@ from stiction.formats.text.dialect import (
     Dialect,
     find_dialect,
     first_samples,
+    is_date_and_clock,
     seconds_of,
 )
 from stiction.formats.text.heading import Heading, find_heading, repeats
@@ -274,6 +275,18 @@ def _note_longer_rows(
         )
 
 
+def _unnamed_date(cells: _Cells, rows: Indices, heading: Heading | None, width: int) -> int:
+    """Return the column of dates that shares its name with the clocks beside it; else `width`.
+
+    Spaces between columns cut a date from its time of day.
+    """
+    if heading is None or len(heading.names) != width - 1:
+        return width
+    firsts = {at: str(x[rows[0]]).strip() for at, x in cells.texts.items() if at < width}
+    both = (at for at, x in firsts.items() if is_date_and_clock(x, firsts.get(at + 1, "")))
+    return next(both, width)
+
+
 def _table(
     cells: _Cells,
     rows: Indices,
@@ -288,8 +301,10 @@ def _table(
     above = [x for x in remarks if x.line < cells.first + rows[0] + 1]
     notes = [f"{dialect}", *_lines_above(above, heading), *skipped]
     columns, labels, start = [], [], ""
+    day = _unnamed_date(cells, rows, heading, width)
     for at in range(width):
-        name, unit = heading.of(at) if heading is not None else (f"column {at + 1}", "")
+        place = at - (at > day)
+        name, unit = heading.of(place) if heading is not None else (f"column {at + 1}", "")
         values = np.ascontiguousarray(cells.numbers[rows, at])
         if at in words:
             texts = np.asarray(cells.texts[at][rows], dtype=object)
