@@ -536,6 +536,26 @@ def test_spikes_are_no_oscillation() -> None:
     assert np.abs(bare.get_ydata() - spiked.get_ydata()).max() < 0.4  # what spikes add to a mean
 
 
+@pytest.mark.parametrize("seed", range(12))
+def test_noise_does_not_slow_a_slip_down(seed: int) -> None:
+    """Where noise is a band, its mean over many periods drew slips as slopes, below the peaks."""
+    rng = np.random.default_rng(seed)
+    rate, cycle = rng.choice([500.0, 2000.0, 10000.0]), rng.uniform(0.7, 1.3)
+    time = np.arange(0.0, 20.0, 1.0 / rate)
+    force = 1.0 + time % cycle / cycle
+    noise = 10.0 ** rng.uniform(-3.0, -1.5)
+    ax = canvas(PAGE, 2.2).add_subplot()
+    line = draw_line(ax, time, force + noise * rng.normal(size=len(time)))
+    drawn = np.asarray(line.get_xydata())
+    off = np.abs(drawn[:, 1] - np.interp(drawn[:, 0], time, force))
+    bin_ = 20.0 / 1500.0
+    near = np.abs((drawn[:, 0] + 0.5 * cycle) % cycle - 0.5 * cycle) < 3.0 * bin_
+    assert off[~near].max() < 0.02 + 5.0 * noise
+    for at in np.arange(cycle, 19.0, cycle):  # the peak before each slip
+        peak = drawn[np.abs(drawn[:, 0] - at) < 3.0 * bin_, 1].max()
+        assert peak > 1.93 - 3.0 * noise
+
+
 def test_a_trial_that_hardly_moves_beside_the_test_before_is_drawn_whole() -> None:
     time = np.linspace(0.0, 100.0, 5_001)
     before = st.Record(time=time, force=1.0 + 0.25 * (time % 4.0))

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.signals.reversals import remove_reversals, standing_out
 from stiction.analysis.signals.turning_points import COUNTS, as_counts
@@ -29,6 +29,8 @@ APART = 15.0  # times a period: a mean over `MEAN` periods keeps 0.95 of an osci
 ALL_ALONG = 0.7  # of the time of an oscillation, noise on it is
 BURSTS = 1.5  # times the gap between turns: larger swings that are as fast are bursts and spikes
 SMOOTH = 13  # least bins of a mean, two of them with weight zero: one may hold a period and a half
+FAR = 0.7  # swings between means over several periods and over one, as in a slip
+BESIDE, MARGIN = 7, 3  # swings whose median is that of an oscillation; bins beside a slip
 POINT = 72.0  # pt in an inch
 EDGE = 0.3  # pt, of the outline of a range: pale colours look alike in print
 BAND = 0.3  # opacity of the range
@@ -59,13 +61,14 @@ def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floa
 
 
 class Oscillation(NamedTuple):
-    """An oscillation: the samples from its first turn to its last, and its mean period in s.
+    """An oscillation: the samples from its first turn to its last, its mean period in s, its turns.
 
     An oscillation that begins or ends with the record has the samples beyond these turns, too.
     """
 
     samples: slice
     period: float
+    turns: Indices
 
 
 def oscillations(time: Floats, values: Floats, longest: float, least: float) -> list[Oscillation]:
@@ -100,7 +103,7 @@ def oscillations(time: Floats, values: Floats, longest: float, least: float) -> 
             begins = time[group[0]] - time[first] <= 1.5 * gaps[0]
             goes_on = time[last] - time[group[-1]] <= 1.5 * gaps[-1]
             start, end = first if begins else group[0], last if goes_on else group[-1]
-            found.append(Oscillation(slice(start, end + 1), 2.0 * gaps.mean()))
+            found.append(Oscillation(slice(start, end + 1), 2.0 * gaps.mean(), group))
     return found
 
 
@@ -191,11 +194,14 @@ def _draw_range(
     starts = _bin_starts(len(time), bins)
     step = (time[-1] - time[0]) / bins
     low, high, shown = np.full(bins, np.nan), np.full(bins, np.nan), values.copy()
-    for samples, period in found:
+    for samples, period, turns in found:
         first, last = np.searchsorted(starts, (samples.start, samples.stop - 1), side="right") - 1
         within = slice(first, last + 1)
         inner = np.maximum(starts[within] - samples.start, 0)
         low[within], high[within], mean = _smooth(values[samples], inner, period / step)
+        short, apart = _course(values[samples], inner, mean, turns - samples.start, period / step)
+        low[within][apart] = high[within][apart] = np.nan
+        mean = np.where(apart, short, mean)
         shown[samples] = np.repeat(mean, np.diff(inner, append=samples.stop - samples.start))
     middle = 0.5 * (time[starts] + time[np.r_[starts[1:], len(time)] - 1])
     band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
@@ -217,6 +223,39 @@ def _smooth(values: Floats, starts: Indices, period: float) -> tuple[Floats, ...
         for each in (np.where(known, values, 0.0), known.astype(np.float64))
     )
     return low, high, total / np.maximum(count, TINY)
+
+
+def _course(
+    values: Floats, starts: Indices, mean: Floats, turns: Indices, period: float
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Return the mean over one period, and where that over several is far from it, as in a slip.
+
+    A slip is as fast as the oscillation, and would be drawn as a slope many periods long.
+
+    Parameters
+    ----------
+    values : ndarray
+        (n,), of an oscillation.
+    starts, mean : ndarray
+        (b,), of bins: their first samples, and the mean over periods.
+    turns : ndarray
+        Indices of the turns.
+    period : float
+        In bins.
+    """
+    from scipy.ndimage import (  # type: ignore[attr-defined]
+        maximum_filter1d,
+        median_filter,
+        uniform_filter1d,
+    )
+
+    known = np.isfinite(values)
+    count = np.maximum(np.add.reduceat(known.astype(np.float64), starts), TINY)
+    own = np.add.reduceat(np.where(known, values, 0.0), starts) / count
+    short = uniform_filter1d(own, max(round(period), 1), mode="nearest")
+    swing = median_filter(np.abs(np.diff(values[turns])), BESIDE, mode="nearest")  # no slip is one
+    far = np.abs(short - mean) > FAR * np.interp(starts, turns[1:], swing)
+    return short, np.asarray(maximum_filter1d(far, 1 + 2 * MARGIN))
 
 
 def _extremes(values: Floats, starts: Indices, half: int, extreme: np.ufunc, none: float) -> Floats:
