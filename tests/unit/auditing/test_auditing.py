@@ -738,6 +738,23 @@ def test_what_mostly_rests_is_said_to():
     assert "artefact" not in text
 
 
+PIN = {"mass": "80 g", "k_x": "2.3 kN/m", "k_y": "0.9 MN/m", "normal_load": "4 N"}
+WEAKENS = st.ExponentialWeakening(mu_0=0.625, mu_inf=0.4, v_f="10 mm/s")
+PEAK = st.Coulomb(mu_0=0.45, mu_static=0.6)
+
+
+@pytest.mark.parametrize(("phi", "law", "turns"), [
+    ("1.5 deg", WEAKENS, True), ("-1.5 deg", WEAKENS, True), ("0.1 deg", PEAK, False),
+])  # fmt: skip
+def test_rests_between_small_slips_are_creep_and_a_mass_that_is_held_rests(phi, law, turns):
+    """A pin that rests for half of each cycle, in hundreds of moments, was said to stick."""
+    rig = st.Slider(**PIN, phi=phi, friction=law, drive=st.ConstantVelocity("0.5 mm/s"))
+    text = " ".join(stick(short(rig)))
+    assert ("mostly creep under a turning friction force" in text) == turns
+    assert ("follows the drive across by small slips" in text) == turns
+    assert ("mostly true rest" in text) != turns
+
+
 def seen_otherwise(seen: SimulatedTest, **findings: object) -> SimulatedTest:
     """Return a test of which the analysis has found something else."""
     other = copy(seen)

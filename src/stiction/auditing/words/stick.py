@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 NEVER = 1e-3  # of the time: a smaller share is a matter of samples
+HELD = 0.5  # of the drive's way across: a mass that follows more of it turns friction
+FEW = 3  # rests in a loading: fewer are not those of a transverse oscillation
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 
 
@@ -77,7 +79,8 @@ def _why(found: Audit, inertia: float) -> str:
             if misaligned
             else "The creep is due to the law of friction."
         )
-    if misaligned and seen.shares.creep - inertia > seen.shares.rest:
+    moments = _rests_for_moments(seen) if misaligned else ""
+    if moments or (misaligned and seen.shares.creep - inertia > seen.shares.rest):
         distance = seen.mean("creep_distance")
         far = (
             f"{in_words(distance, 'm')} before each slip"
@@ -86,7 +89,7 @@ def _why(found: Audit, inertia: float) -> str:
         )
         return (
             f"The apparent stick is mostly creep under a turning friction force: an artefact "
-            f"of the misalignment. The mass covers {far}. The largest force shows how far "
+            f"of the misalignment. {moments}The mass covers {far}. The largest force shows how far "
             f"friction has turned; it is not evidence of static friction."
         )
     if _hastens(seen, inertia) and seen.shares.creep > seen.shares.rest:
@@ -95,6 +98,34 @@ def _why(found: Audit, inertia: float) -> str:
             "lose it, as to swing on its spring."
         )
     return "The apparent stick is mostly true rest." if seen.shares.rest > HARDLY else ""
+
+
+def _rests_for_moments(seen: SimulatedTest) -> str:
+    """Return that rests are moments between small slips, a sentence; nothing where they last.
+
+    The mass follows the drive across by such slips, and friction turns as in creep without rest.
+    """
+    loadings = seen.table
+    if seen.shares.rest <= HARDLY or not len(loadings):
+        return ""
+    begin, end = loadings["start"], loadings["peak_time"]
+    way = float((end - begin).sum()) * seen.run.slider.motion.rate(0.0)[0]
+    way *= seen.run.slider.direction[1]
+    rests = seen.run.stick_intervals
+    of = np.searchsorted(begin, rests[:, 0], side="right") - 1
+    inside = (of >= 0) & (rests[:, 1] <= end[of])
+    if not way or inside.sum() <= FEW * len(loadings):
+        return ""
+    time, u_y = (seen.run.samples[name] for name in ("time", "u_y"))
+    stretched = float((np.interp(end, time, u_y) - np.interp(begin, time, u_y)).sum())
+    if stretched / way > HELD:
+        return ""
+    each = float(f"{inside.sum() / len(loadings):.2g}")
+    lasts = float(np.median(np.diff(rests[inside], axis=1)))
+    return (
+        f"The mass rests {each:g} times while the spring is loaded, typically for "
+        f"{in_words(lasts, 's')}, and follows the drive across by small slips in between. "
+    )
 
 
 def _following(seen: SimulatedTest) -> float:
