@@ -764,6 +764,19 @@ def test_where_rotation_is_claimed_and_its_mass_rests_it_is_static_friction_on_t
     assert colors[0] != colors[1] == colors[2]
 
 
+def test_a_wide_band_does_not_flatten_the_lines_of_loadings(odds):
+    """A few simulations with bends of tens of per cent hid how the mechanisms differ."""
+    its = odds.likeness[odds.likeliest]
+    wide = its._replace(bends=its.bends + np.linspace(-0.5, 0.5, len(its.bends))[:, None])
+    likeness = [wide if i == odds.likeliest else each for i, each in enumerate(odds.likeness)]
+    *_, ax = plot_mechanism(replace(odds, likeness=tuple(likeness)))
+    lines = np.concatenate([line.get_ydata() for line in ax.lines])
+    bottom, top = ax.get_ylim()
+    assert bottom < lines.min() < lines.max() < top
+    assert top - bottom < 3.0 * np.ptp(lines)
+    assert "95 % of its simulations" in [text.get_text() for text in ax.get_legend().texts]
+
+
 def test_where_simulations_may_creep_the_claim_is_rotation_and_says_how_long_they_rest():
     creeping = odds_with(rest=CREEPING)
     assert creeping.decision == ROTATION

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from stiction.inference.mechanism.odds import Odds
 
 LETTERS = 16  # in a line of a mechanism's name
+BESIDE = 0.7  # of the range of the lines of loadings, shown above and below them
 DARK = 0.5  # share above which its number is white
 
 
@@ -39,7 +40,8 @@ def plot_mechanism(odds: Odds, axes: Sequence[Axes] | None = None) -> NDArray[np
         Probabilities, and the one that a claim needs; how often simulated records of each mechanism
         (rows) are called each (columns); the loading's departure from a straight line, of the
         record and, on average, in simulations with the parameters that its features suggest; the
-        band holds 95 % of those of the most probable mechanism.
+        band holds 95 % of those of the most probable mechanism, and ends with the panel where it
+        is several times as wide as the lines differ.
     """
     with style():
         panels = grid_of(axes, (PAGE, 2.9), 1, 3, width_ratios=(1, 1.35, 1.25))
@@ -86,9 +88,14 @@ def draw_loading(ax: Axes, odds: Odds) -> None:
         ax.plot(share, bends.mean(axis=0), color=color, linestyle=line, label=name)
         if i == odds.likeliest:
             low, high = interval_95(bends)
-            ax.fill_between(share, low, high, color=color, alpha=0.2, linewidth=0.0)
+            said = "95 % of its simulations"
+            ax.fill_between(share, low, high, color=color, alpha=0.2, linewidth=0.0, label=said)
     record = 100.0 * odds.bend[:parts]
     ax.plot(share, record, "o-", color=BLACK, markersize=2.0, linewidth=0.5, label="this record")
     ax.axhline(0.0, color=GREY, linewidth=0.5, zorder=0)
-    ax.set(xlabel="share of the loading time", title="bend of the loading (% of its rise)")
+    lines = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
+    beside = BESIDE * np.ptp(lines)  # a band that is wider would hide how the lines differ
+    bottom, top = ax.get_ylim()
+    ax.set_ylim(max(bottom, lines.min() - beside), min(top, lines.max() + beside))
+    ax.set(xlabel="share of the loading time", title="bend of loading (% of rise)")
     ax.legend(loc="upper center", bbox_to_anchor=(0.42, -0.22), fontsize=6.5)

@@ -50,11 +50,13 @@ def plot_posterior(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.o
     """
     names = [*fit.data.data_vars]
     with style():
-        panels = panels_of(axes, len(names), 1.5)
+        panels = panels_of(axes, len(names), 1.6)
         for ax, name, estimate in zip(panels, names, fit.estimates, strict=True):
             said = estimate.name not in fit.unidentified
             draw_parameter(ax, fit.data[name], fit.prior[name], said)
-        panels[0].legend(loc="upper right", handlelength=1.0)
+        panels[0].legend(  # above: a posterior may stand anywhere in the panel
+            loc="lower left", bbox_to_anchor=(-0.03, 1.0), ncols=2, handlelength=1.0
+        )
     return np.array(panels, dtype=object)
 
 
@@ -152,6 +154,8 @@ def plot_corner(
                 grid[i, j].set_xlim(near)
             for i in range(j):
                 grid[j, i].set_ylim(near)
+        if axes is None:
+            grid[0, 0].figure.align_xlabels(grid[-1])
     return np.asarray(grid, dtype=object)
 
 
@@ -197,8 +201,12 @@ def plot_predictive(
         panels = grid_of(axes, (PAGE, 2.4), 1, 3, width_ratios=(1.4, 1, 1))
         draw_cycles(panels[0], comparison.seen, comparison.predictive)
         draw_loading(panels[1:], comparison.predictive)
-        for ax in panels[:2]:  # both curves fill the panels
-            ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+        for ax, shown in zip(panels, ((0, 1), (0, 2), (1,)), strict=True):  # curves fill panels
+            handles, labels = ax.get_legend_handles_labels()
+            ax.legend(
+                [handles[i] for i in shown], [labels[i] for i in shown],
+                loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2,
+            )  # fmt: skip
     return np.array(panels, dtype=object)
 
 
@@ -225,11 +233,11 @@ def draw_loading(panels: Sequence[Axes], found: Any) -> None:
     ):
         ax.fill_between(share, scale * low, scale * high, color=PALE, label="simulated, 95 %")
         mean = getattr(found.simulated, name).mean(axis=0)
-        ax.plot(share, scale * mean, color=BLUE, linewidth=0.8)
+        ax.plot(share, scale * mean, color=BLUE, linewidth=0.8, label="simulated, mean")
         ax.plot(share, scale * getattr(found.measured, name), color=BLACK, label="measured")
         ax.set(xlabel="share of a loading (%)")
     panels[0].set_ylabel(f"force ({prefix}N)")
-    panels[1].set_ylabel("from a straight line (% of the rise)")
+    panels[1].set_ylabel("bend (% of the rise)")
 
 
 def plot_ranks(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.object_]:
@@ -252,11 +260,14 @@ def plot_ranks(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.objec
     names = [*fit.data.data_vars]
     low, high = binom.ppf(BOUNDS_95, len(fit.ranks), 1.0 / RANK_BINS)
     with style():
-        panels = panels_of(axes, len(names), 1.3)
+        panels = panels_of(axes, len(names), 1.5)
         for ax, name, ranks in zip(panels, names, fit.ranks.T, strict=True):
             ax.axhspan(low, high, color=PALE, zorder=0)
             edges = np.linspace(0.0, 1.0, RANK_BINS + 1).tolist()
             ax.hist(ranks, edges, histtype="step", color=BLUE)
             ax.axhline(len(ranks) / RANK_BINS, color=GREY, linewidth=0.6)
-            ax.set(xlim=(0.0, 1.0), ylim=(0.0, 2.0 * high), yticks=[], title=name)
+            ax.set(
+                xlim=(0.0, 1.0), ylim=(0.0, 2.0 * high), xticks=[0.0, 0.5, 1.0], yticks=[],
+                title=name, xlabel="rank of the truth",
+            )  # fmt: skip
     return np.array(panels, dtype=object)
