@@ -216,6 +216,14 @@ def test_a_header_repeated_mid_file_is_skipped(write):
     assert "line 7 skipped: a repeated header and 1 more line" in notes(record)
 
 
+def test_a_few_of_many_skipped_lines_are_listed(write):
+    """A cell out of its range beside a clock had a note for each sample."""
+    rows = [f"10:15:{at:05.2f};{'over range' if at % 5 == 4 else 2.5}\n" for at in range(50)]
+    found = st.read_record(write("Time;Force [N]\n" + "".join(rows))).origin.notes
+    assert sum("skipped" in note for note in found) == 5
+    assert "and 5 more skips" in found
+
+
 def test_columns_of_the_same_name_are_refused_and_chosen_by_number(write):
     path = write(f"time [s],force [N],force [N]\n{lines(columns=(TIME, FORCE, 2.0 * FORCE))}")
     with pytest.raises(st.ResultError, match=r"2 'force \[N\]', 3 'force \[N\]'; say which"):

@@ -29,6 +29,7 @@ from stiction.formats.text.lines import lines_of
 from stiction.storage.foreign import refuse_size
 
 WIDEST = 2000  # columns
+LISTED = 5  # places at which lines were skipped
 NUMERIC = 0.5  # of a column's cells: with fewer numbers it is one of words
 
 
@@ -299,7 +300,8 @@ def _table(
     """Return the table of some rows."""
     width = _width(cells, rows)
     above = [x for x in remarks if x.line < cells.first + rows[0] + 1]
-    notes = [f"{dialect}", *_lines_above(above, heading), *skipped]
+    more = [f"and {number_of(len(skipped) - LISTED, 'more skip')}"] if len(skipped) > LISTED else []
+    notes = [f"{dialect}", *_lines_above(above, heading), *skipped[:LISTED], *more]
     columns, labels, start = [], [], ""
     day = _unnamed_date(cells, rows, heading, width)
     for at in range(width):
