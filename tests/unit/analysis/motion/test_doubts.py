@@ -179,7 +179,7 @@ def table(fall: float, count: int = 6) -> CycleTable:
     return CycleTable(columns, 0.0)
 
 
-def lost(filters: Sequence[LowPass]) -> tuple[float, float]:
+def losses(filters: Sequence[LowPass]) -> tuple[float, float]:
     """Return by how much filters lower the peaks of that force, and raise its troughs, N."""
     time = np.arange(0.0, 12.0, 1.0 / RATE)
     force = np.interp(time % PERIOD, [0.0, PERIOD - FALL, PERIOD], [0.0, 1.0, 0.0])
@@ -200,7 +200,7 @@ def test_a_supposed_filter_is_that_by_which_half_a_swing_lasts_so_long(cut) -> N
     swing = np.pi**2 / FALL**2  # of a half that lasts as long as the force falls
     its = StatedQuantity("k/m", "1/s²", 0.3 * swing, 1.0, swing, 0.4, 1.4, BY_SLIPS)
     seen = table(np.hypot(FALL, 1.0 / cut))
-    peak, trough = lost([LowPass(cut, 2)])
+    peak, trough = losses([LowPass(cut, 2)])
     found = with_supposed_filter(EXACT, record, seen, [its])
     assert further(found) == pytest.approx((peak, peak, 0.5 * max(peak, trough)), rel=0.05)
     for cycles, stated in (
@@ -217,7 +217,7 @@ def test_of_two_filters_the_slower_one_makes_falls_longer() -> None:
     sensor = st.Sensor(bandwidth=20.0, filter=4.0, filter_order=2)
     record = st.Record(time=time, force=time, sensors={"force": sensor})
     found = with_smear(EXACT, record, table(np.hypot(FALL, 1.0 / 4.0)))
-    peak, trough = lost(sensor.filters)
+    peak, trough = losses(sensor.filters)
     assert found.break_away.error == pytest.approx(peak, rel=0.05)
     assert found.kinetic.error == pytest.approx(0.5 * max(peak, trough), rel=0.05)
 
