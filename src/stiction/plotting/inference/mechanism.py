@@ -95,7 +95,8 @@ def draw_loading(ax: Axes, odds: Odds) -> None:
     ax.axhline(0.0, color=GREY, linewidth=0.5, zorder=0)
     lines = np.concatenate([np.asarray(line.get_ydata(), dtype=float) for line in ax.lines])
     beside = BESIDE * np.ptp(lines)  # a band that is wider would hide how the lines differ
-    bottom, top = ax.get_ylim()
-    ax.set_ylim(max(bottom, lines.min() - beside), min(top, lines.max() + beside))
+    if beside > 0.0:
+        bottom, top = ax.get_ylim()
+        ax.set_ylim(max(bottom, lines.min() - beside), min(top, lines.max() + beside))
     ax.set(xlabel="share of the loading time", title="bend of loading (% of rise)")
     ax.legend(loc="upper center", bbox_to_anchor=(0.42, -0.22), fontsize=6.5)
