@@ -44,7 +44,8 @@ BOTH_HOLD = (
     "the parameters that its features suggest few have, and a claim of rotation needs both."
 )
 WITHDRAWN = (
-    "The fit assumes that friction rotates and is not like this record, so rotation is not claimed."
+    "The fit assumes that the friction force turns, and is not like this record: so neither "
+    f"{ROTATION} nor {MISALIGNED_STATIC} is claimed."
 )
 ROTATES = ": what looks like static friction is the apparatus, whose friction vector rotates"
 HELD = (

@@ -750,7 +750,8 @@ def test_where_rotation_is_claimed_and_its_mass_rests_it_is_static_friction_on_t
     held = odds_with(rest=HELD)
     assert held.decision == MISALIGNED_STATIC
     said = " ".join(held.sentences())
-    assert f"Claimed: {MISALIGNED_STATIC} (probability 0.95)" in said
+    assert f"Claimed: {MISALIGNED_STATIC}." in said
+    assert f"{ROTATION} has a probability of 0.95." in said
     assert (
         "for 96 % of the drive's way across (in 80 % of the simulations 90 % to 100 %): it is held"
         in said

@@ -211,12 +211,7 @@ class Odds(Report):
     def sentences(self) -> list[str]:
         """Return the decision and what limits it."""
         objections = self.objections()
-        probability = near_one(self.probabilities[self.likeliest])
-        found = (
-            ["No mechanism is claimed.", *objections]
-            if objections
-            else [f"Claimed: {self.decision} (probability {probability})."]
-        )
+        found = ["No mechanism is claimed.", *objections] if objections else [self._claim()]
         if self.straight_excluded:
             found.append(
                 "The loading is not as straight as static friction in one dimension makes it: that "
@@ -244,8 +239,9 @@ class Odds(Report):
         if self.decision in (LUGRE, RATE_AND_STATE):
             found.append(
                 "Not excluded: friction that weakens with speed below a static peak on a "
-                "misaligned rig. Constant friction below one was compared, and is less probable; "
-                f"but with a Stribeck curve it may pass for {self.decision}."
+                "misaligned rig. Constant friction and the law of the description below one were "
+                "compared, and are less probable; with another law it may pass for "
+                f"{self.decision}."
             )
         if self.decision == STATIC and RATE_AND_STATE in self.names:
             found.append(
@@ -259,6 +255,16 @@ class Odds(Report):
                 "against it."
             )
         return found
+
+    def _claim(self) -> str:
+        """Return which mechanism is claimed, with its probability, as a sentence."""
+        probability = near_one(self.probabilities[self.likeliest])
+        if self.decision == MISALIGNED_STATIC:  # of which no probability is known by itself
+            return (
+                f"Claimed: {self.decision}. That is {ROTATION} whose mass rests between slips; "
+                f"{ROTATION} has a probability of {probability}."
+            )
+        return f"Claimed: {self.decision} (probability {probability})."
 
     def _at_rest(self, rest: Rest) -> str:
         """Return how far the mass rests in the simulations of rotation, as a sentence."""
