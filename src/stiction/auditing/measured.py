@@ -310,8 +310,8 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
         f"measured one, by their features; below {percent(RARE)} it is unlike them.",
     ]
     if found.odds is not None:
-        lines += [f"Among the mechanisms compared: {each}" for each in found.odds.sentences()[:1]]
-        lines += found.odds.sentences()[1:]
+        claim, *_ = found.odds.sentences()  # its limits stand in a section of their own
+        lines += [f"Among the mechanisms compared: {claim}", *found.odds.objections()]
         if found.like and is_unusual_rotation(found.odds):
             lines.append(BOTH_HOLD)
     return lines

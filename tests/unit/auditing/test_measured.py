@@ -112,6 +112,9 @@ def test_the_verdict_says_what_other_mechanisms_leave_open(found):
     sure = np.eye(len(seen.odds.names))[seen.odds.names.index(ROTATION)]
     claimed = replace(seen, odds=replace(seen.odds, probabilities=sure, steady=1.0))
     assert "is the apparatus, whose friction vector rotates" in verdict(claimed)
+    limits = claimed.odds.sentences()[1:]
+    assert len(limits) > 2
+    assert {str(sections(claimed)).count(each) for each in limits} == {1}
     held = replace(claimed, odds=replace(claimed.odds, rest=Rest(0.9, 0.96, 1.0)))
     assert held.odds.decision == MISALIGNED_STATIC
     assert "holds the mass between slips" in verdict(held)
