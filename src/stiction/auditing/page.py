@@ -15,7 +15,7 @@ from stiction.auditing import figures, tolerance
 from stiction.auditing.words.verdict import AS_DESCRIBED, RECORD, VERDICT
 from stiction.plotting.page.save import png
 from stiction.storage.files import placeable, whole
-from stiction.text.sections import join_units
+from stiction.text.sections import html
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
@@ -88,7 +88,7 @@ def page(found: Audit, name: str) -> str:
     environment = Environment(
         loader=PackageLoader("stiction.auditing", "."), autoescape=True, trim_blocks=True
     )
-    environment.filters["join_units"] = join_units
+    environment.filters["html"] = html
     return environment.get_template("page.html.jinja").render(
         name=name,
         version=stiction.__version__,

@@ -84,12 +84,21 @@ def join_units(text: str) -> str:
     return re.sub(r"(?<=\d) (?=\S)", "\N{NO-BREAK SPACE}", text)
 
 
+def html(text: str) -> str:
+    """Return a text as HTML: commands in grave accents as code, numbers with their units.
+
+    >>> html("See `stiction audit` & co. of 2 N.")
+    'See <code>stiction audit</code> &amp; co. of 2\xa0N.'
+    """
+    return re.sub("`([^`]+)`", r"<code>\1</code>", escape(join_units(text)))
+
+
 def as_html(parts: Iterable[Section]) -> str:
     """Return a report as HTML, for a notebook."""
     lines = []
     for part in parts:
         lines.append(f"<h4>{escape(part.title)}</h4>")
-        lines += [f"<p>{escape(sentence)}</p>" for sentence in part.sentences]
+        lines += [f"<p>{html(sentence)}</p>" for sentence in part.sentences]
         if part.table is not None:
             rows = [("th", part.table.headings), *(("td", row) for row in part.table.rows)]
             body = (
