@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from tests.drawn import inside
 from tests.parts import assess
 
 import stiction as st
+from stiction.analysis.export import write
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
@@ -300,13 +302,14 @@ def test_columns_that_mean_nothing_are_not_given() -> None:
     assert found.friction.kinetic.coefficient == pytest.approx(0.2, rel=1e-3)
 
 
-def test_a_harmonic_of_the_cycles_is_no_line() -> None:
+def test_a_harmonic_of_the_cycles_is_no_line(tmp_path: Path) -> None:
     time = np.arange(0.0, 60.0, 1e-3)
     noise = 2e-4 * np.random.default_rng(0).standard_normal(len(time))
     sawtooth = 1.0 + 0.3 * (time % 1.1)
     found = st.analyse(st.Record(time=time, force=sawtooth + noise))
     assert np.isfinite(found.oscillation["frequency"]).mean() < 0.05
     assert "No oscillation stands out" in as_text(found.tables())
+    assert "oscillation.csv" not in {path.name for path in write(found, tmp_path)}
     hum = 0.01 * np.sin(2.0 * np.pi * 47.0 * time)
     found = st.analyse(st.Record(time=time, force=sawtooth + hum + noise))
     assert found.oscillation["frequency"].values == pytest.approx(47.0, abs=0.1)
