@@ -529,7 +529,7 @@ def test_the_static_peak_stands_above_constant_friction_and_above_the_law_of_the
     [
         st.Coulomb(mu_0=0.2),  # the first law already
         st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f="10 mm/s", mu_static=0.22),  # its own
-        st.laws.Anisotropic(st.Coulomb(mu_0=0.2), ratio=0.8),  # takes none
+        st.laws.Anisotropic(st.Coulomb(mu_0=0.2), ratio=0.8),  # constant, too
     ],
 )
 def test_a_law_without_room_for_a_static_peak_is_simulated_with_none(rig, rotating, law):
@@ -538,6 +538,20 @@ def test_a_law_without_room_for_a_static_peak_is_simulated_with_none(rig, rotati
     other = rig._replace(slider=rig.slider.model_copy(update={"friction": law}), priors=priors)
     *_, last = mechanisms(other, conditions)
     assert [type(plan.slider.friction) for plan in last.plans] == [st.Coulomb]
+
+
+def test_a_law_within_an_anisotropic_one_has_a_static_peak_too(rig, rotating):
+    """None was simulated, and a claim of LuGre was said to be checked against one."""
+    conditions = [observe(rotating, rig.slider).conditions]
+    law = st.laws.Anisotropic(rig.slider.friction, ratio=0.8)
+    priors = {path: its for path, its in rig.priors.items() if not path.startswith("friction.")}
+    other = rig._replace(slider=rig.slider.model_copy(update={"friction": law}), priors=priors)
+    *_, last = mechanisms(other, conditions)
+    _, weakening = last.plans
+    at_rest = weakening.slider.friction.law.mu_static
+    assert at_rest == weakening.priors["friction.mu_static"].high
+    assert weakening.slider.friction.ratio == 0.8
+    weakening.draw(np.random.default_rng(0))
 
 
 # whether the mass rests where rotation is claimed

@@ -26,6 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
+from stiction.friction import Anisotropic
 from stiction.friction.laws import Coulomb, LuGre, RateStateAgeing, RateStateSlip
 from stiction.friction.laws.rate_and_state.common import least_direct_effect
 from stiction.inference.fit import plan_for
@@ -121,13 +122,14 @@ def with_peak(rig: Rig, level: Levels, conditions: Sequence[Conditions]) -> Iter
 
     None if that law has such a coefficient already or cannot have one, or is constant without it.
     """
-    slider, path = rig.slider, "friction.mu_static"
+    slider, path = rig.slider, "friction.mu_static"  # of the law within an anisotropic one, too
     law: Any = slider.friction
-    has_none = "mu_static" in getattr(law, "_fields", ()) and law.mu_static == 0.0
-    if isinstance(law, Coulomb) or path in rig.priors or not has_none:
+    inner = law.law if isinstance(law, Anisotropic) else law
+    has_none = "mu_static" in getattr(inner, "_fields", ()) and inner.mu_static == 0.0
+    if isinstance(inner, Coulomb) or path in rig.priors or not has_none:
         return
     peak = Uniform(level.static[0], PEAK * level.static[1])
-    held = slider.model_copy(update={"friction": law._replace(mu_static=peak.high)})
+    held = change_unchecked(slider, path, peak.high)
     yield plan(held, {**rig.priors, path: peak}, conditions)._replace(basis=slider)
 
 
