@@ -239,9 +239,9 @@ class Odds(Report):
         if self.decision in (LUGRE, RATE_AND_STATE):
             found.append(
                 "Not excluded: friction that weakens with speed below a static peak on a "
-                "misaligned rig. Constant friction and the law of the description below one were "
-                "compared, and are less probable; with another law it may pass for "
-                f"{self.decision}."
+                "misaligned rig. A peak above constant friction, and above the law of the "
+                "description where that can have one, was compared and is less probable; above "
+                f"another law it may pass for {self.decision}."
             )
         if self.decision == STATIC and RATE_AND_STATE in self.names:
             found.append(
