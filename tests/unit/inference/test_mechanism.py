@@ -150,13 +150,15 @@ def test_every_law_drawn_from_a_mechanism_is_a_valid_one(rig, rotating):
         for plan in rival.plans:
             law = plan.slider.friction
             own = {path: prior for path, prior in plan.priors.items() if "friction." in path}
-            corners, between = random.integers(0, 2, (60, len(own))), random.random((200, len(own)))
-            draws = [
-                {path: prior.quantile(share) for (path, prior), share in
-                 zip(own.items(), shares, strict=True)} for shares in (*corners, *between)
-            ]  # fmt: skip
             if plan.restricted:
                 draws = [plan.parameters(plan.draw(random)) for _ in range(60)]
+            else:
+                corners = random.integers(0, 2, (60, len(own)))
+                between = random.random((200, len(own)))
+                draws = [
+                    {path: prior.quantile(share) for (path, prior), share in
+                     zip(own.items(), shares, strict=True)} for shares in (*corners, *between)
+                ]  # fmt: skip
             for each in draws:
                 values = {path.removeprefix("friction."): float(each[path]) for path in own}
                 drawn = type(law)(**{**law._asdict(), **values})
@@ -570,7 +572,7 @@ def plan_with(rig, rotating, k_y, **changes):
     [
         ("20 kN/m", 0.98, 1.0),  # fills the circle in many loadings only
         ("90 MN/m", 0.0, 0.02),  # at once
-        ("0.9 MN/m", 0.002, 0.25),  # and the mass rests and hops again and again
+        ("0.5 MN/m", 0.01, 0.25),  # and the mass rests and hops again and again
     ],
 )
 def test_the_mass_rests_until_the_force_across_has_filled_the_circle(rig, rotating, k_y, low, high):
@@ -578,7 +580,7 @@ def test_the_mass_rests_until_the_force_across_has_filled_the_circle(rig, rotati
     own = plan_with(rig, rotating, k_y)
     shares = shares_at_rest(own, np.random.default_rng(5).standard_normal((12, len(own.priors))))
     assert np.isfinite(shares).sum() > 6
-    assert low <= np.nanmedian(shares) <= high
+    assert low <= Rest.among(shares).middle <= high
 
 
 @pytest.mark.parametrize("k_y", ["20 kN/m", "0.9 MN/m"])
