@@ -1,6 +1,6 @@
 """Fits of records as they are measured: thousands of readings a cycle, digitised.
 
-``python -m benchmarks.accuracy.readings --block 4 --digit 0.01 --noise 0.3``: the force of
+``python -m benchmarks.inference.readings --block 4 --digit 0.01 --noise 0.3``: the force of
 simulated records with that many readings in place of one, each with noise (in steps of the digit)
 and rounded (to this share of the friction force at rest), goes the way of a measured one: noise and
 rounding are estimated, readings averaged. It is held against a library of simulations under the
@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import stiction as st
-from benchmarks.accuracy.fits import RIGS, compare, report, rig_of
+from benchmarks.inference.fits import RIGS, compare, report, rig_of
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.signals.hum import without_bands
 from stiction.analysis.signals.robust import block_means

@@ -1,17 +1,17 @@
 """Calibration of fits of other laws: how often intervals hold the truth, of records not seen.
 
-``python -m benchmarks.accuracy.laws``: for one rig with each of several laws, every coefficient and
-what else is uncertain, 1000 simulations and 300 further records: coverage of 95 % intervals,
-and how many records are called unlike. Records have 20
-cycles, friction that differs by 0.1 % to 5 % from cycle to cycle, and noise of 0.2 % of the
-friction force at rest. It takes three minutes on two cores.
+``python -m benchmarks.inference.laws``: for one rig with each of several laws, every coefficient
+and what else is uncertain, 1000 simulations and 300 further records: coverage of 95 % intervals,
+and how many records are called unlike. Records have 20 cycles, friction that differs by 0.1 % to
+5 % from cycle to cycle, and noise of 0.2 % of the friction force at rest. It takes three minutes on
+two cores.
 """
 
 from __future__ import annotations
 
 import argparse
 
-from benchmarks.accuracy.fits import compare
+from benchmarks.inference.fits import compare
 from stiction.inference.fit import plan_for
 from stiction.inference.learning.calibration import learn_or_read
 from stiction.inference.observation import Conditions, Noise

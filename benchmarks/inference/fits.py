@@ -1,6 +1,6 @@
 """Calibration of fits: how often intervals hold the truth, on records that no part has seen.
 
-``python -m benchmarks.accuracy.fits --seeds 1 2 --library FOLDER``: for three rigs, four sets of
+``python -m benchmarks.inference.fits --seeds 1 2 --library FOLDER``: for three rigs, four sets of
 channels and each seed of held-out records, coverage of 95 % intervals, the p-value of ranks against
 uniform ones (simulation-based calibration: S. Talts et al., arXiv:1804.06788), and widths of the
 posterior. Records have 20 cycles, friction that differs by 0.1 % to 3 % from cycle to cycle, noise

@@ -1,13 +1,13 @@
 """Mechanisms told apart: on records that no part has seen, and of laws that no library holds.
 
-``python -m benchmarks.accuracy.mechanisms --library FOLDER``: for three rigs and four sets of
+``python -m benchmarks.inference.mechanisms --library FOLDER``: for three rigs and four sets of
 channels, the classifier's balanced accuracy, how often a claim is wrong, how often rotation is
 called so, and what becomes of records by laws that are not claimed: a Stribeck curve with a static
 peak, with and without misalignment; constant friction and the rig's own law with one, misaligned; a
 friction limit that is an ellipse; coefficients that drift. Where rotation is claimed, whether its
 mass is told to be held, and whether it is, by the simulated truth. From force alone, how many of
 these a classifier finds that has learned this law too. Records are those of
-`benchmarks.accuracy.fits`. FOLDER holds the simulations, so that a second call only compares.
+`benchmarks.inference.fits`. FOLDER holds the simulations, so that a second call only compares.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr
 
-from benchmarks.accuracy.fits import RIGS, rig_of
+from benchmarks.inference.fits import RIGS, rig_of
 from stiction.friction.laws import Anisotropic, Stribeck
 from stiction.inference.columns import bend_features, features_from
 from stiction.inference.features import USED

@@ -1,0 +1,1 @@
+"""Fits, mechanisms and designs held against simulated records that no part has seen."""
