@@ -96,7 +96,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         kind, slips = STICK_SLIP, found.few
     stated = compare_metadata(record, kind, slips, shown, ends)
     alike = none if turns else cycles  # those of two strokes are none
-    doubts = warnings(record, regime.kind, alike, friction, stated, shown, ends)
+    doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
     if record.load_variation() <= VARIES:
         friction = with_drift(friction, record, cycles, drift)
     friction = with_supposed_filter(friction, record, cycles.part(~apart), stated)

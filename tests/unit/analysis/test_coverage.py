@@ -112,6 +112,42 @@ def test_friction_of_slips_while_the_zero_drifts():
         assert not beyond(*its, 0.0)
 
 
+def uneven(random, count, scatter):
+    """A force of `count` cycles whose peaks scatter about 2 N, and troughs about 1 N."""
+    peaks = 2.0 + scatter * random.normal(size=count)
+    troughs = 1.0 + scatter * random.uniform(0.2, 1.0) * random.normal(size=count + 1)
+    pairs = zip(troughs[:-1], peaks, troughs[1:], strict=True)
+    parts = [np.r_[np.linspace(a, b, 180), np.linspace(b, c, 22)[1:-1]] for a, b, c in pairs]
+    return np.concatenate(parts)
+
+
+@pytest.mark.parametrize(("count", "scatter"), [(5, 0.005), (9, 0.02), (16, 0.05)])
+def test_friction_of_uneven_slips_while_the_zero_drifts(count, scatter):
+    """Of so few cycles, or so uneven, no drift is sure: as few as none held two errors."""
+    random, inside, told = np.random.default_rng(count), [], []
+    for _ in range(24):
+        lead = np.linspace(0.0, 1.0, 180 * random.choice([1, 3]))[:-1]
+        force = np.r_[lead, uneven(random, count, scatter)]
+        force += 2e-3 * random.normal(size=len(force))
+        seen = assess(drifts(random, force))
+        measured = (seen.friction.static, 2.0), (seen.friction.kinetic, 1.5)
+        inside += [abs(its.force - truth) <= 2.0 * its.error for its, truth in measured]
+        told.append(any("drift" in each for each in seen.warnings))
+    assert np.mean(inside) >= 1.0 - MOST
+    assert np.mean(told) > 0.8
+
+
+@pytest.mark.parametrize("count", [5, 9])
+def test_uneven_slips_without_a_drift_keep_their_errors(count):
+    """A scatter that changes alike by chance must not be taken for a drift in many records."""
+    random, told = np.random.default_rng(count), []
+    for _ in range(40):
+        force = uneven(random, count, 0.02) + 2e-3 * random.normal(size=200 * count)
+        record = st.Record(time=5e-3 * np.arange(len(force)), force=force, normal_load=W)
+        told.append(any("drift" in each for each in assess(record).warnings))
+    assert np.mean(told) < MOST
+
+
 def test_friction_of_a_mass_that_settles_while_the_zero_drifts():
     """Its error had nothing of the drift: most means were four errors off."""
     random, found = np.random.default_rng(9), []

@@ -12,6 +12,7 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import error_of_few
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
@@ -20,6 +21,7 @@ SURE = 4.0  # standard errors
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
 PARTS = 20  # number of means of a force without cycles, over its second half
 FEWEST_CYCLES = 4  # cycles that show a drift
+LIKELY = 3.0  # standard errors of a drift that is not sure, but for which errors allow
 LASTING = 1.0  # of its rate, by which that of the two halves may differ
 
 
@@ -28,6 +30,7 @@ class Drift(NamedTuple):
 
     start : when it is seen to begin, s: a force without cycles loads before its second half.
     sure : whether there is one; stands_out : whether it is so large that it is worth a sentence.
+    likely : the rate at which peaks and troughs change alike, perhaps by chance, N/s; or 0.
     """
 
     rate: float
@@ -36,6 +39,12 @@ class Drift(NamedTuple):
     start: float
     stands_out: bool
     sure: bool = False
+    likely: float = 0.0
+
+    @property
+    def possible(drift) -> float:
+        """The rate for which errors must allow, N/s: a sure one or a likely one, or 0."""
+        return abs(drift.rate) if drift.sure else abs(drift.likely)
 
 
 def find_drift(record: Record, cycles: CycleTable) -> Drift:
@@ -53,12 +62,47 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
         at, middle = (part_means(each[half:], PARTS) for each in (record.time, record.force))
         start = float(record.time[half])
     else:
-        return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False)
+        likely = _likely_rate(cycles)
+        return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
     rate, error = _fit_line(at, middle)
     change = rate * (float(record.time[-1]) - start)
     large = abs(change) > WORTH * abs(float(middle.mean()))
     sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
-    return Drift(rate, error, change, start, stands_out=bool(large and sure), sure=bool(sure))
+    likely = 0.0 if sure else _likely_rate(cycles)
+    return Drift(rate, error, change, start, bool(large and sure), bool(sure), likely)
+
+
+def _likely_rate(cycles: CycleTable) -> float:
+    """Return the rate (N/s) at which peaks and troughs seem to change alike; 0 if they do not.
+
+    It is too uncertain to be reported, but not to be an error. Where friction differs from slip to
+    slip, peaks or troughs scatter less than their middle; and a few of both tell one common rate.
+    """
+    if len(cycles) < 2:
+        return 0.0
+    away = [_centred(cycles[f"{end}_time"], cycles[end]) for end in ("peak", "trough")]
+    rates = [_rate(*each, len(cycles) - 2) for each in away]
+    (peaks, peak_error), (troughs, trough_error) = rates
+    if abs(peaks - troughs) > LIKELY * np.hypot(peak_error, trough_error):
+        return 0.0
+    at, force = np.concatenate(away, axis=1)
+    rates.append(_rate(at, force, 2 * len(cycles) - 3))
+    likely = (rate for rate, error in rates if abs(rate) > LIKELY * error)
+    return max(likely, key=abs, default=0.0)
+
+
+def _centred(at: Floats, force: Floats) -> tuple[Floats, Floats]:
+    return at - at.mean(), force - force.mean()
+
+
+def _rate(at: Floats, force: Floats, freedom: int) -> tuple[float, float]:
+    """Return the slope of a line through the middle of points, and its error; inf without any."""
+    spread = float(at @ at)
+    if freedom < 1 or spread == 0.0:
+        return 0.0, np.inf
+    rate = float(at @ force) / spread
+    off = force - rate * at
+    return rate, error_of_few(float(np.sqrt(off @ off / freedom / spread)), freedom)
 
 
 def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
@@ -81,9 +125,9 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     mean by that of the second half. A drift may be that of friction instead: then they are right,
     at that time.
     """
-    if not drift.sure:
+    rate, first = drift.possible, float(record.time[0])
+    if rate == 0.0:
         return friction
-    rate, first = abs(drift.rate), float(record.time[0])
     middle = peak = 0.5 * (drift.start + float(record.time[-1]))
     if len(cycles):
         peak = float(cycles["peak_time"].mean())

@@ -41,6 +41,34 @@ def test_each_is_off_by_what_the_zero_drifts_until_its_time():
     assert further(LOADED, 4) == pytest.approx((0.05, 0.305, 0.325))
     unsure = KNOWN._replace(sure=False, stands_out=True)
     assert further(LOADED, 4, unsure) == (0.0, 0.0, 0.0)
+    likely = unsure._replace(likely=2.0 * RATE)
+    assert further(LOADED, 4, likely) == pytest.approx((0.1, 0.61, 0.65))
+
+
+def table(peaks, troughs):
+    """Return cycles with these peaks and troughs."""
+    count = len(peaks)
+    columns = dict.fromkeys(COLUMNS, np.zeros(count)) | {
+        "peak_time": PEAKS[:count], "trough_time": TROUGHS[:count],
+        "peak": np.array(peaks), "trough": np.array(troughs),
+    }  # fmt: skip
+    return CycleTable(columns, 0.0)
+
+
+def test_peaks_and_troughs_that_change_alike():
+    seen = find_drift(LOADED, table([6.0, 5.931, 5.86, 5.789], [4.0, 3.5, 4.2, 3.7]))
+    assert not seen.sure
+    assert seen.likely == pytest.approx(-0.01, rel=2e-2)  # by the peaks, -0.07 N in each 7 s
+    # two alone, of which the mean slope has one degree of freedom: t at 97.5 % is 12.7
+    assert find_drift(LOADED, table([6.0, 6.07], [4.0, 4.071])).likely == pytest.approx(
+        0.01, rel=1e-2
+    )
+    assert find_drift(LOADED, table([6.0, 6.07], [4.0, 4.06])).likely == 0.0
+
+
+def test_peaks_that_change_otherwise_than_troughs_show_no_drift():
+    falling = [4.0, 3.931, 3.86, 3.789]
+    assert find_drift(LOADED, table([6.0, 6.071, 6.14, 6.211], falling)).likely == 0.0
 
 
 def test_a_mean_without_cycles_is_off_by_the_drift_until_its_middle():

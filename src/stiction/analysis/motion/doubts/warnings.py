@@ -25,7 +25,7 @@ from stiction.analysis.motion.doubts.sampling import (
     doubt_times,
 )
 from stiction.analysis.motion.doubts.zero import doubt_zero, is_about_zero
-from stiction.analysis.motion.drift import Drift
+from stiction.analysis.motion.drift import WORTH, Drift, is_shown
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import (
     LOADING_RATE,
@@ -67,13 +67,13 @@ def warnings(
     cycles: CycleTable,
     friction: Friction,
     stated: Sequence[StatedQuantity],
-    drift: Drift | None,
+    drift: Drift,
     ends: Sequence[FlatEnd],
 ) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first.
 
-    `stated` is what was compared, `drift` that of the force, if it shows one, `ends`
-    where it is cut off.
+    `stated` is what was compared, `drift` that of the force, sure or not, `ends` where it is cut
+    off.
     """
     wrong = {each.quantity: each for each in stated if each.agrees is False}
     found = [
@@ -90,7 +90,7 @@ def warnings(
         *doubt_few_samples(record, cycles),
         *doubt_filter(record, cycles),
         *doubt_drops_in_noise(record, kind, cycles),
-        *_drift(record, drift),
+        *_drift(record, drift, kind, cycles),
         *doubt_zero(record, friction, cycles),
         *doubt_times(record),
         *doubt_repeats(record),
@@ -279,13 +279,22 @@ def _remedy_of_mass(ratio: float, kind: str) -> str:
     )
 
 
-def _drift(record: Record, drift: Drift | None) -> Iterator[str]:
+def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Iterator[str]:
     """Doubt the load cell where the force drifts, unless it follows a load that varies."""
-    if drift is not None and drift.stands_out and record.load_variation() <= VARIES:
+    if record.load_variation() > VARIES:
+        return
+    if drift.stands_out and is_shown(drift, kind):
         late = drift.start > float(record.time[0])
         where = f"from {in_words(drift.start, 's')} on" if late else "in all"
         yield (
             f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} "
             f"{where}, and friction coefficients with it. If it is the load cell, analyse "
             "st.analysis.detrend(record)."
+        )
+    change = abs(drift.likely) * float(record.time[-1] - record.time[0])
+    if change > 0.0 and change > WORTH * abs(float(cycles["peak"].mean())):
+        yield (
+            f"Peaks and troughs change alike, by {in_words(drift.likely, 'N/s', 2)}: "
+            f"{len(cycles)} cycles cannot tell whether by chance. The errors of friction allow for "
+            "a zero of the load cell that drifts so; a record without contact would show it."
         )
