@@ -2,11 +2,12 @@
 
 ``python -m benchmarks.inference.designs --rigs granite --library FOLDER``: rigs are drawn from the
 priors of those of `benchmarks.inference.fits` and simulated in each further test that a design
-tries. The design learns from three quarters of them. The others are fitted by the present test, and
-by both: the ratio of the posterior's standard deviations of ln phi is what the test tells, beside
-the interval that the design predicts. Records have the noise, filters and drift of the rig's;
-``--cycles`` changes their length, and ``--per-cycle`` the samples of the present one, as a record
-given to a design does; ``--channels`` what is measured at present. FOLDER holds the simulations.
+tries. The design learns from three quarters of them, and promises by how much the typical error of
+phi shrinks. The others are fitted by the present test, and by both: how far off the fits are, and
+how far off their posteriors say that they are. Records have the noise, filters and drift of the
+rig's; ``--cycles`` changes their length, and ``--per-cycle`` the samples of the present one, as a
+record given to a design does; ``--channels`` what is measured at present. FOLDER holds the
+simulations.
 """
 
 from __future__ import annotations
@@ -17,39 +18,49 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtr
 
-from benchmarks.inference.fits import CYCLES, PER_CYCLE, RIGS, Floats, rig_of, spread
+from benchmarks.inference.fits import CYCLES, PER_CYCLE, RIGS, Floats, rig_of
 from stiction.inference.columns import features_from
 from stiction.inference.features import USED
 from stiction.inference.fit import plan_for
 from stiction.inference.learning.calibration import learn_or_read
+from stiction.inference.learning.regression_abc import quantiles
 from stiction.inference.next_test.design import expectations, split
-from stiction.inference.next_test.expected import Expected
+from stiction.inference.next_test.expected import Expected, typical
 from stiction.inference.next_test.further import Further, Wanted, further_tests
 from stiction.inference.observation import Conditions
 from stiction.inference.progress import silent
-from stiction.inference.simulated.library import Library, have_cycles, simulate_all
+from stiction.inference.simulated.library import have_cycles, simulate_all
 from stiction.inference.simulated.plan import Plan
 
 LEARNED = 0.75  # share of the rigs from which is learned; the others are fitted
 OF = "phi"
-COLUMNS = "{:46s} {:>5s}  {:>5s} {:>13s}  {:>5s} {:>7s}"
+DRAWS = 400  # of each posterior
+COLUMNS = "{:46s} {:>5s}  {:>8s} {:>13s}  {:>5s} {:>6s}"
 
 
-class Compared(NamedTuple):
-    """A test: what a design expects of it, and what fits find.
+class Fitted(NamedTuple):
+    """Fits of rigs that were not learned from, of which those without cycles are NaN.
 
     Parameters
     ----------
-    expected : Expected
-        What it leaves open.
-    ratios : ndarray
-        (n,), of rigs that were not learned from: the standard deviation of ln phi by both tests
-        over that by the present one.
+    errors : ndarray
+        (n,), distance of the median of phi from the truth, rad.
+    deviations : ndarray
+        (n, d), that of draws of the posterior from the median, rad.
     """
 
-    expected: Expected
-    ratios: Floats
+    errors: Floats
+    deviations: Floats
+
+    def shrinkage(self, before: Fitted) -> tuple[float, float]:
+        """Return the typical error over an earlier one, as found and as stated."""
+        fitted = np.isfinite(before.errors)
+        own = [np.where(np.isfinite(a), a, b)[fitted] for a, b in zip(self, before, strict=True)]
+        pairs = zip(own, before, strict=True)
+        found, stated = (float(typical(a.ravel()) / typical(b[fitted].ravel())) for a, b in pairs)
+        return found, stated
 
 
 def plan_of(
@@ -66,16 +77,18 @@ def plan_of(
 
 def compare(
     trial: Plan, tests: Sequence[Further], scores: Floats, rows: Floats
-) -> Iterator[Compared]:
-    """Yield each further test: what the first rigs (n, p) promise and the others keep."""
+) -> Iterator[tuple[Expected, int, float, float]]:
+    """Yield each further test: what the first rigs (n, p) promise and what the others keep.
+
+    What is expected, how many rigs were fitted, and the ratio of typical errors, found and stated.
+    """
     first = int(LEARNED * len(scores))
-    known, unseen = (scores[:first], rows[:first]), rows[first:]
-    predicted = [*expectations(trial, tests, *known, silent)]
-    present, *further = columns_of(trial, tests)
-    before = spreads(trial, *known, unseen, present)
-    for expected, columns in zip(predicted[1:], further, strict=True):
-        ratios = spreads(trial, *known, unseen, columns) / before
-        yield Compared(expected, ratios[np.isfinite(ratios)])
+    predicted = expectations(trial, tests, scores[:first], rows[:first], silent)
+    found = (fits(trial, scores, rows, first, columns) for columns in columns_of(trial, tests))
+    next(predicted)
+    before = next(found)
+    for expected, own in zip(predicted, found, strict=True):
+        yield expected, int(np.isfinite(own.errors).sum()), *own.shrinkage(before)
 
 
 def columns_of(trial: Plan, tests: Sequence[Further]) -> Iterator[list[int]]:
@@ -89,18 +102,23 @@ def columns_of(trial: Plan, tests: Sequence[Further]) -> Iterator[list[int]]:
         yield [*which.tolist(), *own]
 
 
-def spreads(
-    trial: Plan, scores: Floats, known: Floats, unseen: Floats, columns: list[int]
-) -> Floats:
-    """Return the standard deviations (n,) of ln phi in fits of unseen rigs; NaN without cycles."""
-    complete, usable = (have_cycles(each[:, columns]) for each in (known, unseen))
-    learned = learn_or_read(known[complete][:, columns], scores[complete])
-    library = Library(trial, scores[complete], known[complete], len(scores))
-    place = [*trial.priors].index(OF)
-    found = np.full(len(unseen), np.nan)
-    samples = learned.posteriors(unseen[usable][:, columns])
-    found[usable] = [spread(library, OF, sample, place) for sample in samples]
-    return found
+def fits(trial: Plan, scores: Floats, rows: Floats, first: int, columns: Sequence[int]) -> Fitted:
+    """Fit the rigs (n, p) behind the first ones, by some columns of the features of these."""
+    features, place = rows[:, columns], [*trial.priors].index(OF)
+    usable, prior, random = have_cycles(features), trial.priors[OF], np.random.default_rng(0)
+    known = np.flatnonzero(usable[:first])
+    learned = learn_or_read(features[known], scores[known])
+    truth = prior.quantile(ndtr(scores[first:, place]))
+    errors, deviations = np.full(len(truth), np.nan), np.full((len(truth), DRAWS), np.nan)
+    unseen = np.flatnonzero(usable[first:])
+    posteriors = learned.posteriors(features[first:][unseen])
+    for i, sample in zip(unseen, posteriors, strict=True):
+        values = prior.quantile(ndtr(sample.scores[:, place]))
+        (median,) = quantiles(values, sample.weights, np.array([0.5]))
+        errors[i] = abs(median - truth[i])
+        drawn = random.choice(values, DRAWS, p=sample.weights / sample.weights.sum())
+        deviations[i] = np.abs(drawn - median)
+    return Fitted(errors, deviations)
 
 
 def main() -> None:
@@ -120,19 +138,17 @@ def main() -> None:
         place = options.library and options.library / f"{trial.key}-{options.seed}"
         scores, rows = simulate_all(trial, options.drawn, place, seed=options.seed)
         print(name)
-        print(COLUMNS.format("test", "rigs", "promised", "", "found", "scatter"))
-        logs = []
-        for test, ratios in compare(trial, tests, scores, rows):
-            at = [*trial.priors].index(OF)
+        print(COLUMNS.format("test", "rigs", "promised", "", "found", "stated"))
+        logs, at = [], [*trial.priors].index(OF)
+        for test, fitted, found, stated in compare(trial, tests, scores, rows):
             promised, low, high = (float(each[at]) for each in (test.ratio, test.low, test.high))
-            found = float(np.mean(ratios))
-            logs.append(np.log(promised / found))
-            within = "" if low <= found <= high else "  OUTSIDE"
-            numbers = f"{promised:.2f}", f"{low:.2f} to {high:.2f}", f"{found:.2f}"
-            scatter = f"{np.exp(np.std(np.log(ratios))):.2f}"
-            print(COLUMNS.format(test.test, str(len(ratios)), *numbers, scatter) + within,
+            logs.append(np.log(promised / np.array([found, stated])))
+            numbers = (f"{each:.2f}" for each in (found, stated))
+            interval = f"{low:.2f} to {high:.2f}"
+            print(COLUMNS.format(test.test, str(fitted), f"{promised:.2f}", interval, *numbers),
                   flush=True)  # fmt: skip
-        print(f"  ln(promised / found): {np.mean(logs):.2f} in the mean")
+        means = ", ".join(f"{each:.2f}" for each in np.mean(logs, axis=0))
+        print(f"  ln(promised / found), ln(promised / stated): {means} in the mean")
 
 
 if __name__ == "__main__":
