@@ -36,8 +36,8 @@ def shortage(size: float) -> str:
     """Return why `size` bytes are too many, as part of a sentence; '' if they fit."""
     if size <= largest_object():
         return ""
-    lends = f"this machine lends {largest_object() / 1e9:.3g} GB"
-    return f"takes {size / 1e9:.3g} GB of memory, and {lends}"
+    limit = f"the limit of {largest_object() / 1e9:.3g} GB on this machine"
+    return f"takes {size / 1e9:.3g} GB of memory, more than {limit}"
 
 
 def python(module: str, stdout: int = subprocess.DEVNULL) -> subprocess.Popen[bytes]:

@@ -121,6 +121,31 @@ def test_paper_says_that_a_file_is_not_a_folder(tmp_path, capsys):
     assert "file: exists and is not a folder; choose another name" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("map .", ".: is not the store of a study; make one with 'stiction sweep'"),
+        ("analyse .", ".: is a folder, not the file of one run"),
+        ("analyse /", "/: is a folder, not the file of one run"),
+        ("run my.toml -o .", ".: is a folder; name a file in it"),
+    ],
+)
+def test_a_folder_without_a_name_is_refused_in_words(words, message, config, monkeypatch, capsys):
+    monkeypatch.chdir(config.parent)
+    config.rename("my.toml")
+    assert inside(*words.split()) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_a_choice_that_is_none_is_one_fault(config, tmp_path, capsys):
+    said = ("--set", "multiscale=yes", "--set", "smoothing=x")
+    assert inside("run", config, "-o", tmp_path / "a.nc", *said) == 2
+    assert capsys.readouterr().err.splitlines()[1:] == [
+        "  run.smoothing: must be 'root' or 'arctan', is 'x'",
+        "  run.multiscale: must be 'auto', True or False, is 'yes'",
+    ]
+
+
 def test_a_preset_is_listed_explained_run_and_written(tmp_path, capsys):
     assert inside("presets") == 0
     assert "veraszto-stepan" in capsys.readouterr().out

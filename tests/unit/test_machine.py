@@ -12,7 +12,7 @@ BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(
 
 @pytest.fixture(autouse=True)
 def small(monkeypatch):
-    """Any machine is one that lends 1 GB."""
+    """On any machine the limit is 1 GB."""
     monkeypatch.setattr(machine, "largest_object", lambda: 1e9)
 
 
@@ -29,7 +29,7 @@ def test_samples_are_refused_by_their_path(tmp_path):
     assert said.startswith(
         "run.sample_rate: duration times sample_rate is 5e+07 samples, which takes"
     )
-    assert "15 GB of memory, and this machine lends 1 GB; lower the rate" in said
+    assert "15 GB of memory, more than the limit of 1 GB on this machine; lower the rate" in said
     assert "run.sample_rate: makes 5e+06 samples in 2 runs" in fault_of(
         lambda: st.compare(BASE._replace(run=st.Settings(duration=25, sample_rate=1e5)), "coulomb")
     )
@@ -66,7 +66,7 @@ def test_sticks_are_refused_before_there_is_room_for_them():
     out.sticks = np.zeros((2**23, 2))
     said = fault_of(lambda: out.make_room(2**23))
     assert said.startswith("run.duration: more than 8388608 sticks, of which each is recorded")
-    assert said.endswith("this machine lends 1 GB; shorten it")
+    assert said.endswith("more than the limit of 1 GB on this machine; shorten it")
 
 
 def test_a_multiscale_run_ends_before_it_fills_the_memory(monkeypatch):
@@ -97,7 +97,7 @@ def test_a_store_of_others_is_refused_before_it_is_read(tmp_path):
         st.open_study(tmp_path / "a.zarr")
 
 
-def test_what_the_machine_lends_is_half_of_the_least_it_says(monkeypatch, tmp_path):
+def test_the_limit_is_half_of_the_least_it_says(monkeypatch, tmp_path):
     monkeypatch.undo()
     (tmp_path / "max").write_text("max\n")
     (tmp_path / "some").write_text("2000000000\n")

@@ -14,6 +14,7 @@ from stiction.cli.tokens import is_negative
 from stiction.errors import echo
 
 EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help of an option
+BLANKS = 'put a value that holds blanks in quotation marks, as in "2 mm/s", or take it out'
 SHOWN = re.compile(r"^ +(stiction .+)$", re.M)  # in the help of a command
 
 
@@ -23,11 +24,7 @@ def message_of(error: CycloptsError) -> str:
         case MissingArgumentError():
             return _missing(error)
         case UnusedCliTokensError(unused_tokens=[first, *_]):
-            return (
-                f"{echo(first)} is one argument too many; put a value that holds blanks in "
-                "quotation "
-                'marks: --set "V = 2 mm/s"'
-            )
+            return f"{echo(first)} is one argument too many; {BLANKS}"
         case UnknownOptionError(token=token) if is_negative(token.value or token.keyword or ""):
             return (
                 f"{echo(token.value or token.keyword)} begins with a hyphen, as an option does; "

@@ -22,10 +22,8 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.errors import echo
-from stiction.text.units import Kind, to_si
+from stiction.text.units import NORMAL, UNIFORM, Kind, to_si
 
-NORMAL = {"value", "uncertainty"}
-UNIFORM = {"low", "high"}
 SCALES = ("linear", "log")
 EDGE = 1e-12  # shares beyond which a quantile would be infinite
 

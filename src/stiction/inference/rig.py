@@ -15,13 +15,13 @@ from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
-from stiction.inference.priors import NORMAL, UNIFORM, Normal, Prior, Uniform, middle, read_prior
+from stiction.inference.priors import Normal, Prior, Uniform, middle, read_prior
 from stiction.inference.simulated.restriction import is_allowed_somewhere
 from stiction.system.parameter import change_parameter, change_parameters, quantity, unit
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
 from stiction.text.paths import canonical, slug
 from stiction.text.toml import folder_of, gather, read_toml
-from stiction.text.units import Kind, split_uncertain
+from stiction.text.units import NORMAL, UNIFORM, Kind, split_uncertain
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*?)\s*")
 LARGEST_ANGLE = radians(89.9)  # at 90 deg the drive pulls across

@@ -51,6 +51,8 @@ def placeable(path: str | Path, suffixes: Collection[str] = ()) -> Path:
     if not isinstance(path, str | os.PathLike):
         raise ResultError(f"a file is named by text or a path, not by {echo(path)}")
     target = Path(path)
+    if target.name in ("", ".."):
+        raise ResultError(f"{target}: is a folder; name a file in it")
     if suffixes and target.suffix.lower() not in suffixes:
         first, *others = suffixes
         remedy = f"name it {target.stem}{first}"

@@ -122,7 +122,7 @@ def refuse_size(path: str | Path, size: float) -> None:
     Raises
     ------
     ResultError
-        If they exceed what this machine lends.
+        If they exceed the limit on this machine.
     """
     if short := shortage(size):
         raise ResultError(f"{path}: reading it {short}; read a part of it with xarray")

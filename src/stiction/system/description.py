@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
-from pydantic import Field, StrictBool, model_validator
+from pydantic import Field, model_validator
 
 from stiction.drive import read_drive, read_load
 from stiction.drive.procedures import end
@@ -66,7 +66,7 @@ class Settings(Described):
     rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
     regularisation: Smoothing | None = None
     smoothing: Literal["root", "arctan"] = "root"
-    multiscale: StrictBool | Literal["auto"] = "auto"
+    multiscale: Literal["auto", True, False] = "auto"
 
     @model_validator(mode="after")
     def _has_a_width(self) -> Self:

@@ -100,7 +100,7 @@ QUANTITY = re.compile(
 
 UNCERTAIN = re.compile(r"\+-|\+/-|±")
 BOTH = re.compile(rf"\s*\(?\s*(.+?)\s*(?:{UNCERTAIN.pattern})\s*([^)\s]+)\s*\)?\s*(.*)")
-OF_PRIORS = {"uncertainty", "low"}  # keys of an uncertain value
+NORMAL, UNIFORM = {"value", "uncertainty"}, {"low", "high"}  # keys of an uncertain value
 
 
 def to_si(value: object, kind: Kind) -> float:
@@ -122,12 +122,12 @@ def to_si(value: object, kind: Kind) -> float:
     value = bare(value)
     angle = kind.unit == "rad"
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        if isinstance(value, Mapping) and OF_PRIORS & value.keys():
+        if isinstance(value, Mapping) and (NORMAL | UNIFORM) & value.keys():
             raise _uncertain(value, kind)
         raise fault(f"{echo(value)} is not {kind.name}; write for example {kind.example!r}")
     if isinstance(value, str):
         number = _parse(value, kind)
-    elif angle:
+    elif angle and isfinite(as_float(value)):
         raise fault(f"degree or radian? write '{echo(value)} deg' or '{echo(value)} rad'")
     else:
         number = as_float(value)
@@ -151,7 +151,14 @@ def unread(value: object) -> object:
 
 
 def _uncertain(value: object, kind: Kind) -> Exception:
-    """Return the fault of an uncertain value where one value is needed."""
+    """Return the fault of an uncertain value where one value is needed, or of one without its keys.
+
+    >>> _uncertain({"low": 0.1, "hihg": 0.2}, FORCE).message()
+    "is {'hihg': 0.2, 'low': 0.1}; an uncertain value has value and uncertainty, or low and high"
+    """
+    if isinstance(value, Mapping) and not (value.keys() >= NORMAL or value.keys() >= UNIFORM):
+        ways = "an uncertain value has value and uncertainty, or low and high"
+        return fault(f"is {echo(value)}; {ways}")
     return fault(
         f"{echo(value)} is uncertain, which 'stiction fit', 'design' and 'audit' read; write one "
         f"value here, for example {kind.example!r}"
@@ -256,8 +263,8 @@ def _decimal(size: float) -> Fraction | None:
 
 def fault(message: str) -> PydanticCustomError:
     """Return the error for a value that cannot be read."""
-    # pydantic reads braces as fields of a template
-    return PydanticCustomError("unit", message.replace("{", "(").replace("}", ")"))
+    # pydantic would read braces in the message itself as fields of a template
+    return PydanticCustomError("unit", "{message}", {"message": message})
 
 
 def kind_of(hint: Any) -> Kind | None:

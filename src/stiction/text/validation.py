@@ -18,7 +18,16 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.names import session_name
 from stiction.text.quantity_text import RIGID, angle_text
-from stiction.text.units import QUANTITY, SMALLEST, as_float, bare, hints_of, kind_of, unit_of
+from stiction.text.units import (
+    QUANTITY,
+    SMALLEST,
+    as_float,
+    bare,
+    fault,
+    hints_of,
+    kind_of,
+    unit_of,
+)
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -266,6 +275,8 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
             return f"must be below {limit['lt']:g}, is {echo(value)}"
         case "int_parsing":
             return f"must be a whole number, is {echo(value)}"
+        case "literal_error":
+            return f"must be {limit['expected']}, is {echo(value)}"
         case "unit" | "value_error":
             return detail["msg"].removeprefix("Value error, ")
         case _:
@@ -330,13 +341,9 @@ def _check(value: T) -> T:
 
 def _number(value: object) -> object:
     if isinstance(value, bool) or not isinstance(value, Real):
-        raise PydanticCustomError(
-            "unit",
+        raise fault(
             f"{echo(value)} is not a number; it is a plain float: write a number in SI, or "
-            "annotate "
-            "it with a type of stiction.text.units, e.g. PositiveSpeed".replace("{", "(").replace(
-                "}", ")"
-            ),
+            "annotate it with a type of stiction.text.units, e.g. PositiveSpeed"
         )
     return as_float(value)
 

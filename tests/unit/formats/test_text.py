@@ -179,6 +179,12 @@ def test_encodings(write, encode):
     assert np.allclose(record.force, 1e-6 * FORCE, rtol=1e-14)
 
 
+def test_a_script_has_no_force(write):
+    """A blank line between two of text has no columns whose names they might be."""
+    with pytest.raises(st.ResultError, match="no column is the force along the drive"):
+        st.read_record(write("exit 1\nfi\n\nif [ -n x ]; then\n"))
+
+
 def test_lines_before_the_header_are_told(write):
     record = st.read_record(write(f"Test of 3 May\nOperator: X\n\ntime [s],force [N]\n{lines()}"))
     assert "2 lines above the samples beside names and units, first 'Test of 3 May'" in notes(
@@ -740,7 +746,7 @@ def test_a_missing_file_and_a_folder(tmp_path):
 def test_a_file_too_large_for_memory_is_refused(write, monkeypatch):
     path = write(f"time [s],force [N]\n{lines()}")
     monkeypatch.setattr("stiction.machine.largest_object", lambda: 1000.0)
-    with pytest.raises(st.ResultError, match="of memory, and this machine lends"):
+    with pytest.raises(st.ResultError, match="of memory, more than the limit of"):
         st.read_record(path)
 
 
@@ -748,7 +754,7 @@ def test_a_gzip_that_unpacks_to_more_than_memory_is_refused(write, monkeypatch):
     path = write(gzip.compress(b"time [s],force [N]\n" + b"0,1\n" * 1_000_000), "a.csv.gz")
     for place in ("stiction.machine", "stiction.formats.text.lines"):
         monkeypatch.setattr(f"{place}.largest_object", lambda: 1e6)
-    with pytest.raises(st.ResultError, match="of memory, and this machine lends"):
+    with pytest.raises(st.ResultError, match="of memory, more than the limit of"):
         st.read_record(path)
 
 

@@ -183,6 +183,16 @@ def test_every_fault_of_a_study_is_told_at_once():
     assert "Study.axes.run.multiscale: is not one number" in text
 
 
+def test_an_unknown_key_is_told_beside_the_keys_of_its_table():
+    text = "[study]\nmeasurs = []\ncolour = 1\n[axes.phi]\nvalues = ['2 deg']\n"
+    with pytest.raises(st.DescriptionError) as error:
+        st.Study.from_toml(BASE.to_toml() + text)
+    assert [str(fault) for fault in error.value.faults] == [
+        "study.measurs: unknown key 'measurs'; did you mean 'measures'?",
+        "study.colour: unknown key 'colour'; known: measures, seed, trace_samples, traces",
+    ]
+
+
 def test_an_invalid_value_is_a_fault_of_its_own_axis_alone():
     axes = {"phi": st.Grid("1 deg", "95 deg", 3), "mass": st.Values(["-1 kg", "-2 kg"])}
     with pytest.raises(st.DescriptionError) as error:

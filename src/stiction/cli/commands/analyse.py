@@ -56,8 +56,8 @@ def analyse(
     from stiction.storage.files import make_folder, usable_folder
     from stiction.text.sections import Section
 
-    folder = result.with_name(f"{result.stem}-analysis") if output is None else output
     source = read_source(result, trust=trust, **(measured or RecordOptions()).arguments())
+    folder = result.with_name(f"{result.stem}-analysis") if output is None else output
     usable_folder(folder)
     with progress("analysing"):
         found = understand(source)

@@ -74,7 +74,7 @@ def _cells(text: str, dialect: Dialect, width: int = 0) -> list[str]:
     whole = text.strip().strip("\ufeff")
     cells = _split(COMMENT.sub("", whole), dialect, width)
     marked = _split(whole, dialect, width) if len(cells) == width - 1 else []
-    return marked if len(marked) == width and marked[0] == "#" else cells
+    return marked if len(marked) == width and marked[:1] == ["#"] else cells
 
 
 def _split(bare: str, dialect: Dialect, width: int) -> list[str]:

@@ -40,7 +40,7 @@ from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.toml import folder_of, read_json, read_toml
 from stiction.text.units import Whole
-from stiction.text.validation import Described, faulty
+from stiction.text.validation import Described, faulty, unknown_name
 
 
 class Study(Described):
@@ -216,6 +216,10 @@ class Study(Described):
         elif axes is None:
             found.append(Fault("axes", "missing; write for example a table [axes.phi]"))
         else:
+            known = cls.model_fields.keys() - {"base", "axes"}
+            strange = [key for key in own if key not in known]
+            found += [Fault(f"study.{key}", unknown_name("key", key, known)) for key in strange]
+            own = {key: own[key] for key in own if key in known}
             found += [each for each in cls._faults(own, axes, None) if each.path != "study.base"]
         rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
         base = Description.from_dict(rest, find=find, locate=locate, known=found)

@@ -57,8 +57,10 @@ def map(
     from stiction.study.view.mapping import map as look
 
     cut = dict(parse_assignment(text, "--at") for text in at or ())
-    target = drawable(output or study.with_suffix(".png"))
+    if output is not None:
+        drawable(output)
     with progress("drawing"):
         found = look(study, of or (), cut, trust=trust)
-        written = write(figure_of(found.plot), target)
+        named = study if study.name.strip(".") else study.resolve()  # "." has no suffix
+        written = write(figure_of(found.plot), output or named.with_suffix(".png"))
     say(f"wrote {written}")
