@@ -74,6 +74,25 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     assert "simulated with the fitted" in page.read_text()
 
 
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        ("audit my.toml", "--record"),
+        ("design my.toml", "--record"),
+        ("explore my.toml", "its file"),
+    ],
+)
+def test_options_of_a_record_are_refused_where_there_is_none(
+    words, remedy, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my.toml").write_text(st.presets.nakano_popov_2020().to_toml())
+    assert inside(*words.split(), "--time", "ms", "--normal-load", "1 N") == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert "--time, --normal-load: there is no record that this could be said of" in said
+    assert remedy in said
+
+
 def test_a_wrong_prior_is_one_message(tmp_path, capsys):
     rig = tmp_path / "rig.toml"
     rig.write_text(TEXT.replace('high = "5 deg"', 'high = "0.1 deg"'))

@@ -204,6 +204,21 @@ def record_in(path: Path, measured: RecordOptions | None, trust: bool) -> Record
     return as_record(read_source(path, trust=trust, **said))
 
 
+def record_or_none(
+    path: Path | None, measured: RecordOptions | None, trust: bool, give: str = "give --record"
+) -> Record | None:
+    """Do as `record_in`, if there is a record; refuse options of one where there is none.
+
+    `give` is how the command takes a record.
+    """
+    if path is not None:
+        return record_in(path, measured, trust)
+    if said := (measured or RecordOptions()).arguments():
+        named = ", ".join(f"--{name.replace('_', '-')}" for name in said)
+        raise StictionError(f"{named}: there is no record that this could be said of; {give}")
+    return None
+
+
 Window = Annotated[tuple[str, str] | None, Parameter(negative=())]
 FromPreset = Annotated[
     str | None,

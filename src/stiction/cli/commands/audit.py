@@ -14,7 +14,7 @@ from stiction.cli.options import (
     Trust,
     changes,
     library_or_cache,
-    record_in,
+    record_or_none,
     rig_from,
 )
 from stiction.cli.terminal import say
@@ -76,9 +76,8 @@ def audit(
         from stiction.storage.files import placeable
 
         placeable(output, SUFFIXES)
-    seen = kept = None
-    if record is not None:
-        seen, kept = record_in(record, measured, trust), library_or_cache(library)
+    seen = record_or_none(record, measured, trust)
+    kept = None if seen is None else library_or_cache(library)
     with progress("auditing") as report:
         found = examine(rig, report, record=seen, simulations=simulations, library=kept)
     print_sections(title, found.tables())

@@ -17,7 +17,7 @@ from stiction.cli.options import (
     Trust,
     changes,
     library_or_cache,
-    record_in,
+    record_or_none,
 )
 from stiction.cli.terminal import say
 
@@ -101,7 +101,7 @@ def design(
 
         drawable(output)
     known = Rig.from_toml(rig, changes(set), trust=trust)
-    given = None if record is None else record_in(record, measured, trust)
+    given = record_or_none(record, measured, trust)
     with progress("simulating and learning") as report:
         found = find(
             known,

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import RecordOptions, Trust
+from stiction.cli.options import RecordOptions, Trust, record_or_none
 from stiction.cli.terminal import note
 
 
@@ -47,6 +47,8 @@ def explore(
     said = (measured or RecordOptions()).arguments()
     records = [each for each in source if said and each.suffix != ".toml" and not is_run(each)]
     read = {each: read_source(each, **said) for each in records}
+    if not records:
+        record_or_none(None, measured, trust, "name its file")
     opened = [read.get(each, each) for each in source]
     try:
         open_explorer(opened, port=port, browser=browser, trust=trust)
