@@ -99,7 +99,7 @@ def test_what_a_killed_process_leaves_is_taken_away(tmp_path):
     ("name", "suffixes", "remedy"),
     [
         ("run.toml", (".nc",), "unknown format '.toml'; name it run.nc"),
-        ("/", (".nc",), "unknown format ''; name it .nc"),  # was a traceback
+        ("/", (".nc",), "is a folder; name a file in it"),  # was a traceback
         ("run", (".png", ".pdf"), "unknown format ''; use .png, .pdf, such as run.png"),
     ],
 )
