@@ -128,13 +128,12 @@ def by_parts(record: Record, found: Swings) -> Regime:
 def by_shape(record: Record, found: Swings) -> Regime:
     """Classify cycles of one kind."""
     table, shapes = found.lasting, _shapes(record, found.lasting)
+    evidence, own = _evidence(record, table, shapes), record.own_period
+    if own is not None and couples(shapes.by_rise, table.mean("period"), own):
+        return _transverse(table, shapes, own, evidence)
     if shapes.kind == UNDETERMINED and table.median("hesitations") >= 1.0:
         turns_back = {"cycles": len(table), "rise_share": shapes.typical[0]}
         return Regime(UNDETERMINED, 0.0, turns_back)  # two swings in one, or a ringing
-    evidence = _evidence(record, table, shapes)
-    own = record.own_period
-    if own is not None and couples(shapes.by_rise, table.mean("period"), own):
-        return _transverse(table, shapes, own, evidence)
     evidence |= _sizes(found)
     return _no_vibration(record, found, shapes) or _weigh(record, table, shapes, evidence)
 
@@ -206,13 +205,18 @@ def _evidence(record: Record, table: CycleTable, shapes: Shapes) -> dict[str, fl
 def _transverse(
     table: CycleTable, shapes: Shapes, own: float, evidence: dict[str, float]
 ) -> Regime:
-    """Return the transverse oscillation, as sure as its periods are too short for the spring."""
+    """Return the transverse oscillation, as sure as its periods are too short for the spring.
+
+    The sign of a run's force is right, whatever the shape of its cycles.
+    """
     quick = table["period"] / own
+    evidence.pop("backward", None)
     alike = int((quick < COUPLED).sum())
     if len(quick) > 1:
         evidence |= {"cycles_alike": alike / len(quick)}
     sure = max((alike + 1) / (len(quick) + 3), _chance(quick, 0.0, COUPLED, shapes.resolution))
-    return Regime(TRANSVERSE, sure, evidence, shapes.kind)
+    other = "" if shapes.kind == UNDETERMINED else shapes.kind
+    return Regime(TRANSVERSE, sure, evidence, other)
 
 
 def _sizes(found: Swings) -> dict[str, float]:

@@ -59,6 +59,7 @@ def couples(kind: str, period: float, own: float) -> bool:
     """Return whether a vibration is too quick for the spring along x, whose period is `own`.
 
     Then the transverse spring swings as well: friction that turns couples them. Where the mass
-    sticks, it does so once in each of these swings.
+    sticks, it does so once in each of these swings. The force along x may fall more slowly in them
+    than it rises, as the mass does not swing along x alone.
     """
-    return kind in (TRANSITIONAL, HARMONIC) and period < COUPLED * own
+    return kind != STICK_SLIP and period < COUPLED * own
