@@ -247,12 +247,60 @@ class Falling(NamedTuple):
         return -law.mu_0 / law.end
 
 
-@pytest.mark.parametrize(("end", "v"), [(2e-3, "0.01"), (5.0, "10")])
+class Dipping(NamedTuple):
+    """Friction by a parabola through few measured speeds, which is lowest at a speed."""
+
+    mu_0: float
+    lowest: float
+    at: float
+
+    def coefficient(law, v):
+        return law.lowest + (law.mu_0 - law.lowest) * (1.0 - v / law.at) ** 2
+
+    def slope(law, v):
+        return -2.0 * (law.mu_0 - law.lowest) * (1.0 - v / law.at) / law.at
+
+
+class Jumping(NamedTuple):
+    """Friction that falls at a speed, within a range of it."""
+
+    at: float
+    range: float
+
+    def coefficient(law, v):
+        share = min(max((v - law.at) / law.range, 0.0), 1.0) if law.range else float(v > law.at)
+        return 0.3 - 0.1 * share
+
+    def slope(law, v):
+        return -0.1 / law.range if 0.0 <= v - law.at < law.range else 0.0
+
+
+@pytest.mark.parametrize(("end", "v"), [(2e-3, "0.00237137"), (5.0, "5.62341")])
 def test_friction_that_is_negative_at_any_speed_is_refused(slider, end, v):
     """Beyond 1 mm/s it was not seen, and such runs ended as completed."""
     with pytest.raises(st.DescriptionError, match=rf"coefficient\(law, {v}\) of 'Falling' is -"):
         slider.replace(friction=Falling(0.2, end))
     assert slider.replace(friction=Falling(0.2, 20.0))
+
+
+def test_friction_that_is_negative_between_two_decades_is_refused(slider):
+    """From 0.2 to 0.5 m/s: it was looked for at 0.1 and 1 m/s only."""
+    with pytest.raises(
+        st.DescriptionError, match=r"coefficient\(law, 0.237137\) of 'Dipping' is -"
+    ):
+        slider.replace(friction=Dipping(0.3, -0.05, 0.33))
+    assert slider.replace(friction=Dipping(0.3, 0.05, 0.33))
+
+
+@pytest.mark.parametrize("at", [2e-9, 3.21e-3, 5.0])
+def test_friction_that_jumps_between_two_speeds_of_slip_is_refused(slider, at):
+    """Steps over a jump are accepted: such runs were off by a third of the force."""
+    told = rf"coefficient\(law, {at:g}\) of 'Jumping' jumps there from 0.3 to 0.2; smooth the jump"
+    with pytest.raises(st.DescriptionError, match=told):
+        slider.replace(friction=Jumping(at, 0.0))
+    for range in (1e-6 * at, 1e-3 * at, at):
+        assert slider.replace(friction=Jumping(at, range))
+    assert slider.replace(friction=Jumping(0.0, 0.0))  # a static coefficient
 
 
 @pytest.mark.parametrize("of", [lambda law: law, lambda law: st.laws.Anisotropic(law, ratio=1.5)])

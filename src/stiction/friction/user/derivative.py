@@ -1,11 +1,13 @@
-"""The derivative of a law's coefficient by differences, with a bound of its error."""
+"""The derivative of a law's coefficient by differences, with a bound of its error; its jumps."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from math import inf
+from typing import NamedTuple
 
 EPS = 2.2e-16
+HALVINGS = 60  # of an interval, at most: down to two floats that are neighbours
 REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
 
 
@@ -30,3 +32,38 @@ def _difference(function: Callable[[float], float], v: float, h: float) -> float
     if v == 0.0:
         return (4.0 * function(h) - 3.0 * function(0.0) - function(2.0 * h)) / (2.0 * h)
     return (function(v + h) - function(v - h)) / ((v + h) - (v - h))
+
+
+class Jump(NamedTuple):
+    """The jump of a function: where it is, and the values on both sides."""
+
+    at: float
+    before: float
+    after: float
+
+
+def jump(
+    function: Callable[[float], float],
+    slope: Callable[[float], float],
+    low: float,
+    high: float,
+    least: float,
+) -> Jump | None:
+    """Return a jump of a function between two places, if it is larger than `least`.
+
+    The interval is halved towards the change that the slope does not explain: it vanishes with the
+    width of the interval unless there is a jump.
+    """
+
+    def unexplained(a: float, b: float) -> float:
+        return abs(function(b) - function(a) - 0.5 * (b - a) * (slope(a) + slope(b)))
+
+    for _ in range(HALVINGS):
+        if not unexplained(low, high) > least:
+            return None
+        middle = 0.5 * (low + high)
+        if not low < middle < high:
+            break
+        first, second = unexplained(low, middle), unexplained(middle, high)
+        low, high = (low, middle) if first > second else (middle, high)
+    return Jump(high, function(low), function(high))

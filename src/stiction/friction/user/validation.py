@@ -12,13 +12,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from functools import lru_cache, partial
 from inspect import isfunction
+from itertools import pairwise
 from math import inf, isfinite, nan
 from types import FrameType, ModuleType
 from typing import Any
 
 from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.law import has_state
-from stiction.friction.user.derivative import derivative
+from stiction.friction.user.derivative import derivative, jump
 from stiction.friction.user.source import member
 from stiction.text.validation import unknown_name
 
@@ -35,7 +36,8 @@ WRITE = (
 ENDING = "bound each loop: for _ in range(50)"
 RESERVED = {"law", "source"}  # keys of [friction] that are not parameters
 PROBED = (0.0, 1e-3)  # m/s
-DECADES = (0.0, *(10.0**power for power in range(-9, 2)))  # m/s: where friction is not negative
+DENSE = tuple(10.0 ** (i / 8) for i in range(-72, 9))  # m/s: friction is not negative, nor jumps
+JUMP = 1e-3  # of the coefficient: a smaller jump is rounding in the pieces of a law
 SLOPES = (1.3e-6, 1.7e-4, 1.1e-2, 0.23)  # m/s: at such numbers no law has a kink
 WRONG = 0.01  # of two slopes: by so much they may differ beside the difference's error
 
@@ -212,7 +214,7 @@ def _wrong(law: Any) -> tuple[str, str] | None:
 
     Where Python cannot tell a value, compiled code may: then nothing is known to be wrong.
     """
-    for v in DECADES:
+    for v in (0.0, *DENSE):
         if (mu := _value(law.coefficient, v)) < 0.0:
             what = f"is {mu:g}; it must not be negative: friction would push the mass on"
             return f"coefficient(law, {v:g})", what
@@ -225,6 +227,15 @@ def _wrong(law: Any) -> tuple[str, str] | None:
                 "it return d(coefficient)/dv"
             )
             return f"slope(law, {v:g})", what
+    coefficient, slope = partial(_value, law.coefficient), partial(_value, law.slope)
+    for low, high in pairwise(DENSE):
+        found = jump(coefficient, slope, low, high, JUMP * abs(coefficient(high)))
+        if found is not None:
+            what = (
+                f"jumps there from {found.before:.4g} to {found.after:.4g}; smooth the jump over a "
+                "range of speeds, or give friction at rest as a field mu_static"
+            )
+            return f"coefficient(law, {found.at:g})", what
     return None
 
 
