@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import stiction as st
-from stiction.study.execution.refine import side
+from stiction.study.execution.refine import Intervals, halve, side
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.observed_run import REVERSAL
 
@@ -52,6 +52,17 @@ def test_changes_lie_at_the_loss_of_stability(found):
         loading = slider.F_0 / slider.k_x / drive.velocity
         slowest = -np.log(REVERSAL) / (study.base.run.duration - loading)
         assert abs(st.linear_stability.growth_rate(slider)) < slowest
+
+
+@pytest.mark.parametrize("apart", [None, CALM])
+@pytest.mark.parametrize("kinds", [("settling", "stick-slip"), ("stick-slip", "settling")])
+def test_a_failed_run_half_way_leaves_a_change_between_two_kinds(kinds, apart):
+    """It tells nothing: the lower half is a guess. It had been the upper half, of one kind."""
+    low, high, middle = ({"phi": np.array([value])} for value in (1.0, 3.0, 2.0))
+    below, above = (np.array([kind]) for kind in kinds)
+    found = halve(Intervals(low, high, below, above), middle, np.array([""]), apart)
+    assert (found.low["phi"], found.high["phi"]) == (1.0, 2.0)
+    assert (found.below, found.above) == (below, above)
 
 
 def test_it_goes_on_where_it_was_and_is_kept(found):

@@ -91,8 +91,8 @@ def halve(
 
     If the middle has a third kind, or its run failed, this is the lower half.
     """
-    upper = side(at, apart) == side(found.below, apart)
     at = np.where(at == "", found.above, at)  # no information from a failed run: guess
+    upper = side(at, apart) == side(found.below, apart)
     return Intervals(
         {name: np.where(upper, middle[name], low) for name, low in found.low.items()},
         {name: np.where(upper, high, middle[name]) for name, high in found.high.items()},
