@@ -24,7 +24,7 @@ class Features(NamedTuple):
         Mean force in the last quarter, and its span from lowest to highest there, N; like the peak,
         the ends of the span lie between samples.
     peak_velocity : float
-        Largest velocity of the mass along the drive, m/s.
+        Largest velocity of the mass along the drive, m/s; it lies between samples, too.
     means : ndarray
         (parts,), force averaged over equal parts of the time, N.
     turn_time, turn_value : ndarray
@@ -108,6 +108,8 @@ def features(
     for i in range(n):
         low, high = min(low, force[i]), max(high, force[i])
         fastest = max(fastest, velocity[i])
+        if 0 < i < n - 1 and velocity[i - 1] < velocity[i] >= velocity[i + 1]:
+            fastest = max(fastest, vertex(time, velocity, i)[1])
     late, late_low, late_high, total = 3 * n // 4, np.inf, -np.inf, 0.0
     for i in range(late, n):
         late_low, late_high = min(late_low, force[i]), max(late_high, force[i])
