@@ -166,7 +166,9 @@ def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurem
             continue
         its = _remarks(table, before, int(part.rows[0]))
         before = int(part.rows[-1])
-        own = what_is_said(its) if len(parts) > 1 else said
+        own = what_is_said(its)
+        if len(parts) == 1:  # a line below the samples counts, too, but for when they began
+            own = said._replace(start=own.start)
         block = TableBlock(path, table, asked, choice, part)
         found.append(_measurement(block, own, by_interval, len(parts)))
     if not found:

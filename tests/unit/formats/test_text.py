@@ -212,6 +212,22 @@ def test_a_units_row_shorter_than_the_header(write):
     assert [use.unit for use in record.origin.uses] == ["s", "mN", "mm", ""]
 
 
+def test_a_units_row_in_another_size_than_the_heading_is_refused(write):
+    """Its unit was taken, and forces were a thousand times too large."""
+    path = write(f"time [s],force [mN]\ns,N\n{lines()}")
+    with pytest.raises(st.ResultError, match=r"column 2: its heading is 'force \[mN\]', the line"):
+        st.read_record(path)
+    same = write(f"time_s,Ch_A [V]\ns,V\n{lines()}", "same.csv")
+    assert np.allclose(st.read_record(same, force="2=2 N/V").force, 2.0 * FORCE, rtol=1e-15)
+
+
+def test_a_record_begins_at_its_first_clock_not_at_that_of_a_skipped_line(write):
+    rows = [f"10:00:0{at}.5,{value:.2f}\n" for at, value in enumerate(FORCE)]
+    rows[4] = "10:00:04.5,over range\n"
+    path = write(f"clock,force [N]\n{''.join(rows)}saved at 10:31:00\n")
+    assert st.read_record(path).origin.start == "10:00:00.5"
+
+
 def test_a_header_repeated_mid_file_is_skipped(write):
     half = COUNT // 2
     first = lines(columns=(TIME[:half], FORCE[:half]))

@@ -119,6 +119,17 @@ def conflict(one: str, other: str) -> bool:
             return True
     if is_electric(one) and is_electric(other):
         return _ratio(one, other) != 1.0
+    return differ_in_size(one, other)
+
+
+def differ_in_size(one: str, other: str) -> bool:
+    """Return whether two units are of one dimension, but not of one size.
+
+    Examples
+    --------
+    >>> differ_in_size("N", "mN"), differ_in_size("N", "N"), differ_in_size("A", "V")
+    (True, False, False)
+    """
     return _ratio(one, other) not in (1.0, None)
 
 

@@ -15,7 +15,13 @@ from stiction.arrays import Floats, Indices
 from stiction.errors import Faults, ResultError, echo
 from stiction.formats import TextLayout
 from stiction.formats.table import FileColumn, FileTable, Remark, number_of
-from stiction.formats.text.cell_units import CellUnit, conflict, units_of, without_units
+from stiction.formats.text.cell_units import (
+    CellUnit,
+    conflict,
+    differ_in_size,
+    units_of,
+    without_units,
+)
 from stiction.formats.text.dialect import (
     MISSING,
     Dialect,
@@ -26,6 +32,7 @@ from stiction.formats.text.dialect import (
 )
 from stiction.formats.text.heading import Heading, find_heading, repeats
 from stiction.formats.text.lines import lines_of
+from stiction.formats.units import split_unit
 from stiction.storage.foreign import refuse_size
 
 WIDEST = 2000  # columns
@@ -99,6 +106,7 @@ def read_lines(path: Path, lines: Sequence[str], dialect: Dialect) -> list[FileT
         if rows:
             chosen = np.concatenate(rows)
             _note_longer_rows(path, cells, chosen, heading, faults)
+            _note_other_units(path, heading, faults)
             tables.append(_table(cells, chosen, heading, words, remarks, skipped, dialect))
 
     breaks = np.flatnonzero(np.diff(kinds.astype(np.int8)) != 0) + 1
@@ -274,6 +282,19 @@ def _note_longer_rows(
             f"{path}: line {cells.first + rows[at] + 1}, column {usual + 1}: has {int(count[at])} "
             f"values, the others have {usual}; correct it, or take the line out"
         )
+
+
+def _note_other_units(path: Path, heading: Heading | None, faults: Faults) -> None:
+    """Note each column whose heading states another size of its unit than the units below it."""
+    if heading is None:
+        return
+    for at, (name, unit) in enumerate(zip(heading.names, heading.units, strict=False)):
+        own, below = split_unit(name)[1], split_unit(f"x [{unit}]")[1]
+        if own and below and differ_in_size(own, below):
+            faults.add(
+                f"{path}: column {at + 1}: its heading is {echo(name)}, the line of units below "
+                f"has {echo(unit)}; correct one of them"
+            )
 
 
 def _unnamed_date(cells: _Cells, rows: Indices, heading: Heading | None, width: int) -> int:

@@ -77,7 +77,7 @@ def test_a_line_is_taken_off_at_the_times_of_the_record(sampled):
     [
         (gaps, "samples are missing, in"),
         (jitter, "lie more than a tenth of an interval off even times"),
-        (late, "37 of 10037 samples are missing, in one of 3.83 ms"),
+        (late, "37 of 10037 samples are missing, in a gap of 3.83 ms"),
         (repeat, "samples have the same time as the one before"),
         (even_times, None),
     ],

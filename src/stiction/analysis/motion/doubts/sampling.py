@@ -68,10 +68,8 @@ def doubt_times(record: Record) -> Iterator[str]:
     missing, off = int(np.count_nonzero(grid.missing)), int(np.count_nonzero(grid.off_grid))
     if missing:
         longest = in_words(float(np.diff(record.time).max()), "s")
-        gaps = (
-            f"in {grid.gaps} gaps of up to {longest}" if grid.gaps > 1 else f"in one of {longest}"
-        )
-        yield f"{missing} of {grid.size} samples are missing, {gaps}. {filled}."
+        gaps = f"{grid.gaps} gaps of up to" if grid.gaps > 1 else "a gap of"
+        yield f"{missing} of {grid.size} samples are missing, in {gaps} {longest}. {filled}."
     if off:
         some = f"{off} of {len(record)} samples" if off > 1 else "One sample"
         weaker = (
