@@ -25,17 +25,26 @@ from stiction import theory
 from stiction.analysis.creep.first_slip import first_slip_time, mean_creep_velocity
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.spectrum import rate_spectrogram, spectrogram
-from stiction.arrays import Floats, xr
+from stiction.arrays import Floats
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
-from stiction.plotting.inference.posterior import draw_parameter
+from stiction.plotting.inference.posterior import ParameterAxis, draw_parameter
 from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import canvas, figure_of, fix_ticks
 from stiction.plotting.page.parameter import Scale, label_decades
 from stiction.plotting.page.save import png, save, write
-from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PURPLE, new_figure, style
+from stiction.plotting.page.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    PAGE,
+    PURPLE,
+    lay_out,
+    new_figure,
+    style,
+)
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.lines import draw_line, envelope, oscillations
@@ -934,14 +943,35 @@ def refuse(*_: object) -> None:
 
 def test_a_sharp_posterior_leaves_its_prior_visible() -> None:
     """A posterior 500 times narrower than the prior made both invisible."""
-    before, after = (
-        xr.DataArray(
-            np.random.default_rng(4).normal(0.6, width, 4000), name="mu_0", attrs={"units": "1"}
-        )
-        for width in (0.1, 0.0002)
-    )
+    before, after = (np.random.default_rng(4).normal(0.6, width, 4000) for width in (0.1, 0.0002))
     ax = Figure().add_subplot()
-    draw_parameter(ax, after, before, True)
+    draw_parameter(ax, ParameterAxis(1.0, "mu_0", log=False), after, before, True)
     prior, posterior = ax.patches
     assert prior.get_data().values.max() > 0.15 * ax.get_ylim()[1]
     assert posterior.get_data().values.max() > 0.9 * ax.get_ylim()[1]
+
+
+def test_a_prior_uniform_in_the_logarithm_is_level() -> None:
+    """On an even axis it is a spike at the low end, and the posterior a sliver."""
+    before, after = (10.0 ** np.linspace(low, high, 4000) for low, high in ((-3, -1), (-2.1, -1.9)))
+    ax = Figure().add_subplot()
+    draw_parameter(ax, ParameterAxis(1.0, "jitter", log=True), after, before, True)
+    prior, posterior = (each.get_data() for each in ax.patches)
+    assert ax.get_xscale() == "log"
+    assert np.ptp(prior.values) < 0.1 * prior.values.mean()
+    assert posterior.edges[[0, -1]] == pytest.approx(after[[0, -1]])
+    ax.set_xlim(0.006, 0.015)  # a short axis has ticks
+    assert sum(0.006 <= tick <= 0.015 for tick in ax.get_xticks()) >= 3
+
+
+def test_labels_of_ticks_have_room_beside_a_panel_that_a_legend_makes_lower() -> None:
+    fig = new_figure(7.0, 2.9)
+    left, right = fig.subplots(1, 2)
+    for at in range(6):
+        right.plot([0.0, 1.0], [-0.4, 0.5 * at], label=f"line {at}")
+    right.legend(loc="upper center", bbox_to_anchor=(0.42, -0.22))
+    lay_out(fig)
+    first = [ax.get_position().bounds for ax in (left, right)]
+    lay_out(fig)
+    again = [ax.get_position().bounds for ax in (left, right)]
+    assert np.array(first) == pytest.approx(np.array(again), abs=1e-3)

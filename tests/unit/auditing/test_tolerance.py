@@ -117,6 +117,9 @@ def test_the_page_and_the_figure_show_it(found):
                line.get_linestyle() != "None"]  # fmt: skip
     assert line.get_xdata()[0] == pytest.approx(degrees(found.budget.alignment.angle))
     assert isinstance(axes[0].figure, Figure)
+    axes[0].figure.draw_without_rendering()
+    legend = axes[0].get_legend()
+    assert legend.get_window_extent().y0 > axes[0].bbox.y1 - 1.0  # above: it covers no draws
 
 
 def test_a_limit_that_is_not_reached_is_said():

@@ -51,7 +51,7 @@ def plot_tolerance(budget: Budget, axes: Sequence[Axes] | None = None) -> NDArra
             ends = factor * budget.at_ends[:, i]
             ax.plot(
                 np.degrees(budget.ends), ends, "_", color=BLACK, markersize=9.0,
-                label="2.5, 50, 97.5 % of the angles",
+                label="2.5, 50, 97.5 % of angles",
             )  # fmt: skip
             ax.set_ylabel(LABELS[i] + ("" if unit == "1" else f" ({unit})"))
         draw_limit(panels[0], budget)
@@ -77,6 +77,8 @@ def draw_limit(ax: Axes, budget: Budget) -> None:
         side = np.sign(np.median(budget.angles)) or 1.0
         ax.axvline(
             side * reached, color=GREY, linewidth=0.8, linestyle=(0, (4, 2)),
-            label=f"error of {percent(limit.allowed)} at {reached:.3g}°",
+            label=f"error of {percent(limit.allowed)}",
         )  # fmt: skip
-    ax.legend(loc="best", frameon=True, framealpha=1.0, edgecolor="none")
+    ax.legend(  # above: draws may stand anywhere in the panel
+        loc="lower right", bbox_to_anchor=(1.03, 1.0), ncols=2, handlelength=1.0, columnspacing=1.0
+    )

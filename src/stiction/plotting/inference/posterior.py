@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
-from stiction.arrays import xr
+from stiction.arrays import Floats
 from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
 from stiction.text.paths import short_names
@@ -28,6 +29,7 @@ SHARES = (0.95, 0.5)  # of the posterior inside each contour
 SMOOTH = 1.2  # bins: width of the smoothing of a two-dimensional histogram
 OUTER = 0.002  # share of the prior beyond each end of an axis
 PLAIN = {"deg": " (deg)", "1": ""}  # units without a metric prefix, as on axes
+SHORT = 5.0  # ratio of the ends of a logarithmic axis, below which its ticks are even
 SHARPEST = 6.0  # times as tall as its prior, a posterior is drawn; a sharper one, lower
 SHOWN = 5  # cycles
 RANK_BINS = 10  # of a histogram of ranks
@@ -53,7 +55,7 @@ def plot_posterior(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.o
         panels = panels_of(axes, len(names), 1.6)
         for ax, name, estimate in zip(panels, names, fit.estimates, strict=True):
             said = estimate.name not in fit.unidentified
-            draw_parameter(ax, fit.data[name], fit.prior[name], said)
+            draw_parameter(ax, axis_of(fit, name), fit.data[name], fit.prior[name], said)
         panels[0].legend(  # above: a posterior may stand anywhere in the panel
             loc="lower left", bbox_to_anchor=(-0.03, 1.0), ncols=2, handlelength=1.0
         )
@@ -71,10 +73,64 @@ def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequenc
     return panels[:count]
 
 
-def draw_parameter(ax: Axes, after: xr.DataArray, before: xr.DataArray, identified: bool) -> None:
+class ParameterAxis(NamedTuple):
+    """The axis of a parameter: what values are divided by, its label, whether it is logarithmic.
+
+    It is where the prior is uniform in the logarithm, and is then drawn level.
+    """
+
+    unit: float
+    label: str
+    log: bool
+
+    def places(self, values: ArrayLike) -> Floats:
+        """Return where values stand: evenly, or by their logarithm."""
+        shown = np.asarray(values, dtype=np.float64) / self.unit
+        return np.asarray(np.log(shown)) if self.log else shown
+
+    def values_at(self, places: Floats) -> Floats:
+        """Return the values at these places, in the unit of the axis."""
+        return np.asarray(np.exp(places)) if self.log else places
+
+
+def axis_of(fit: Fit, name: str) -> ParameterAxis:
+    """Return the axis of a parameter by its short name."""
+    values = fit.prior[name]
+    prior = dict(zip(fit.data.data_vars, fit.plan.priors.values(), strict=True))[name]
+    log = getattr(prior, "scale", "") == "log"
+    unit = str(values.attrs["units"])
+    if unit in PLAIN:
+        return ParameterAxis(1.0, f"{name}{PLAIN[unit]}", log)
+    factor, prefix = metric_prefix(np.quantile(np.abs(values.values), 0.9))
+    return ParameterAxis(1.0 / factor, f"{name} ({prefix}{unit})", log)
+
+
+class FewOnLog(LogLocator):
+    """Ticks of a logarithmic axis; even ones on a short axis, which else has hardly any."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """Return the places of ticks between two values."""
+        if vmax < SHORT * vmin:
+            return MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]).tick_values(vmin, vmax)
+        return super().tick_values(vmin, vmax)
+
+
+def use_scale(ax: Axes, way: Literal["x", "y"], log: bool) -> None:
+    """Give an axis a logarithmic scale with plain numbers, if it has one."""
+    if not log:
+        return
+    ax.set(**{f"{way}scale": "log"})
+    axis = ax.xaxis if way == "x" else ax.yaxis
+    axis.set_major_locator(FewOnLog(subs=(1.0, 2.0, 5.0)))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.3g}"))
+
+
+def draw_parameter(
+    ax: Axes, its: ParameterAxis, after: ArrayLike, before: ArrayLike, identified: bool
+) -> None:
     """Draw one parameter's prior, posterior and interval; say so if it is not identified."""
-    scale, label = axis_unit(before)
-    prior, posterior = before.values / scale, after.values / scale
+    prior, posterior = its.places(before), its.places(after)
     low, high = np.quantile(prior, [OUTER, 1.0 - OUTER])
     bins = np.linspace(low, high, BINS + 1)
     fine = np.linspace(posterior.min(), posterior.max(), FEW_BINS + 1) if identified else bins
@@ -84,23 +140,20 @@ def draw_parameter(ax: Axes, after: xr.DataArray, before: xr.DataArray, identifi
     )
     sharp *= min(1.0, SHARPEST * wide.max() / sharp.max())
     look: dict[str, Any] = {"fill": True, "linewidth": 0.6}
-    ax.stairs(wide, bins, facecolor=PALE, edgecolor=GREY, label="prior", **look)
-    ax.stairs(sharp, fine, facecolor=(BLUE, 0.55), edgecolor=BLUE, label="posterior", **look)
+    for heights, edges, face, edge, label in (
+        (wide, bins, PALE, GREY, "prior"),
+        (sharp, fine, (BLUE, 0.55), BLUE, "posterior"),
+    ):
+        ax.stairs(
+            heights, its.values_at(edges), facecolor=face, edgecolor=edge, label=label, **look
+        )
     if identified:
-        for edge in np.quantile(posterior, BOUNDS_95):
+        for edge in its.values_at(np.quantile(posterior, BOUNDS_95)):
             ax.axvline(edge, color=BLUE, linewidth=0.8, linestyle=(0, (4, 2)))
     else:
         ax.set_title("not identifiable", color=GREY)
-    ax.set(xlim=(low, high), yticks=[], xlabel=label)
-
-
-def axis_unit(values: xr.DataArray) -> tuple[float, str]:
-    """Return what values are divided by for their axis, and its label."""
-    unit = str(values.attrs["units"])
-    if unit in PLAIN:
-        return 1.0, f"{values.name}{PLAIN[unit]}"
-    factor, prefix = metric_prefix(np.quantile(np.abs(values.values), 0.9))
-    return 1.0 / factor, f"{values.name} ({prefix}{unit})"
+    use_scale(ax, "x", its.log)
+    ax.set(xlim=its.values_at(np.array([low, high])), yticks=[], xlabel=its.label)
 
 
 def plot_corner(
@@ -137,19 +190,21 @@ def plot_corner(
             if j > i:
                 ax.set_axis_off()
             elif i == j:
-                draw_parameter(ax, fit.data[chosen[i]], fit.prior[chosen[i]], True)
+                after, before = fit.data[chosen[i]], fit.prior[chosen[i]]
+                draw_parameter(ax, axis_of(fit, chosen[i]), after, before, True)
             else:
                 draw_pair(ax, fit, chosen[j], chosen[i])
             ax.tick_params(labelleft=j == 0 and i > 0, labelbottom=i == count - 1)
-            ax.set_xlabel(axis_unit(fit.prior[chosen[j]])[1] if i == count - 1 else "")
-            ax.set_ylabel(axis_unit(fit.prior[chosen[i]])[1] if j == 0 and i > 0 else "")
+            ax.set_xlabel(axis_of(fit, chosen[j]).label if i == count - 1 else "")
+            ax.set_ylabel(axis_of(fit, chosen[i]).label if j == 0 and i > 0 else "")
             ax.tick_params(axis="x", labelrotation=45.0)
         for j, name in enumerate(chosen):
-            scale, _ = axis_unit(fit.prior[name])
-            limits = np.quantile(fit.prior[name].values / scale, [OUTER, 1.0 - OUTER])
-            seen = np.quantile(fit.data[name].values / scale, [0.0, 1.0])
+            its = axis_of(fit, name)
+            limits = np.quantile(its.places(fit.prior[name]), [OUTER, 1.0 - OUTER])
+            seen = np.quantile(its.places(fit.data[name]), [0.0, 1.0])
             margin = 0.15 * float(np.ptp(seen))
-            near = max(limits[0], seen[0] - margin), min(limits[1], seen[1] + margin)
+            ends = max(limits[0], seen[0] - margin), min(limits[1], seen[1] + margin)
+            near = its.values_at(np.array(ends))
             for i in range(j, count):
                 grid[i, j].set_xlim(near)
             for i in range(j):
@@ -163,20 +218,22 @@ def draw_pair(ax: Axes, fit: Fit, x: str, y: str) -> None:
     """Draw the regions of two parameters that hold 95 % and 50 % of the posterior."""
     from scipy.ndimage import gaussian_filter  # type: ignore[attr-defined]
 
-    (x_scale, _), (y_scale, _) = axis_unit(fit.prior[x]), axis_unit(fit.prior[y])
-    a, b = fit.data[x].values / x_scale, fit.data[y].values / y_scale
+    own = axis_of(fit, x), axis_of(fit, y)
+    a, b = (its.places(fit.data[name]) for its, name in zip(own, (x, y), strict=True))
     counts, xs, ys = np.histogram2d(a, b, bins=BINS)
     smooth = gaussian_filter(np.pad(counts, 3), SMOOTH)
     ordered = np.sort(smooth.ravel())[::-1]
     shares = np.cumsum(ordered) / ordered.sum()
     levels = [float(ordered[np.searchsorted(shares, share)]) for share in SHARES]
     centres = [
-        np.arange(-3, len(edges) + 2) * (edges[1] - edges[0]) + 0.5 * (edges[0] + edges[1])
-        for edges in (xs, ys)
+        its.values_at(np.arange(-3, len(edges) + 2) * (edges[1] - edges[0]) + edges[:2].mean())
+        for its, edges in zip(own, (xs, ys), strict=True)
     ]
     edges = sorted({*levels, float(smooth.max())})
     if len(edges) == len(levels) + 1:
         ax.contourf(*centres, smooth.T, levels=edges, colors=["#BBD6E8", BLUE])
+    use_scale(ax, "x", own[0].log)
+    use_scale(ax, "y", own[1].log)
 
 
 def plot_predictive(

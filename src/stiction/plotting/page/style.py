@@ -97,9 +97,14 @@ def new_figure(width: float, height: float) -> Figure:
 
 
 def lay_out(fig: Figure) -> None:
-    """Give the axes of a figure their final places, without drawing it."""
+    """Give the axes of a figure their final places, without drawing it.
+
+    A panel that a legend below it makes lower has other ticks, whose labels may be wider: the
+    second time makes room for these.
+    """
     if (engine := fig.get_layout_engine()) is not None:
-        engine.execute(fig)
+        for _ in range(2):
+            engine.execute(fig)
 
 
 def panel_letter(ax: Axes, letter: str) -> None:
