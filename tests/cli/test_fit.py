@@ -1,6 +1,7 @@
 """``stiction fit``, on a run that is taken as a record."""
 
 import shutil
+from pathlib import Path
 
 import pytest
 import xarray as xr
@@ -11,6 +12,7 @@ from stiction.auditing import tolerance
 from stiction.auditing.page import DRAWN
 from stiction.auditing.words.verdict import RECORD
 from stiction.cli import main
+from stiction.cli.commands.inference.fit import origins
 from stiction.inference.next_test import further
 
 
@@ -91,6 +93,14 @@ def test_options_of_a_record_are_refused_where_there_is_none(
     said = " ".join(capsys.readouterr().err.split())
     assert "--time, --normal-load: there is no record that this could be said of" in said
     assert remedy in said
+
+
+def test_of_several_records_each_is_named_where_the_report_says_how_it_was_read(record_file):
+    record = st.read_record(record_file, time="t=ms", force="F=mN")
+    (alone,) = origins([record_file], [record])
+    assert alone.title == "Read as"
+    named = origins([record_file, Path("b.csv")], [record, record])
+    assert [part.title for part in named] == [f"{record_file}: read as", "b.csv: read as"]
 
 
 def test_a_wrong_prior_is_one_message(tmp_path, capsys):

@@ -311,7 +311,7 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
     ]
     if found.odds is not None:
         claim, *_ = found.odds.sentences()  # its limits stand in a section of their own
-        lines += [f"Among the mechanisms compared: {claim}", *found.odds.objections()]
+        lines += [claim, *found.odds.objections()]
         if found.like and is_unusual_rotation(found.odds):
             lines.append(BOTH_HOLD)
     return lines

@@ -776,6 +776,8 @@ def test_where_rotation_is_claimed_and_its_mass_rests_it_is_static_friction_on_t
     assert "follows" not in said
     assert held.data.attrs["share_at_rest"] == 0.96
     assert "ellipse" in said  # without the force across
+    always = " ".join(odds_with(rest=Rest(1.0, 1.0, 1.0)).sentences())
+    assert "for 100 % of the drive's way across: it is held" in always
     bars, *_ = plot_mechanism(held)
     colors = [bar.get_facecolor() for bar in bars.patches]
     assert colors[0] != colors[1] == colors[2]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +45,7 @@ def section(found: Analysis) -> Section | None:
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
-    known = [word for word in map(verdict, its) if word not in ("", NOT_SHOWN)]
+    known = {each.name: verdict(each) for each in its if verdict(each) not in ("", NOT_SHOWN)}
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
     rough = [x.how for x in its if _is_rough(x)]
@@ -60,15 +61,12 @@ def _is_rough(each: StatedQuantity) -> bool:
     return each.how == BY_RISE and each.agrees is True and apart > SURE * each.error
 
 
-def _agreement(known: list[str]) -> str:
-    """Return how many stated values contradict the record, in a sentence."""
-    wrong, several = known.count("contradicts"), f"{len(known)} stated values"
-    if wrong:
-        return f"{wrong} of {several} contradict the record."
-    those = "stated value" if len(known) == 1 else several
-    if ALLOWED in known:
-        return f"The record does not contradict the {those}."
-    return f"The record agrees with the {those}."
+def _agreement(known: Mapping[str, str]) -> str:
+    """Return which quantities contradict the record as they are stated, in a sentence."""
+    wrong = [name for name, word in known.items() if word == "contradicts"]
+    names = " and ".join(wrong or known)
+    allowed = "does not contradict" if ALLOWED in known.values() else "agrees with"
+    return f"The record {'contradicts' if wrong else allowed} {names} as stated."
 
 
 def verdict(each: StatedQuantity) -> str:

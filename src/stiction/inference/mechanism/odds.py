@@ -269,10 +269,11 @@ class Odds(Report):
     def _at_rest(self, rest: Rest) -> str:
         """Return how far the mass rests in the simulations of rotation, as a sentence."""
         low, middle, high = map(percent, rest)
+        scatter = f" (in 80 % of the simulations {low} to {high})" if low != high else ""
         said = (
             f"Where {ROTATION} is simulated with the parameters that this record seems to have, "
-            f"the mass rests, while the spring is loaded, for {middle} of the drive's way across "
-            f"(in 80 % of the simulations {low} to {high})"
+            f"the mass rests, while the spring is loaded, for {middle} of the drive's way across"
+            f"{scatter}"
         )
         if rest.held:
             return f"{said}: it is held by static friction, while the force on it turns and grows."

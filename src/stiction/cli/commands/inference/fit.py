@@ -109,8 +109,7 @@ def fit(
         found = infer(
             given, known, simulations=simulations, library=kept, seed=seed, progress=report
         )
-    origins = [part for each in given if each.origin is not None for part in each.origin.tables()]
-    sections, groups = [*origins, *warnings(records, given), *found.tables()], {}
+    sections, groups = [*origins(records, given), *warnings(records, given), *found.tables()], {}
     plots: dict[str, Any] = {"posterior": found, "corner": found}
     if mechanism:
         with progress("simulating and telling mechanisms apart") as report:
@@ -124,6 +123,15 @@ def fit(
     say(f"wrote {found.save(output, **groups)}")
     if figures is not None:
         write_figures(plots, figures)
+
+
+def origins(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
+    """Return how records were read; of several, each with its name."""
+    pairs = [(x, y.origin) for x, y in zip(paths, records, strict=True) if y.origin is not None]
+    found = [(path, part) for path, origin in pairs for part in origin.tables()]
+    if len(found) == 1:
+        return [part for _, part in found]
+    return [part._replace(title=f"{path}: read as") for path, part in found]
 
 
 def warnings(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
