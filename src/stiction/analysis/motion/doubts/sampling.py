@@ -12,16 +12,20 @@ from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import (
     BY_SLIPS,
     FEWEST_PER_FALL,
+    REACH,
     SLOW_SLIP,
     StatedQuantity,
 )
 from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid, why_not
+from stiction.recording.noise import white_noise
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
+MOST_HIDDEN = 0.25  # of a fall's height at each end, within noise
 SLOWLY = 1e3  # s between samples
 ENOUGH_VALUES = 16  # that are all repeated as often
 # Samples in a fall as they are seen, about one more than it lasts, and by which share the largest
@@ -99,15 +103,36 @@ def _samples(count: int) -> str:
     return f"{count} samples have" if count > 1 else "One sample has"
 
 
-def _usual_fall(cycles: CycleTable) -> float:
-    """Return how long a fall of the force takes, s; infinite without cycles."""
+def _usual_fall(record: Record, cycles: CycleTable) -> float:
+    """Return how long a fall of the force takes, s; infinite without cycles.
+
+    Under slow loading the noise makes some sample far from the fall the largest, or the smallest.
+    That lengthens it by what is beyond the samples within noise of its ends, between which half a
+    cosine is supposed to lie; its first and last part are hidden.
+    """
     falls = cycles["trough_time"] - cycles["peak_time"]
-    return float(np.median(falls)) if len(falls) else inf
+    if not len(falls):
+        return inf
+    reach = 2.0 * REACH * white_noise(record.force) + resolution(record.force)
+    shares = np.minimum(reach / cycles["drop"], MOST_HIDDEN)
+    ends = np.searchsorted(record.time, [cycles["peak_time"], cycles["trough_time"]])
+    longer = np.zeros(len(falls))  # samples
+    for at, (first, last, share) in enumerate(zip(*ends, shares, strict=True)):
+        force = record.force[max(first - 1, 0) : last + 1]
+        edge = share * np.ptp(force)
+        comes = int(np.argmax(force <= force.min() + edge))
+        leaves = np.flatnonzero(force[: comes + 1] >= force.max() - edge)
+        if not len(leaves):
+            continue
+        hidden = 2.0 * np.arccos(1.0 - 2.0 * share) / pi
+        lasts = 1.0 + (comes - leaves[-1] - 1) / (1.0 - hidden)  # a fall seems to last one more
+        longer[at] = max(np.argmin(force) - np.argmax(force) - lasts, 0.0)
+    return float(np.median(falls - longer / record.sample_rate))
 
 
 def doubt_few_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt falls of the force of few samples, and the slip speeds that they give."""
-    fall = _usual_fall(cycles)
+    fall = _usual_fall(record, cycles)
     samples = fall * record.sample_rate
     if not samples < FEWEST_PER_FALL:
         return
@@ -148,7 +173,7 @@ def _slow_slips(record: Record, cycles: CycleTable, samples: float) -> str:
 
 def doubt_filter(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt falls of the force that are quicker than what a stated filter passes."""
-    sensor, fall = (record.sensors or {}).get("force"), _usual_fall(cycles)
+    sensor, fall = (record.sensors or {}).get("force"), _usual_fall(record, cycles)
     if sensor is not None and fall * sensor.cut_off < SHARP:
         yield (
             f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
@@ -166,11 +191,13 @@ def with_smear(friction: Friction, record: Record, cycles: CycleTable) -> Fricti
     if not len(cycles):
         return friction
     rate = record.sample_rate
-    lasts = max(_usual_fall(cycles) * rate - 1.0, 1.0)  # samples: a fall seems to last one more
+    lasts = max(
+        _usual_fall(record, cycles) * rate - 1.0, 1.0
+    )  # samples: a fall seems to last one more
     lower = BETWEEN / lasts * cycles.median("stick_slope") / rate
     between = hypot(lower, _above_samples(record, cycles))
     sensor = (record.sensors or {}).get("force")
-    peak, trough = _smear(cycles, sensor.filters if sensor else ())
+    peak, trough = _smear(record, cycles, sensor.filters if sensor else ())
     static = hypot(peak, between)
     kinetic = hypot(0.5 * max(peak, trough), 0.25 * between)
     return friction.with_errors(break_away=peak, static=static, kinetic=kinetic)
@@ -200,14 +227,14 @@ def with_supposed_filter(
     sensor = (record.sensors or {}).get("force")
     if sensor is not None and sensor.filters:
         return friction
-    longer = _usual_fall(cycles) ** 2 - pi**2 / its.stated
+    longer = _usual_fall(record, cycles) ** 2 - pi**2 / its.stated
     if not longer > 0.0:  # of other slips than those that are too long
         return friction
-    peak, trough = _smear(cycles, (LowPass(longer**-0.5, 2),))
+    peak, trough = _smear(record, cycles, (LowPass(longer**-0.5, 2),))
     return friction.with_errors(break_away=peak, static=peak, kinetic=0.5 * max(peak, trough))
 
 
-def _smear(cycles: CycleTable, filters: Sequence[LowPass]) -> tuple[float, float]:
+def _smear(record: Record, cycles: CycleTable, filters: Sequence[LowPass]) -> tuple[float, float]:
     """Return what filters do to peaks and troughs between straight lines, N.
 
     The lines are those of the cycles, but for their falls, which are smeared already: a period of
@@ -219,7 +246,7 @@ def _smear(cycles: CycleTable, filters: Sequence[LowPass]) -> tuple[float, float
     filters = [each for each in filters if each.cut < ALONE * slowest]
     rate = FINE * max(each.cut for each in filters)
     period, drop = cycles.median("period"), cycles.median("drop")
-    fall = max(_usual_fall(cycles) ** 2 - slowest**-2, rate**-2) ** 0.5
+    fall = max(_usual_fall(record, cycles) ** 2 - slowest**-2, rate**-2) ** 0.5
     lasts = np.array([period - fall, fall])
     seen = np.minimum(lasts, MEMORY / slowest)  # of rise and fall
     gains = np.array([drop, -drop]) * seen / lasts
