@@ -7,6 +7,7 @@ import pytest
 from tests.uncertain import TEXT
 
 import stiction as st
+from stiction.inference.features import USED
 from stiction.inference.next_test import design as module
 from stiction.inference.next_test import expected as expected_module
 from stiction.inference.next_test import further
@@ -184,6 +185,9 @@ def test_what_may_be_added():
     assert loaded.record.normal_load == 8.0
     names = [test.name for test in further_tests(present, ("force", "position"), changes)]
     assert names[:2] == ["the force across", "the same test again"]
+    tried = present._replace(velocity=2e-3, normal_load=9.81)  # values that somebody would set
+    names = [test.name for test in further_tests(tried, USED, Wanted(angles=()))]
+    assert names[1:] == ["at 670 µm/s", "at 6 mm/s", "under 4.9 N", "under 20 N"]
 
 
 def test_a_design_of_a_rig(monkeypatch, tmp_path):

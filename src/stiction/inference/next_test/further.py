@@ -122,10 +122,12 @@ def further_tests(
     for angle in wanted.angles:
         its = present._replace(yaw=present.yaw + angle)
         yield Further(f"turned by {in_words(angle, 'rad')}", channels, its)
-    speeds = [factor * abs(present.velocity) for factor in VELOCITIES]
+    speeds, loads = (
+        [float(f"{factor * value:.2g}") for factor in factors]  # as anybody would set it
+        for factors, value in ((VELOCITIES, abs(present.velocity)), (LOADS, present.normal_load))
+    )
     for velocity in speeds if wanted.velocities is None else wanted.velocities:
         its = present._replace(velocity=float(np.copysign(velocity, present.velocity)))
         yield Further(f"at {in_words(velocity, 'm/s')}", channels, its)
-    loads = [factor * present.normal_load for factor in LOADS]
     for load in loads if wanted.loads is None else wanted.loads:
         yield Further(f"under {in_words(load, 'N')}", channels, present._replace(normal_load=load))
