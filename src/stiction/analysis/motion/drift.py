@@ -80,7 +80,7 @@ def _likely_rate(cycles: CycleTable) -> float:
     """
     if len(cycles) < 2:
         return 0.0
-    away = [_centred(cycles[f"{end}_time"], cycles[end]) for end in ("peak", "trough")]
+    away = [_away_from_middle(cycles[f"{end}_time"], cycles[end]) for end in ("peak", "trough")]
     rates = [_rate(*each, len(cycles) - 2) for each in away]
     (peaks, peak_error), (troughs, trough_error) = rates
     if abs(peaks - troughs) > LIKELY * np.hypot(peak_error, trough_error):
@@ -91,7 +91,7 @@ def _likely_rate(cycles: CycleTable) -> float:
     return max(likely, key=abs, default=0.0)
 
 
-def _centred(at: Floats, force: Floats) -> tuple[Floats, Floats]:
+def _away_from_middle(at: Floats, force: Floats) -> tuple[Floats, Floats]:
     return at - at.mean(), force - force.mean()
 
 
