@@ -112,7 +112,7 @@ def test_friction_of_slips_while_the_zero_drifts():
         assert not beyond(*its, 0.0)
 
 
-def uneven(random, count, scatter):
+def rough_saw(random, count, scatter):
     """A force of `count` cycles whose peaks scatter about 2 N, and troughs about 1 N."""
     peaks = 2.0 + scatter * random.normal(size=count)
     troughs = 1.0 + scatter * random.uniform(0.2, 1.0) * random.normal(size=count + 1)
@@ -127,7 +127,7 @@ def test_friction_of_uneven_slips_while_the_zero_drifts(count, scatter):
     random, inside, told = np.random.default_rng(count), [], []
     for _ in range(24):
         lead = np.linspace(0.0, 1.0, 180 * random.choice([1, 3]))[:-1]
-        force = np.r_[lead, uneven(random, count, scatter)]
+        force = np.r_[lead, rough_saw(random, count, scatter)]
         force += 2e-3 * random.normal(size=len(force))
         seen = assess(drifts(random, force))
         measured = (seen.friction.static, 2.0), (seen.friction.kinetic, 1.5)
@@ -142,7 +142,7 @@ def test_uneven_slips_without_a_drift_keep_their_errors(count):
     """A scatter that changes alike by chance must not be taken for a drift in many records."""
     random, told = np.random.default_rng(count), []
     for _ in range(40):
-        force = uneven(random, count, 0.02) + 2e-3 * random.normal(size=200 * count)
+        force = rough_saw(random, count, 0.02) + 2e-3 * random.normal(size=200 * count)
         record = st.Record(time=5e-3 * np.arange(len(force)), force=force, normal_load=W)
         told.append(any("drift" in each for each in assess(record).warnings))
     assert np.mean(told) < MOST
