@@ -191,9 +191,8 @@ def with_smear(friction: Friction, record: Record, cycles: CycleTable) -> Fricti
     if not len(cycles):
         return friction
     rate = record.sample_rate
-    lasts = max(
-        _usual_fall(record, cycles) * rate - 1.0, 1.0
-    )  # samples: a fall seems to last one more
+    fall = _usual_fall(record, cycles) * rate  # samples: a fall seems to last one more
+    lasts = max(fall - 1.0, 1.0)
     lower = BETWEEN / lasts * cycles.median("stick_slope") / rate
     between = hypot(lower, _above_samples(record, cycles))
     sensor = (record.sensors or {}).get("force")
