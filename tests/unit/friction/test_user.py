@@ -266,13 +266,26 @@ class Jumping(NamedTuple):
 
     at: float
     range: float
+    fall: float = 0.1
 
     def coefficient(law, v):
         share = min(max((v - law.at) / law.range, 0.0), 1.0) if law.range else float(v > law.at)
-        return 0.3 - 0.1 * share
+        return 0.3 - law.fall * share
 
     def slope(law, v):
-        return -0.1 / law.range if 0.0 <= v - law.at < law.range else 0.0
+        return -law.fall / law.range if 0.0 <= v - law.at < law.range else 0.0
+
+
+class Vanishing(NamedTuple):
+    """Friction that decays to nothing."""
+
+    v_f: float
+
+    def coefficient(law, v):
+        return 0.3 * math.exp(-v / law.v_f)
+
+    def slope(law, v):
+        return -0.3 / law.v_f * math.exp(-v / law.v_f)
 
 
 @pytest.mark.parametrize(("end", "v"), [(2e-3, "0.00237137"), (5.0, "5.62341")])
@@ -301,6 +314,12 @@ def test_friction_that_jumps_between_two_speeds_of_slip_is_refused(slider, at):
     for range in (1e-6 * at, 1e-3 * at, at):
         assert slider.replace(friction=Jumping(at, range))
     assert slider.replace(friction=Jumping(0.0, 0.0))  # a static coefficient
+
+
+@pytest.mark.parametrize("law", [Jumping(0.0, 0.0113, 0.3), Vanishing(1e-3), Vanishing(1e-2)])
+def test_friction_that_falls_to_nothing_does_not_jump(slider, law):
+    """Any change was more than a share of nothing: the law was refused, from 7e-45 to 7e-45."""
+    assert slider.replace(friction=law)
 
 
 @pytest.mark.parametrize("of", [lambda law: law, lambda law: st.laws.Anisotropic(law, ratio=1.5)])

@@ -37,7 +37,7 @@ ENDING = "bound each loop: for _ in range(50)"
 RESERVED = {"law", "source"}  # keys of [friction] that are not parameters
 PROBED = (0.0, 1e-3)  # m/s
 DENSE = tuple(10.0 ** (i / 8) for i in range(-72, 9))  # m/s: friction is not negative, nor jumps
-JUMP = 1e-3  # of the coefficient: a smaller jump is rounding in the pieces of a law
+JUMP = 1e-3  # of the largest coefficient so far: less is rounding in the pieces of a law
 SLOPES = (1.3e-6, 1.7e-4, 1.1e-2, 0.23)  # m/s: at such numbers no law has a kink
 WRONG = 0.01  # of two slopes: by so much they may differ beside the difference's error
 
@@ -228,8 +228,10 @@ def _wrong(law: Any) -> tuple[str, str] | None:
             )
             return f"slope(law, {v:g})", what
     coefficient, slope = partial(_value, law.coefficient), partial(_value, law.slope)
+    largest = coefficient(0.0)
     for low, high in pairwise(DENSE):
-        found = jump(coefficient, slope, low, high, JUMP * abs(coefficient(high)))
+        largest = max(coefficient(high), largest)
+        found = jump(coefficient, slope, low, high, JUMP * largest)
         if found is not None:
             what = (
                 f"jumps there from {found.before:.4g} to {found.after:.4g}; smooth the jump over a "
