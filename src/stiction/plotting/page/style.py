@@ -99,12 +99,20 @@ def new_figure(width: float, height: float) -> Figure:
 def lay_out(fig: Figure) -> None:
     """Give the axes of a figure their final places, without drawing it.
 
-    A panel that a legend below it makes lower has other ticks, whose labels may be wider: the
+    A panel that a legend below it makes lower may have other ticks, whose labels are wider: then a
     second time makes room for these.
     """
     if (engine := fig.get_layout_engine()) is not None:
-        for _ in range(2):
+        before = _ticks(fig)
+        engine.execute(fig)
+        if _ticks(fig) != before:
             engine.execute(fig)
+
+
+def _ticks(fig: Figure) -> list[list[float]]:
+    """Return the places of all ticks, which follow from the sizes of the axes."""
+    sides = (axis for ax in fig.axes for axis in (ax.xaxis, ax.yaxis))
+    return [axis.get_ticklocs().tolist() for axis in sides]
 
 
 def panel_letter(ax: Axes, letter: str) -> None:
