@@ -5,16 +5,17 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from functools import partial
+from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
-from pydantic import Field, model_validator
+from pydantic import BeforeValidator, Field, model_validator
 
 from stiction.drive import read_drive, read_load
 from stiction.drive.procedures import end
 from stiction.drive.program import refuse_idle_base
 from stiction.drive.recorded.reading import Locate, locate_nothing, locator, with_rows
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import law_table, read_law
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.machine import shortage
@@ -30,6 +31,15 @@ from stiction.text.validation import Described, faulty, validate
 
 SAMPLE = 300.0  # bytes of memory per sample, for all columns and intermediate arrays
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, steps resolve a thin layer
+
+
+def _is_choice(choice: object) -> object:
+    if isinstance(choice, Real) and not isinstance(choice, bool):  # 1 equals True
+        raise ValueError(f"must be 'auto', True or False, is {echo(choice)}")
+    return choice
+
+
+Multiscale = Annotated[Literal["auto", True, False], BeforeValidator(_is_choice)]
 
 
 class Settings(Described):
@@ -66,7 +76,7 @@ class Settings(Described):
     rtol: Number = Field(default=1e-6, ge=1e-13, le=1e-2)
     regularisation: Smoothing | None = None
     smoothing: Literal["root", "arctan"] = "root"
-    multiscale: Literal["auto", True, False] = "auto"
+    multiscale: Multiscale = "auto"
 
     @model_validator(mode="after")
     def _has_a_width(self) -> Self:

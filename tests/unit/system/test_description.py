@@ -130,6 +130,7 @@ def test_every_fault_at_once_by_path(tmp_path):
         ('velocity = "1 mm/s"', 'velocity = "1 mm"', "drive.velocity", "'1 mm/s'"),
         ("epsilon = 1e-6", "v_x = 1", "initial", "v_x and v_y go together"),
         ('duration = "5 s"', 'duration = "0 s"', "run.duration", "greater than 0"),
+        ("rtol = 1e-6", "multiscale = 1", "run.multiscale", "must be 'auto', True or False, is 1"),
     ],
 )
 def test_a_fault_says_what_to_write(tmp_path, old, new, path, words):

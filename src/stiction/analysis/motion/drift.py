@@ -125,9 +125,10 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     mean by that of the second half. A drift may be that of friction instead: then they are right,
     at that time.
     """
-    rate, first = drift.possible, float(record.time[0])
+    rate = drift.possible
     if rate == 0.0:
         return friction
+    first = float(record.time[0])
     middle = peak = 0.5 * (drift.start + float(record.time[-1]))
     if len(cycles):
         peak = float(cycles["peak_time"].mean())

@@ -291,8 +291,10 @@ def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Itera
             f"{where}, and friction coefficients with it. If it is the load cell, analyse "
             "st.analysis.detrend(record)."
         )
+    if not drift.likely or not len(cycles):
+        return
     change = abs(drift.likely) * float(record.time[-1] - record.time[0])
-    if change > 0.0 and change > WORTH * abs(float(cycles["peak"].mean())):
+    if change > WORTH * abs(float(cycles["peak"].mean())):
         yield (
             f"Peaks and troughs change alike, by {in_words(drift.likely, 'N/s', 2)}: "
             f"{len(cycles)} cycles cannot tell whether by chance. The errors of friction allow for "
