@@ -96,10 +96,10 @@ def _away_from_middle(at: Floats, force: Floats) -> tuple[Floats, Floats]:
 
 
 def _rate(at: Floats, force: Floats, freedom: int) -> tuple[float, float]:
-    """Return the slope of a line through the middle of points, and its error; inf without any."""
-    spread = float(at @ at)
-    if freedom < 1 or spread == 0.0:
+    """Return the slope of a line through 0, and its error; infinite where nothing shows it."""
+    if freedom < 1:
         return 0.0, np.inf
+    spread = float(at @ at)
     rate = float(at @ force) / spread
     off = force - rate * at
     return rate, error_of_few(float(np.sqrt(off @ off / freedom / spread)), freedom)

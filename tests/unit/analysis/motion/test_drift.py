@@ -43,6 +43,7 @@ def test_each_is_off_by_what_the_zero_drifts_until_its_time():
     assert further(LOADED, 4, unsure) == (0.0, 0.0, 0.0)
     likely = unsure._replace(likely=2.0 * RATE)
     assert further(LOADED, 4, likely) == pytest.approx((0.1, 0.61, 0.65))
+    assert likely.possible == 0.02
 
 
 def table(peaks, troughs):
@@ -69,6 +70,40 @@ def test_peaks_and_troughs_that_change_alike():
 def test_peaks_that_change_otherwise_than_troughs_show_no_drift():
     falling = [4.0, 3.931, 3.86, 3.789]
     assert find_drift(LOADED, table([6.0, 6.071, 6.14, 6.211], falling)).likely == 0.0
+
+
+ERROR = 1e-3  # N/s
+
+
+def bent(level, rate):
+    """Return four forces, 7 s apart, about a line whose rate has the standard error `ERROR`."""
+    away = PEAKS - PEAKS.mean()
+    few = 0.5 * 4.302653  # t at 97.5 % of two degrees of freedom, over 2
+    deviation = ERROR / few * ((away @ away) / (4.0 / 2.0)) ** 0.5
+    return level + rate * away + deviation * np.array([1.0, -1.0, -1.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("peaks", "troughs", "likely"),
+    [
+        (-2.9, [4.0, 3.5, 4.2, 3.7], 0.0),  # of troughs that scatter nothing is known
+        (-3.1, [4.0, 3.5, 4.2, 3.7], -3.1),
+        (5.0, 1.2, 5.0),  # 3.8 errors apart: each has one
+        (5.0, 0.6, 0.0),  # 4.4 apart: they change otherwise
+        (-4.5, -3.2, -4.5),  # the largest of several
+    ],
+)
+def test_a_drift_is_likely_from_three_standard_errors_on(peaks, troughs, likely):
+    ends = troughs if isinstance(troughs, list) else bent(4.0, troughs * ERROR)
+    seen = find_drift(LOADED, table(bent(6.0, peaks * ERROR), ends))
+    assert not seen.sure
+    assert seen.likely == pytest.approx(likely * ERROR)
+
+
+def test_a_sure_drift_is_not_likely_as_well():
+    seen = find_drift(LOADED, table([6.0, 5.93, 5.86, 5.79], [4.0, 3.93, 3.86, 3.79001]))
+    assert seen.sure
+    assert (seen.likely, seen.possible) == (0.0, pytest.approx(0.01, rel=1e-3))
 
 
 def test_a_mean_without_cycles_is_off_by_the_drift_until_its_middle():
