@@ -277,12 +277,13 @@ class Jumping(NamedTuple):
 
 
 class Vanishing(NamedTuple):
-    """Friction that decays to nothing."""
+    """Friction that decays to nothing, and falls at `v_f` by a step."""
 
     v_f: float
+    step: float = 0.0
 
     def coefficient(law, v):
-        return 0.3 * math.exp(-v / law.v_f)
+        return 0.3 * math.exp(-v / law.v_f) + (law.step if v < law.v_f else 0.0)
 
     def slope(law, v):
         return -0.3 / law.v_f * math.exp(-v / law.v_f)
@@ -320,6 +321,12 @@ def test_friction_that_jumps_between_two_speeds_of_slip_is_refused(slider, at):
 def test_friction_that_falls_to_nothing_does_not_jump(slider, law):
     """Any change was more than a share of nothing: the law was refused, from 7e-45 to 7e-45."""
     assert slider.replace(friction=law)
+
+
+def test_friction_that_jumps_where_it_falls_steeply_is_refused(slider):
+    """Beside it friction changes thirty times as much, as its slope tells."""
+    with pytest.raises(st.DescriptionError, match=r"0.01\) of 'Vanishing' jumps there from 0.11"):
+        slider.replace(friction=Vanishing(1e-2, 1e-3))
 
 
 @pytest.mark.parametrize("of", [lambda law: law, lambda law: st.laws.Anisotropic(law, ratio=1.5)])

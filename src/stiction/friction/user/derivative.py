@@ -7,7 +7,7 @@ from math import inf
 from typing import NamedTuple
 
 EPS = 2.2e-16
-HALVINGS = 60  # of an interval, at most: down to two floats that are neighbours
+HALVINGS = 60  # of an interval: down to two floats that are neighbours
 REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
 
 
@@ -62,8 +62,6 @@ def jump(
         if not unexplained(low, high) > least:
             return None
         middle = 0.5 * (low + high)
-        if not low < middle < high:
-            break
         first, second = unexplained(low, middle), unexplained(middle, high)
         low, high = (low, middle) if first > second else (middle, high)
     return Jump(high, function(low), function(high))
