@@ -75,7 +75,7 @@ def test_peaks_that_change_otherwise_than_troughs_show_no_drift():
 ERROR = 1e-3  # N/s
 
 
-def bent(level, rate):
+def forces_about_a_line(level, rate):
     """Return four forces, 7 s apart, about a line whose rate has the standard error `ERROR`."""
     away = PEAKS - PEAKS.mean()
     few = 0.5 * 4.302653  # t at 97.5 % of two degrees of freedom, over 2
@@ -94,8 +94,8 @@ def bent(level, rate):
     ],
 )
 def test_a_drift_is_likely_from_three_standard_errors_on(peaks, troughs, likely):
-    ends = troughs if isinstance(troughs, list) else bent(4.0, troughs * ERROR)
-    seen = find_drift(LOADED, table(bent(6.0, peaks * ERROR), ends))
+    ends = troughs if isinstance(troughs, list) else forces_about_a_line(4.0, troughs * ERROR)
+    seen = find_drift(LOADED, table(forces_about_a_line(6.0, peaks * ERROR), ends))
     assert not seen.sure
     assert seen.likely == pytest.approx(likely * ERROR)
 
