@@ -221,6 +221,16 @@ def test_a_units_row_in_another_size_than_the_heading_is_refused(write):
     assert np.allclose(st.read_record(same, force="2=2 N/V").force, 2.0 * FORCE, rtol=1e-15)
 
 
+def test_a_rate_below_the_samples_is_that_of_a_file_without_times(write):
+    path = write(
+        "force [N]\n" + "".join(f"{value:.2f}\n" for value in FORCE) + "sample rate: 50 Hz\n"
+    )
+    shown = write("force [N]\n" + "".join(f"{value:.2f}\n" for value in FORCE), "bare.csv")
+    with pytest.raises(st.ResultError, match="interval"):
+        st.read_record(shown)
+    assert st.read_record(path).sample_rate == pytest.approx(50.0)
+
+
 def test_a_record_begins_at_its_first_clock_not_at_that_of_a_skipped_line(write):
     rows = [f"10:00:0{at}.5,{value:.2f}\n" for at, value in enumerate(FORCE)]
     rows[4] = "10:00:04.5,over range\n"

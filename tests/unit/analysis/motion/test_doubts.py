@@ -13,7 +13,7 @@ import stiction as st
 from stiction.analysis.export import write
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
+from stiction.analysis.motion.doubts.sampling import _usual_fall, with_smear, with_supposed_filter
 from stiction.analysis.motion.friction import Friction, Measured, friction_of
 from stiction.analysis.motion.metadata import BY_SLIPS, StatedQuantity
 from stiction.presets.preset import on_a_line
@@ -772,6 +772,18 @@ def test_noise_under_slow_loading_does_not_make_sudden_falls_last() -> None:
         record = st.Record(time=time, force=force, stiffness=1.0, drive_velocity=1.0)
         (said,) = [each for each in assess(record).warnings if "A fall of the force takes" in each]
         assert "slip speeds are lower bounds" in said
+
+
+def test_a_slow_fall_lasts_as_long_in_noise() -> None:
+    """Half a cosine of 24 samples; within noise of its ends a third of it is hidden."""
+    rise, fall = np.linspace(0.0, 1.0, 377)[:-1], 0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, 25))
+    force = 2.0 + np.tile(np.r_[rise, fall[:-1]], 9)
+    time, random = np.arange(len(force)) / 400.0, np.random.default_rng(3)
+    for noise in (0.0, 4e-3, 1e-2):
+        its = force + noise * random.normal(size=len(force))
+        record = st.Record(time=time, force=its, stiffness=1.0, drive_velocity=1.0)
+        found = _usual_fall(record, swings(record).lasting) * record.sample_rate
+        assert found == pytest.approx(24.0, abs=3.0)  # a sample at each end, and one seems more
 
 
 @pytest.mark.parametrize("per_cycle", [8, 1000])
