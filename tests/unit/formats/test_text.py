@@ -219,6 +219,8 @@ def test_a_units_row_in_another_size_than_the_heading_is_refused(write):
         st.read_record(path)
     same = write(f"time_s,Ch_A [V]\ns,V\n{lines()}", "same.csv")
     assert np.allclose(st.read_record(same, force="2=2 N/V").force, 2.0 * FORCE, rtol=1e-15)
+    remark = write(f"# time [ms],force [N]\n# a\n{lines()}", "remark.csv")  # a is a year, too
+    assert np.allclose(st.read_record(remark).force, FORCE, rtol=1e-15)
 
 
 def test_a_rate_below_the_samples_is_that_of_a_file_without_times(write):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from io import StringIO
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -285,15 +286,21 @@ def _note_longer_rows(
 
 
 def _note_other_units(path: Path, heading: Heading | None, faults: Faults) -> None:
-    """Note each column whose heading states another size of its unit than the units below it."""
+    """Note each column whose heading states another size of its unit than the units below it.
+
+    A line that leaves out a column whose heading has a unit may be a remark.
+    """
     if heading is None:
         return
-    for at, (name, unit) in enumerate(zip(heading.names, heading.units, strict=False)):
-        own, below = split_unit(name)[1], split_unit(f"x [{unit}]")[1]
-        if own and below and differ_in_size(own, below):
+    below = (split_unit(f"x [{unit}]")[1] for unit in heading.units)
+    pairs = [*zip_longest((split_unit(name)[1] for name in heading.names), below, fillvalue="")]
+    if any(own and not unit for own, unit in pairs):
+        return
+    for at, (own, unit) in enumerate(pairs):
+        if own and differ_in_size(own, unit):
             faults.add(
-                f"{path}: column {at + 1}: its heading is {echo(name)}, the line of units below "
-                f"has {echo(unit)}; correct one of them"
+                f"{path}: column {at + 1}: its heading is {echo(heading.names[at])}, the line of "
+                f"units below has {echo(heading.units[at])}; correct one of them"
             )
 
 
