@@ -27,7 +27,7 @@ from stiction.inference.fit import plan_for
 from stiction.inference.learning.calibration import learn_or_read
 from stiction.inference.learning.regression_abc import quantiles
 from stiction.inference.next_test.design import expectations, split
-from stiction.inference.next_test.expected import Expected, typical
+from stiction.inference.next_test.expected import Expected, fill_in, typical
 from stiction.inference.next_test.further import Further, Wanted, further_tests
 from stiction.inference.observation import Conditions
 from stiction.inference.progress import silent
@@ -46,7 +46,7 @@ class Fitted(NamedTuple):
     Parameters
     ----------
     errors : ndarray
-        (n,), distance of the median of phi from the truth, rad.
+        (n, 1), distance of the median of phi from the truth, rad.
     deviations : ndarray
         (n, d), that of draws of the posterior from the median, rad.
     """
@@ -56,10 +56,10 @@ class Fitted(NamedTuple):
 
     def shrinkage(self, before: Fitted) -> tuple[float, float]:
         """Return the typical error over an earlier one, as found and as stated."""
-        fitted = np.isfinite(before.errors)
-        own = [np.where(np.isfinite(a), a, b)[fitted] for a, b in zip(self, before, strict=True)]
-        pairs = zip(own, before, strict=True)
-        found, stated = (float(typical(a.ravel()) / typical(b[fitted].ravel())) for a, b in pairs)
+        fitted = have_cycles(before.errors)
+        pairs = zip(before, self, strict=True)
+        typically = (typical(fill_in(pair)[:, fitted].reshape(2, -1), axis=1) for pair in pairs)
+        found, stated = (float(own / first) for first, own in typically)
         return found, stated
 
 
@@ -88,7 +88,7 @@ def compare(
     next(predicted)
     before = next(found)
     for expected, own in zip(predicted, found, strict=True):
-        yield expected, int(np.isfinite(own.errors).sum()), *own.shrinkage(before)
+        yield expected, int(have_cycles(own.errors).sum()), *own.shrinkage(before)
 
 
 def columns_of(trial: Plan, tests: Sequence[Further]) -> Iterator[list[int]]:
@@ -109,7 +109,7 @@ def fits(trial: Plan, scores: Floats, rows: Floats, first: int, columns: Sequenc
     known = np.flatnonzero(usable[:first])
     learned = learn_or_read(features[known], scores[known])
     truth = prior.quantile(ndtr(scores[first:, place]))
-    errors, deviations = np.full(len(truth), np.nan), np.full((len(truth), DRAWS), np.nan)
+    errors, deviations = (np.full((len(truth), count), np.nan) for count in (1, DRAWS))
     unseen = np.flatnonzero(usable[first:])
     posteriors = learned.posteriors(features[first:][unseen])
     for i, sample in zip(unseen, posteriors, strict=True):

@@ -96,13 +96,10 @@ def _away_from_middle(at: Floats, force: Floats) -> tuple[Floats, Floats]:
 
 
 def _rate(at: Floats, force: Floats, freedom: int) -> tuple[float, float]:
-    """Return the slope of a line through 0, and its error; infinite where nothing shows it."""
-    if freedom < 1:
-        return 0.0, np.inf
-    spread = float(at @ at)
-    rate = float(at @ force) / spread
-    off = force - rate * at
-    return rate, error_of_few(float(np.sqrt(off @ off / freedom / spread)), freedom)
+    """Return the slope of a line, and its error by so many degrees of freedom; NaN without any."""
+    found = line(at, force)
+    share = (len(at) - 2) / max(freedom, 1)
+    return found.slope, error_of_few(found.slope_error * share**0.5, freedom)
 
 
 def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:

@@ -173,8 +173,11 @@ def _slow_slips(record: Record, cycles: CycleTable, samples: float) -> str:
 
 def doubt_filter(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt falls of the force that are quicker than what a stated filter passes."""
-    sensor, fall = (record.sensors or {}).get("force"), _usual_fall(record, cycles)
-    if sensor is not None and fall * sensor.cut_off < SHARP:
+    sensor = (record.sensors or {}).get("force")
+    if sensor is None:
+        return
+    fall = _usual_fall(record, cycles)
+    if fall * sensor.cut_off < SHARP:
         yield (
             f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
             f"slower than {in_words(sensor.cut_off, 'Hz')}: peaks, troughs, slip speeds and the "
@@ -190,13 +193,12 @@ def with_smear(friction: Friction, record: Record, cycles: CycleTable) -> Fricti
     """
     if not len(cycles):
         return friction
-    rate = record.sample_rate
-    fall = _usual_fall(record, cycles) * rate  # samples: a fall seems to last one more
-    lasts = max(fall - 1.0, 1.0)
+    rate, fall = record.sample_rate, _usual_fall(record, cycles)
+    lasts = max(fall * rate - 1.0, 1.0)  # samples: a fall seems to last one more
     lower = BETWEEN / lasts * cycles.median("stick_slope") / rate
     between = hypot(lower, _above_samples(record, cycles))
     sensor = (record.sensors or {}).get("force")
-    peak, trough = _smear(record, cycles, sensor.filters if sensor else ())
+    peak, trough = _smear(cycles, fall, sensor.filters if sensor else ())
     static = hypot(peak, between)
     kinetic = hypot(0.5 * max(peak, trough), 0.25 * between)
     return friction.with_errors(break_away=peak, static=static, kinetic=kinetic)
@@ -226,15 +228,18 @@ def with_supposed_filter(
     sensor = (record.sensors or {}).get("force")
     if sensor is not None and sensor.filters:
         return friction
-    longer = _usual_fall(record, cycles) ** 2 - pi**2 / its.stated
+    fall = _usual_fall(record, cycles)
+    longer = fall**2 - pi**2 / its.stated
     if not longer > 0.0:  # of other slips than those that are too long
         return friction
-    peak, trough = _smear(record, cycles, (LowPass(longer**-0.5, 2),))
+    peak, trough = _smear(cycles, fall, (LowPass(longer**-0.5, 2),))
     return friction.with_errors(break_away=peak, static=peak, kinetic=0.5 * max(peak, trough))
 
 
-def _smear(record: Record, cycles: CycleTable, filters: Sequence[LowPass]) -> tuple[float, float]:
+def _smear(cycles: CycleTable, fall: float, filters: Sequence[LowPass]) -> tuple[float, float]:
     """Return what filters do to peaks and troughs between straight lines, N.
+
+    Falls of the force take `fall`, s.
 
     The lines are those of the cycles, but for their falls, which are smeared already: a period of
     the cut-off, in quadrature, is what a sudden one takes.
@@ -245,7 +250,7 @@ def _smear(record: Record, cycles: CycleTable, filters: Sequence[LowPass]) -> tu
     filters = [each for each in filters if each.cut < ALONE * slowest]
     rate = FINE * max(each.cut for each in filters)
     period, drop = cycles.median("period"), cycles.median("drop")
-    fall = max(_usual_fall(record, cycles) ** 2 - slowest**-2, rate**-2) ** 0.5
+    fall = max(fall**2 - slowest**-2, rate**-2) ** 0.5
     lasts = np.array([period - fall, fall])
     seen = np.minimum(lasts, MEMORY / slowest)  # of rise and fall
     gains = np.array([drop, -drop]) * seen / lasts
