@@ -14,6 +14,7 @@ import stiction
 from stiction.auditing import figures, tolerance
 from stiction.auditing.words.verdict import AS_DESCRIBED, RECORD, VERDICT
 from stiction.plotting.page.save import png
+from stiction.plotting.page.style import PAGE
 from stiction.storage.files import placeable, whole
 from stiction.text.sections import html
 
@@ -24,10 +25,11 @@ SUFFIXES = (".html", ".htm")
 
 
 class Illustration(NamedTuple):
-    """A figure as text, with its caption."""
+    """A figure as text, with its caption; its width is a share of the page's."""
 
     image: str
     caption: str
+    width: float
 
 
 # figures below each section, with captions
@@ -104,7 +106,7 @@ def illustrations(
     """Return the non-empty figures of a section."""
     made = ((draw(found), caption) for draw, caption in drawn)
     return [
-        Illustration(b64encode(png(figure)).decode("ascii"), caption)
+        Illustration(b64encode(png(figure)).decode("ascii"), caption, figure.get_figwidth() / PAGE)
         for figure, caption in made
         if figure is not None
     ]

@@ -1,4 +1,5 @@
 import re
+from base64 import b64decode
 from copy import copy
 from html import unescape
 from math import atan2, cos, degrees, hypot, isnan, pi, sin, sqrt
@@ -321,6 +322,14 @@ def test_the_page_needs_nothing_from_outside(found):
     assert text.count("data:image/png;base64,") == 5
     assert not re.findall(r'(?:src|href)="(?!data:)(?!https://arxiv)', text)
     assert "<script" not in text
+
+
+def test_letters_in_all_figures_of_the_page_have_one_size(found):
+    figures = re.findall(r'width: ([0-9.]+)rem.*?base64,([^"]+)"', page(found, "rig"))
+    dots = [int.from_bytes(b64decode(image)[16:20]) for _, image in figures]  # wide, by its header
+    scales = [wide / float(width) for (width, _), wide in zip(figures, dots, strict=True)]
+    assert len(scales) == 5
+    assert max(scales) < 1.01 * min(scales)  # widths are rounded to 0.1 rem
 
 
 def test_the_command_prints_and_writes(tmp_path, capsys):
