@@ -1,13 +1,19 @@
-"""Arrays by name in a file of our own: what can be computed again, kept for the next time."""
+"""Arrays by name in a file of our own: what can be computed again, kept for the next time.
+
+A checksum stands behind the arrays. Those of the archive do not protect the shapes of its arrays:
+of one that seems shorter only a part is read, and no checksum of the whole is compared.
+"""
 
 from __future__ import annotations
 
+from io import BytesIO
 from pathlib import Path
 from zipfile import BadZipFile
 
 import numpy as np
 
 from stiction.errors import ResultError
+from stiction.storage.checksums import with_checksum, without_checksum
 from stiction.storage.files import prepare_folder, whole
 
 
@@ -24,10 +30,12 @@ def write_arrays(path: Path | None, **arrays: np.ndarray) -> None:
     """
     if path is None:
         return
+    made = BytesIO()
+    np.savez(made, allow_pickle=False, **arrays)
     try:
         prepare_folder(path.parent)
-        with whole(path) as part, part.open("wb") as opened:
-            np.savez(opened, allow_pickle=False, **arrays)
+        with whole(path) as part:
+            part.write_bytes(with_checksum(made.getvalue()))
     except ResultError:
         if not path.is_relative_to(cache_folder()):
             raise
@@ -45,7 +53,10 @@ def read_arrays(path: Path | None) -> dict[str, np.ndarray] | None:
     if path is None or not path.is_file():
         return None
     try:
-        with path.open("rb") as opened, np.load(opened, allow_pickle=False) as file:
+        content = without_checksum(path.read_bytes())
+        if content is None:
+            return None
+        with np.load(BytesIO(content), allow_pickle=False) as file:
             return {name: file[name] for name in file.files}
     except (OSError, ValueError, KeyError, EOFError, BadZipFile):
         return None
