@@ -19,6 +19,8 @@ from stiction.trajectory import Trajectory
 FINE = 8  # bins in each time that is averaged over
 SEEN = 4  # samples for each stick: with fewer, what lies between two sticks is not seen
 OF_A_SLIP = 2  # nor with fewer in each slip
+HUNDREDTHS = 100  # of the first loading
+ROUNDED = 1e-14  # of the travel of drive or mass: places are known to some roundings
 
 
 class Slip(NamedTuple):
@@ -119,8 +121,9 @@ class Outcome(NamedTuple):
         Smallest slip speed of the samples during the first loading, m/s; zero if the mass rests
         then, however shortly.
     creep : float
-        Median slip speed during the first loading, m/s, of means over hundredths of it: zero only
-        if the mass rests for half of it.
+        Median over hundredths of the first loading of the distance between their ends over their
+        time, m/s: zero only if the mass rests for half of it. Places are exact however few samples
+        there are; means of the slip speed would show the phase of the oscillation at the samples.
     steps : int
         Slip steps of the solver.
     """
@@ -140,7 +143,10 @@ def outcome(run: Trajectory) -> Outcome:
     speed, times = run.samples["slip_speed"], run.samples["time"]
     end = first_slip_time(run)
     loading = speed[: np.searchsorted(times, end) + 1]
-    parts = np.array_split(loading, min(100, len(loading)))
+    ends = np.unique(np.linspace(0, len(loading) - 1, HUNDREDTHS + 1).astype(np.intp))
+    places = [run.samples[name][ends] for name in ("X", "Y", "u_x", "u_y")]
+    moved = np.hypot(*map(np.diff, places[:2]))
+    moved[moved < ROUNDED * np.abs(places).max()] = 0.0
     rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
     force, load = abs(cell_force(run)), run.samples["normal_load"]
@@ -152,6 +158,6 @@ def outcome(run: Trajectory) -> Outcome:
         peak,
         float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
         0.0 if rests else float(np.fmin.reduce(loading)),
-        float(np.median([part.mean() for part in parts])),
+        float(np.median(moved / np.diff(times[ends])) if len(moved) else loading[0]),
         statistics.steps,
     )
