@@ -96,7 +96,7 @@ def page(found: Audit, name: str) -> str:
         version=stiction.__version__,
         parts=found.tables(),
         figures={title: illustrations(found, drawn) for title, drawn in DRAWN.items()},
-        description=found.slider.to_toml(),
+        description=found.to_toml(),
     )
 
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stiction.analysis.record import Record, as_record
@@ -41,6 +42,7 @@ from stiction.text.sections import Section, as_html, as_text
 if TYPE_CHECKING:  # a fit takes 0.3 s to import
     from stiction.auditing.measured import RecordComparison
     from stiction.auditing.tolerance import Budget
+    from stiction.inference.priors import Prior
 
 # parts of the work: two tests, the advices, critical misalignments, and springs replaced
 PARTS = 4 + len(LEVERS)
@@ -73,6 +75,8 @@ class Audit(NamedTuple):
         The tolerance budget; None where no parameter is uncertain.
     measured : RecordComparison or None
         A measured record beside simulations of the apparatus; None where none was given.
+    priors : mapping
+        Of the uncertain parameters, which `slider` has in their middle.
 
     Examples
     --------
@@ -92,6 +96,7 @@ class Audit(NamedTuple):
     chain: chain.Chain | None = None
     budget: Budget | None = None
     measured: RecordComparison | None = None
+    priors: Mapping[str, Prior] = MappingProxyType({})
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -119,6 +124,10 @@ class Audit(NamedTuple):
         stiffer = (each.tried for each in replaced if each.tried)
         runs = [self.observation, self.sliding_on, *tried, *stiffer]
         return all(each.run.status.ok for each in runs)
+
+    def to_toml(self) -> str:
+        """Return the description of the apparatus, with what is uncertain in it."""
+        return Rig(self.slider, dict(self.priors)).to_toml()
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
@@ -235,8 +244,9 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     progress(1.0)
     both = observation, sliding_on
     return Audit(
-        system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured
-    )
+        system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured,
+        rig.priors,
+    )  # fmt: skip
 
 
 def sections(found: Audit) -> list[Section]:

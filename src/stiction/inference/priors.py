@@ -15,6 +15,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
+from fractions import Fraction
 from math import inf, log
 from typing import Any
 
@@ -22,7 +23,8 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.errors import echo
-from stiction.text.units import NORMAL, UNIFORM, Kind, to_si
+from stiction.text.quantity_text import quantity_text
+from stiction.text.units import NORMAL, QUANTITY, UNIFORM, Kind, to_si
 
 SCALES = ("linear", "log")
 EDGE = 1e-12  # shares beyond which a quantile would be infinite
@@ -97,7 +99,7 @@ def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:
     if keys == NORMAL:
         mean, said = to_si(table["value"], kind), table["uncertainty"]
         share = re.fullmatch(r"\s*(.+?)\s*%\s*", said) if isinstance(said, str) else None
-        width = abs(mean) * to_si(float(share[1]), PLAIN) / 100.0 if share else to_si(said, kind)
+        width = to_si(share_of(table["value"], share[1]) if share else said, kind)
         if not width > 0.0:
             raise ValueError(f"uncertainty must be greater than 0, is {echo(said)}")
         return Normal(mean, width)
@@ -120,6 +122,36 @@ def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:
 
 
 PLAIN = Kind("a number", "", "5")
+
+
+def share_of(value: Any, percent: str) -> str | float:
+    """Return a share of the size of a quantity, in its unit and as its digits have it.
+
+    >>> share_of("30 mN", "10"), share_of(0.3, "7")
+    ('3.0 mN', 0.021)
+    """
+    found = QUANTITY.fullmatch(str(value).replace("−", "-"))
+    assert found is not None  # the value has been read
+    size = float(abs(Fraction(found[1])) * Fraction(repr(to_si(percent, PLAIN))) / 100)
+    unit = found[2].strip()
+    return f"{size!r} {unit}" if unit else size
+
+
+def prior_table(prior: Prior, unit: str) -> dict[str, Any]:
+    """Return the table that states a prior, as `read_prior` reads it.
+
+    >>> prior_table(Uniform(0.1, 0.4, "log"), ""), prior_table(Normal(2e3, 50.0), "N/m")
+    ({'low': 0.1, 'high': 0.4, 'scale': 'log'}, {'value': '2 kN/m', 'uncertainty': '50 N/m'})
+    """
+    if isinstance(prior, Normal):
+        its = {"value": prior.mean, "uncertainty": prior.deviation}
+    else:
+        its = {"low": prior.low, "high": prior.high}
+    table: dict[str, Any] = {
+        key: quantity_text(value, unit) if unit else value for key, value in its.items()
+    }
+    logarithmic = isinstance(prior, Uniform) and prior.scale == "log"
+    return table | ({"scale": "log"} if logarithmic else {})
 
 
 def middle(prior: Prior) -> float:

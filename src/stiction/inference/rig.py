@@ -15,12 +15,15 @@ from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
-from stiction.inference.priors import Normal, Prior, Uniform, middle, read_prior
+from stiction.inference.priors import Normal, Prior, Uniform, middle, prior_table, read_prior
 from stiction.inference.simulated.restriction import is_allowed_somewhere
+from stiction.names import picture
 from stiction.system.parameter import change_parameter, change_parameters, quantity, unit
 from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slider_of
-from stiction.text.paths import canonical, slug
-from stiction.text.toml import folder_of, gather, read_toml
+from stiction.system.writing import parameter_table, slider_tables
+from stiction.text.paths import canonical, slug, with_changes
+from stiction.text.sections import Section, as_html
+from stiction.text.toml import folder_of, gather, read_toml, toml_text
 from stiction.text.units import NORMAL, UNIFORM, Kind, split_uncertain
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*?)\s*")
@@ -97,6 +100,29 @@ class Rig(NamedTuple):
         slider = in_the_middle(slider, priors)
         priors = within_ranges(slider, priors)
         return cls(in_the_middle(slider, priors), priors)
+
+    def _repr_html_(self) -> str:
+        table = as_html([Section("Rig", [], parameter_table(self._tables()))])
+        return table + picture("plot_slider", self.slider)
+
+    def to_toml(self) -> str:
+        """Return the description as TOML with units, uncertain values as their priors state them.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> text = st.presets.nakano_popov_2020().to_toml().replace('"1 deg"', '"1 +- 0.5 deg"')
+        >>> Rig.from_toml(text).to_toml().splitlines()[4]
+        'phi = { value = "1 deg", uncertainty = "0.5 deg" }'
+        """
+        return toml_text(self._tables())
+
+    def _tables(self) -> dict[str, Any]:
+        """Return the tables of the description."""
+        stated = {
+            path: prior_table(prior, unit(self.slider, path)) for path, prior in self.priors.items()
+        }
+        return with_changes(slider_tables(self.slider), stated)
 
 
 def rig_of(source: Any) -> Rig:

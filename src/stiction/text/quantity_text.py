@@ -12,6 +12,7 @@ SI = dict(zip(range(-10, 11), [*"qryzafpnµm", "", *"kMGTPEZYRQ"], strict=True))
 RIGID = "rigid"  # of an infinite stiffness
 BARE = ("", "1", "%", "1/s", "1/s²", "deg")  # units that take no prefix
 DIGITS = 4  # of a number in a sentence
+LONG = 8  # characters of a number that no prefix makes short
 ALL = 1e-6  # a share that is less is none, and one that lacks less is the whole
 MEASURABLE = 1e-12  # m, a hundredth of an atom: no instrument follows a mass so closely
 YEAR = 31557600.0  # s: 365.25 days, as "yr" is read
@@ -50,8 +51,11 @@ def quantity_text(value: float, unit: str) -> str:
     name, powers = PREFIXED[unit]
     exact = Decimal(repr(float(value))).scaleb(3 if unit == "kg" else 0)
     texts = [f"{_plain(exact.scaleb(-power))} {PREFIXES[power]}{name}" for power in powers]
-    # among the shortest, prefer a number from 1 to 1000
-    return min(texts, key=lambda text: (len(text.split()[0]), not 1 <= abs(_number(text)) < 1000))
+    # among the shortest, and among long ones, prefer a number from 1 to 1000
+    return min(
+        texts,
+        key=lambda text: (min(len(text.split()[0]), LONG), not 1 <= abs(_number(text)) < 1000),
+    )
 
 
 def thousands(value: float, unit: str, digits: int = DIGITS) -> int:
@@ -129,7 +133,7 @@ def _plain(value: Decimal) -> str:
     """Return a decimal number without trailing zeros, and without an exponent if that is short."""
     digits = value.normalize()
     plain = f"{digits:f}"
-    return plain if len(plain) <= 8 else f"{digits:g}"
+    return plain if len(plain) <= LONG else f"{digits:g}"
 
 
 def _number(text: str) -> float:

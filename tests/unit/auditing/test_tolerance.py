@@ -200,3 +200,8 @@ def test_the_interval_holds_95_percent_of_other_tests():
     drawn = np.repeat(shares[:, None], 4, axis=1)
     made = Budget(shares, drawn, shares[:3], drawn[:3], Reading(*drawn[0]), Alignment(1, 1, 1), ())
     assert np.diff(made.intervals, axis=0)[0] == pytest.approx(0.95, abs=0.01)
+
+
+def test_the_page_states_what_is_uncertain_as_the_description_does(found):
+    assert st.Rig.from_toml(found.to_toml()) == st.Rig.from_toml(TEXT)
+    assert "uncertainty = &#34;1 deg&#34;" in page(found, "it")

@@ -115,3 +115,25 @@ def test_springs_in_series_may_be_uncertain():
         "springs.arm.k_x": Uniform(2e4, 3e4),
     }
     assert found.slider.k_x == pytest.approx(1.0 / (1 / 3e3 + 1 / 25e3))
+
+
+def test_a_rig_writes_what_was_stated_and_reads_it_back():
+    """An audit's page showed the middles with all their digits: 1.224744871391589 deg."""
+    stated = {
+        "phi": '{ low = "1 deg", high = "1.5 deg", scale = "log" }',
+        "k_x": '{ value = "0.9 kN/m", uncertainty = "7 %" }',
+        "mu_0": "{ low = 0.16, high = 0.25 }",
+    }
+    found = rig(**stated)
+    written = found.to_toml()
+    assert f"phi = {stated['phi']}" in written
+    assert 'k_x = { value = "900 N/m", uncertainty = "63 N/m" }' in written
+    assert f"mu_0 = {stated['mu_0']}" in written
+    assert st.Rig.from_toml(written) == found
+    assert "900 N/m" in found._repr_html_()
+
+
+def test_a_share_has_the_digits_of_the_value():
+    assert rig(mu_0='{value = 0.3, uncertainty = "7 %"}').priors["friction.mu_0"].deviation == 0.021
+    with pytest.raises(DescriptionError, match="mu_0: 'few' is not one number"):
+        rig(mu_0='{value = 0.3, uncertainty = "few %"}')

@@ -211,6 +211,7 @@ def test_what_is_written_is_read_again_to_the_last_digit():
         (-np.radians(90), "rad", "-90 deg"),
         (0.1, "rad", "0.1 rad"),
         (0.5, "s/m", "0.5 s/m"),
+        (987318.695067941, "N/m", "987.318695067941 kN/m"),
     ],
 )
 def test_quantities_are_written_as_people_write_them(value, unit, text):
