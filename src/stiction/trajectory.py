@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.arrays import xr
-from stiction.errors import DescriptionError, ResultError, Status
+from stiction.errors import DescriptionError, Faults, ResultError, Status
 from stiction.friction import states
 from stiction.names import draw, picture
 from stiction.result.file import ENDS, age, read_tables, write_result
@@ -251,8 +251,12 @@ def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = F
     >>> [path.name for path in st.export(run, tempfile.mkdtemp() + "/run.csv")]
     ['run.csv', 'run-sticks.csv']
     """
-    exportable(path)
-    run = result if isinstance(result, Trajectory) else load(result, trust=trust)
+    faults = Faults()
+    with faults.of_part():
+        exportable(path)
+    with faults.of_part():
+        run = result if isinstance(result, Trajectory) else load(result, trust=trust)
+    faults.refuse()
     about = {
         "description": run.description.to_toml(),
         "stiction_version": str(run.data.attrs["stiction_version"]),

@@ -2,6 +2,7 @@
 
 import inspect
 import re
+from pathlib import Path
 
 import matplotlib as mpl
 import pytest
@@ -225,7 +226,7 @@ TABLES = {
     ],
 )
 def test_a_parameter_is_set_by_its_path_or_short_name(text, way, value):
-    found = with_changes(TABLES, changes([text]))
+    found, _ = with_changes(TABLES, changes([text]))
     for key in way:
         found = found[key]
     assert found == value
@@ -261,8 +262,69 @@ def test_set_reaches_every_command_that_reads_a_description(config, tmp_path, ca
 )
 def test_a_path_that_leads_nowhere_says_where_it_ends(text, words):
     with pytest.raises(st.StictionError) as error:
-        with_changes(TABLES, changes([text]))
+        raise st.DescriptionError(with_changes(TABLES, changes([text]))[1])
     assert words in str(error.value)
+
+
+RIG = PAPER.to_toml().replace('"1 deg"', '{low = "5 deg", high = "1 deg"}')
+STUDY = f"""{PAPER.to_toml()}
+[run]
+duration = "5 s"
+
+[study]
+measures = ["beauty"]
+
+[axes.phii]
+values = ["1 deg", "2 deg"]
+
+[axes.phi]
+from = "1 deg"
+to = "2 m"
+count = 3
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "text", "said"),
+    [
+        ("run my.toml -o a.txt --set colour=1 --set m=-1kg", PAPER.to_toml(),
+         ["colour: unknown parameter", "slider.mass: ", "run: missing", "unknown format '.txt'"]),
+        ("audit my.toml -o a.txt --set mu_0=-1 --force mN", RIG,
+         ["friction.mu_0: ", "phi: low must be below high", "unknown format", "--force: there is"]),
+        ("fit none.csv --rig my.toml -o a.txt --set laod.x=1 --set k_x=3s", RIG,
+         ["none.csv", "laod.x: unknown", "slider.k_x: ", "phi: low must", "unknown format"]),
+        ("design my.toml -o a.txt --angles 3 --noise 1m", RIG,
+         ["phi: low must", "unknown format", "angles.1: ", "noise: "]),
+        ("sweep my.toml -o a.zarr --threads 0 --apart settling", STUDY,
+         ["study.measures: unknown measure", "axes.phii: unknown parameter", "axes.phi.to: ",
+          "--threads must be", "--apart needs"]),
+        ("sweep my.toml -o a.zarr --set m=-1kg", STUDY,
+         ["study.measures: unknown measure", "axes.phii: unknown parameter", "slider.mass: "]),
+        ("stability my.toml -o a.txt --over phi --over V --between 1deg 2deg --set W=1m", RIG,
+         ["is uncertain", "slider.normal_load: ", "unknown format", "give --over once or twice"]),
+        ("animate none.nc -o a.txt --length 1000s", "",
+         ["none.nc", "unknown format", "length must"]),
+        ("listen none.nc -o a.txt --speed -1", "", ["none.nc", "unknown format", "speed must be"]),
+        ("plot none.nc -o a.txt", "", ["none.nc", "unknown format"]),
+        ("export none.nc -o a.txt", "", ["none.nc", "unknown format"]),
+    ],
+)  # fmt: skip
+def test_independent_faults_are_named_in_one_round(
+    command, text, said, tmp_path, capsys, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    Path("my.toml").write_text(text)
+    assert inside(*command.split()) == 2
+    told = capsys.readouterr().err
+    assert [words for words in said if words not in told] == []
+
+
+def test_a_misspelt_table_is_no_table_of_a_run():
+    """An audit, a fit and a study of stability left [laod] out, without a word."""
+    with pytest.raises(
+        st.DescriptionError, match="laod: unknown table 'laod'; did you mean 'load'"
+    ):
+        st.Slider.from_toml(f"{PAPER.to_toml()}\n[laod]\nprogram = []\n")
 
 
 # --- the command line itself ---

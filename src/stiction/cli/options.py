@@ -243,7 +243,10 @@ def description_from(
     if found is None:
         return Description.from_toml(Path(str(config)), given, trust=trust)
     made = found.make()
-    return Description.from_dict(with_changes(made.to_dict(), given)) if given else made
+    if not given:
+        return made
+    raw, strange = with_changes(made.to_dict(), given)
+    return Description.from_dict(raw, known=strange)
 
 
 def slider_from(

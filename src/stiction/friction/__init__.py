@@ -9,8 +9,9 @@ A law whose friction depends on more than the slip velocity has internal states,
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
+from stiction.errors import Faults
 from stiction.friction.law import FrictionLaw as FrictionLaw
 from stiction.friction.law import Internal as Internal
 from stiction.friction.law import Law as Law
@@ -32,6 +33,8 @@ from stiction.friction.user.loading import (
 )
 from stiction.text.toml import choose
 
+STAND_IN = LAWS["coulomb"](mu_0=0.0)  # for one that cannot be read
+
 
 def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
     """Read the table [friction] of a description, including [friction.anisotropy].
@@ -39,12 +42,18 @@ def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
     `find` locates a user's law.
     """
     surface, own = table.pop("anisotropy", None), is_own(table)
-    law: Law = (
-        read_own(table, find or finder_for_descriptions(Path()))
-        if own
-        else choose(table, "law", LAWS)
-    )
-    return law if surface is None else read_anisotropy(law, surface)
+    faults, law = Faults(), None
+    with faults.of_part():
+        law = (
+            read_own(table, find or finder_for_descriptions(Path()))
+            if own
+            else choose(table, "law", LAWS)
+        )
+    if surface is not None:
+        with faults.of_part():
+            law = read_anisotropy(STAND_IN if law is None else law, surface)
+    faults.refuse()
+    return cast(Law, law)
 
 
 def law_table(law: Any) -> dict[str, Any]:

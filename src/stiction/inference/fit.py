@@ -125,11 +125,17 @@ def law_faults(law: Any) -> Iterator[Fault]:
     if _is_fitted(inner):
         return
     known = ", ".join(name for name, kind in LAWS.items() if _is_fitted(kind))
-    lack = "it has internal states" if has_state(inner) else f"it has no coefficient {VARIED}"
+    lack, why = f"it has no coefficient {VARIED}", ""
+    if has_state(inner):
+        lack = "it has internal states"
+        why = (
+            ". With such a law the odds of mechanisms (`stiction fit --mechanism`) say "
+            "whether the record is like rate and state or LuGre"
+        )
     yield Fault(
         "friction.law",
         f"{type(inner).__name__} is not fitted, as {lack}; take one of {known}, or one of your own "
-        "with such a coefficient, and without states",
+        f"with a coefficient {VARIED}, and without states{why}",
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from math import radians
 from pathlib import Path
@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 from pydantic_core import PydanticCustomError
 
 from stiction.drive.recorded.reading import locator, with_rows
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.inference.priors import Normal, Prior, Uniform, middle, prior_table, read_prior
@@ -23,8 +23,8 @@ from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slide
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.paths import canonical, slug, with_changes
 from stiction.text.sections import Section, as_html
-from stiction.text.toml import folder_of, gather, read_toml, toml_text
-from stiction.text.units import NORMAL, UNIFORM, Kind, split_uncertain
+from stiction.text.toml import folder_of, gather, read_changed, toml_text, without_run
+from stiction.text.units import NORMAL, QUANTITY, UNIFORM, Kind, split_uncertain
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*?)\s*")
 LARGEST_ANGLE = radians(89.9)  # at 90 deg the drive pulls across
@@ -77,26 +77,29 @@ class Rig(NamedTuple):
         1.0
         """
         folder = folder_of(path)
-        raw, lost = with_rows(read_toml(path, changes), locator(folder, trust))
-        wanted = {name: raw[name] for name in raw if name in SLIDER_TABLES}
+        read, strange = read_changed(path, changes)
+        raw, lost = with_rows(read, locator(folder, trust))
         stated: dict[str, Any] = {}
         certain = {
             name: dict(without_spread(table, (name,), stated))
             if isinstance(table, Mapping)
             else table
-            for name, table in wanted.items()
+            for name, table in without_run(raw).items()
         }
         find = finder_for_descriptions(folder, trust)
-        slider = Slider.from_parts(
-            gather(
-                certain,
-                {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
-                absent=OPTIONAL_TABLES,
-                last=("friction",) if is_own(certain.get("friction")) else (),
-                known=lost,
+        try:
+            slider = Slider.from_parts(
+                gather(
+                    certain,
+                    {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
+                    absent=OPTIONAL_TABLES,
+                    last=("friction",) if is_own(certain.get("friction")) else (),
+                    known=[*strange, *lost],
+                )
             )
-        )
-        priors = read_priors(slider, stated)
+        except DescriptionError as error:
+            raise DescriptionError(with_prior_faults(error.faults, stated)) from None
+        priors = read_priors(partial(unit, slider), stated)
         slider = in_the_middle(slider, priors)
         priors = within_ranges(slider, priors)
         return cls(in_the_middle(slider, priors), priors)
@@ -122,7 +125,8 @@ class Rig(NamedTuple):
         stated = {
             path: prior_table(prior, unit(self.slider, path)) for path, prior in self.priors.items()
         }
-        return with_changes(slider_tables(self.slider), stated)
+        tables, _ = with_changes(slider_tables(self.slider), stated)
+        return tables
 
 
 def rig_of(source: Any) -> Rig:
@@ -205,20 +209,51 @@ def spread(value: Any) -> dict[str, Any] | None:
     return None if both is None else {"value": both[0], "uncertainty": both[1]}
 
 
-def read_priors(slider: Slider, stated: Mapping[str, Mapping[str, Any]]) -> dict[str, Prior]:
-    """Return the prior of each uncertain parameter, or every fault."""
+def with_prior_faults(
+    faults: Sequence[Fault], stated: Mapping[str, Mapping[str, Any]]
+) -> list[Fault]:
+    """Return the faults of a description, and those of its uncertain values by themselves.
+
+    A value that cannot be read stands for a prior: where it is the middle of one, that is said.
+    """
+    found, places = [], {canonical(fault.path) for fault in faults}
+    for path, message in faults:
+        table = stated.get(canonical(path), {})
+        between = f"; it lies between low = {echo(table.get('low'))} and high" * ("low" in table)
+        found.append(Fault(path, message + between))
+    try:
+        read_priors(lambda path: own_unit(stated[path]), stated)
+    except DescriptionError as error:
+        found += [fault for fault in error.faults if fault.path not in places]
+    return found
+
+
+def own_unit(table: Mapping[str, Any]) -> str:
+    """Return the unit in which a prior is written.
+
+    >>> own_unit({"low": "1 deg", "high": "3 deg"}), own_unit({"value": 0.3, "uncertainty": 0.1})
+    ('deg', '')
+    """
+    found = QUANTITY.fullmatch(str(table.get("value", table.get("low"))))
+    return found[2].strip() if found else ""
+
+
+def read_priors(
+    unit_at: Callable[[str], str], stated: Mapping[str, Mapping[str, Any]]
+) -> dict[str, Prior]:
+    """Return the prior of each uncertain parameter, whose unit is known, or every fault."""
     priors, faults = {}, []
     for path, table in stated.items():
         try:
-            its = unit(slider, path)
+            its = unit_at(path)
             example = "1 deg" if its == "rad" else f"1 {its}".rstrip()
             priors[path] = read_prior(table, Kind(path, its, example))
         except PydanticCustomError as error:
             faults.append(Fault(path, error.message()))
-        except ValueError as error:
-            faults.append(Fault(path, str(error)))
         except DescriptionError as error:
             faults += error.faults
+        except ValueError as error:
+            faults.append(Fault(path, str(error)))
     if faults:
         raise DescriptionError(faults)
     return priors

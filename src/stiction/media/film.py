@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import ceil, log10
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -18,7 +18,7 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from stiction.arrays import Floats
-from stiction.errors import ResultError, echo
+from stiction.errors import Faults, ResultError, echo
 from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
 from stiction.media.sound import time_in, window_of
@@ -86,6 +86,18 @@ def filmable(path: str | Path) -> Path:
     return placeable(path, [f".{kind}" for kind in KINDS])
 
 
+class Excerpt(NamedTuple):
+    """A part of a run to film: the times of its frames, that under the microscope, its length, s.
+
+    The time under the microscope is None for that where the mass slips.
+    """
+
+    description: Description
+    times: Floats
+    middle: float | None
+    length: float
+
+
 class Screening(Described):
     """How long a film lasts, s."""
 
@@ -141,19 +153,52 @@ def animate(
     >>> st.animate(run, length=0.2).save("film.mp4").name
     'film.mp4'
     """
-    found = run if isinstance(run, Trajectory) else load(run, trust=trust)
-    lasts = read_arguments(Screening, length=length).length
-    if not 1.0 / FRAME_RATE <= lasts <= LONGEST_FILM:
-        raise ResultError(
-            f"length must lie between {1 / FRAME_RATE:g} s and {LONGEST_FILM:g} s, is {lasts:g} s"
-        )
+    faults = Faults()
     if kind not in KINDS:
-        raise ResultError(f"kind must be one of {', '.join(KINDS)}, is {echo(kind)}")
-    start, end = window_of(found.description, window)
-    middle = None if at is None else time_in(found.description, at)
-    times = np.linspace(start, end, ceil(lasts * FRAME_RATE))
-    frames = draw(found.description, times, middle, lasts)
-    return Film(encode(_count(frames, len(times), progress), FRAME_RATE, kind), kind)
+        faults.add(f"kind must be one of {', '.join(KINDS)}, is {echo(kind)}")
+    with faults.of_part():
+        shown = excerpt(run, window, length, at, trust=trust)
+    faults.refuse()
+    return make_film(shown, kind, progress)
+
+
+def excerpt(
+    run: Trajectory | str | Path,
+    window: Sequence[Quantity] | None,
+    length: Quantity,
+    at: Quantity | None,
+    *,
+    trust: bool = False,
+) -> Excerpt:
+    """Return what a film of a run shows, by the arguments of `animate`.
+
+    Raises
+    ------
+    StictionError
+        With all that is wrong of them.
+    """
+    faults, middle = Faults(), None
+    with faults.of_part():
+        lasts = read_arguments(Screening, length=length).length
+        if not 1.0 / FRAME_RATE <= lasts <= LONGEST_FILM:
+            faults.add(
+                f"length must lie between {1 / FRAME_RATE:g} s and {LONGEST_FILM:g} s, is "
+                f"{lasts:g} s"
+            )
+    with faults.of_part():
+        description = (run if isinstance(run, Trajectory) else load(run, trust=trust)).description
+        with faults.of_part():
+            start, end = window_of(description, window)
+        with faults.of_part():
+            middle = None if at is None else time_in(description, at)
+    faults.refuse()
+    return Excerpt(description, np.linspace(start, end, ceil(lasts * FRAME_RATE)), middle, lasts)
+
+
+def make_film(shown: Excerpt, kind: str, progress: Callable[[float], None] | None = None) -> Film:
+    """Return the film of an excerpt."""
+    frames = _count(draw(*shown), len(shown.times), progress)
+    return Film(encode(frames, FRAME_RATE, kind), kind)
 
 
 def _count(

@@ -9,13 +9,13 @@ from dataclasses import dataclass, field
 from io import BytesIO
 from math import floor, log10
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, ResultError, echo
+from stiction.errors import DescriptionError, Faults, ResultError, echo
 from stiction.result.table import sample_table
 from stiction.simulation import solve_coarsely
 from stiction.storage.files import placeable, whole
@@ -75,6 +75,16 @@ class Sound:
         return f'<audio controls src="data:audio/wav;base64,{content}"></audio>'
 
 
+class Passage(NamedTuple):
+    """A part of a run to hear: its start and end, s; the speed of the sound, and its axis."""
+
+    description: Description
+    start: float
+    end: float
+    speed: float
+    axis: str
+
+
 def listen(
     run: Trajectory | str | Path,
     *,
@@ -122,17 +132,37 @@ def listen(
     >>> st.listen(run)
     Sound(speed=1.0)
     """
-    found = run if isinstance(run, Trajectory) else load(run, trust=trust)
-    description = found.description
-    start, end = window_of(description, window)
+    heard = passage(run, speed, window, axis, trust=trust)
+    return make_sound(heard, progress)
+
+
+def passage(
+    run: Trajectory | str | Path,
+    speed: float | None,
+    window: Sequence[Quantity] | None,
+    axis: str,
+    *,
+    trust: bool = False,
+) -> Passage:
+    """Return what is heard of a run, by the arguments of `listen`.
+
+    Raises
+    ------
+    StictionError
+        With all that is wrong of them.
+    """
+    faults, chosen = Faults(), None
     if axis not in ("x", "y"):
-        raise ResultError(f"axis must be 'x' or 'y', is {echo(axis)}; y is the transverse one")
-    try:
-        chosen = audible_speed(description, axis) if speed is None else float(speed)
-    except (TypeError, ValueError, OverflowError):
-        raise ResultError(f"speed must be a number such as 0.1, is {echo(speed)}") from None
-    if not chosen > 0.0:
-        raise ResultError(f"speed must be above 0, is {chosen:g}; 0.1 is ten times slower")
+        faults.add(f"axis must be 'x' or 'y', is {echo(axis)}; y is the transverse one")
+    if speed is not None:
+        with faults.of_part():
+            chosen = read_speed(speed)
+    with faults.of_part():
+        description = (run if isinstance(run, Trajectory) else load(run, trust=trust)).description
+        with faults.of_part():
+            start, end = window_of(description, window)
+    faults.refuse()
+    chosen = audible_speed(description, axis) if chosen is None else chosen
     length = (end - start) / chosen
     if length > LONGEST_SOUND:
         raise ResultError(
@@ -144,7 +174,24 @@ def listen(
             f"at speed {chosen:g} the sound lasts {in_words(length, 's')}; it must last at least "
             f"{in_words(SHORTEST_SOUND, 's')}: choose a smaller speed, or another window"
         )
-    count = floor(length * RATE)
+    return Passage(description, start, end, chosen, axis)
+
+
+def read_speed(speed: float) -> float:
+    """Return the speed of a sound, or refuse it."""
+    try:
+        chosen = float(speed)
+    except (TypeError, ValueError, OverflowError):
+        raise ResultError(f"speed must be a number such as 0.1, is {echo(speed)}") from None
+    if not chosen > 0.0:
+        raise ResultError(f"speed must be above 0, is {chosen:g}; 0.1 is ten times slower")
+    return chosen
+
+
+def make_sound(heard: Passage, progress: Callable[[float], None] | None = None) -> Sound:
+    """Return the sound of an passage, or refuse one in which nothing oscillates."""
+    description, start, end, chosen, axis = heard
+    count = floor((end - start) / chosen * RATE)
     times = start + np.arange(count, dtype=np.float64) * (chosen / RATE)
     values = rate_at(description, times, axis, progress)
     loudest = float(np.max(np.abs(values), initial=0.0))

@@ -9,7 +9,7 @@ from numbers import Real
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator
 
 from stiction.drive import read_drive, read_load
 from stiction.drive.procedures import end
@@ -25,9 +25,9 @@ from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider
 from stiction.system.writing import describe, parameter_table, slider_tables
 from stiction.text.paths import canonical
 from stiction.text.sections import Section, as_html
-from stiction.text.toml import Reader, folder_of, gather, read_json, read_toml, toml_text
+from stiction.text.toml import Reader, folder_of, gather, read_changed, read_json, toml_text
 from stiction.text.units import Duration, Number, SampleRate, Velocity
-from stiction.text.validation import Described, faulty, validate
+from stiction.text.validation import Described, validate
 
 SAMPLE = 300.0  # bytes of memory per sample, for all columns and intermediate arrays
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, steps resolve a thin layer
@@ -78,24 +78,25 @@ class Settings(Described):
     smoothing: Literal["root", "arctan"] = "root"
     multiscale: Multiscale = "auto"
 
-    @model_validator(mode="after")
-    def _has_a_width(self) -> Self:
-        if self.smoothing != "root" and self.regularisation is None:
-            message = f"{self.smoothing!r} needs a width; give regularisation too"
-            raise faulty([Fault("smoothing", message)])
-        return self
+    # validators of fields, not of the model: those wait until every field is valid
+    @field_validator("smoothing")
+    @classmethod
+    def _has_a_width(cls, smoothing: str, info: ValidationInfo) -> str:
+        if smoothing != "root" and info.data.get("regularisation", 0.0) is None:
+            raise ValueError(f"{echo(smoothing)} needs a width; give regularisation too")
+        return smoothing
 
-    @model_validator(mode="after")
-    def _can_be_kept(self) -> Self:
-        samples = self.duration * (self.sample_rate or 0.0)
+    @field_validator("sample_rate")
+    @classmethod
+    def _can_be_kept(cls, rate: float | None, info: ValidationInfo) -> float | None:
+        samples = info.data.get("duration", 0.0) * (rate or 0.0)
         if short := shortage(SAMPLE * samples):
-            message = (
+            raise ValueError(
                 f"duration times sample_rate is {samples:.3g} samples, which {short}; lower the "
                 "rate, or start again within a coarse run, initial=run.state(time), and sample "
                 "only a window finely"
             )
-            raise faulty([Fault("sample_rate", message)])
-        return self
+        return rate
 
 
 @validate
@@ -149,7 +150,8 @@ class Description(NamedTuple):
         """
         folder = folder_of(path)
         find, locate = finder_for_descriptions(folder, trust), locator(folder, trust)
-        read = cls.from_dict(read_toml(path, changes), find=find, locate=locate)
+        raw, strange = read_changed(path, changes)
+        read = cls.from_dict(raw, find=find, locate=locate, known=strange)
         refuse_idle_base(read.slider.drive, map(canonical, changes or {}))
         return read
 

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from copy import deepcopy
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import Fault, echo
 from stiction.text.validation import unknown_name
 
 ALIASES = {
@@ -68,13 +68,12 @@ def short_names(paths: Iterable[str]) -> dict[str, str]:
     return {path: path if often[last] > 1 else last for path, last in lasts.items()}
 
 
-def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str, Any]:
+def with_changes(
+    raw: Mapping[str, Any], changes: Mapping[str, Any]
+) -> tuple[dict[str, Any], list[Fault]]:
     """Return a description's tables with other values of some parameters.
 
-    Raises
-    ------
-    DescriptionError
-        With every path that does not exist.
+    Beside them stands a fault for every path that does not exist; the other values are changed.
     """
     tables, found = deepcopy(dict(raw)), []
     for name, value in changes.items():
@@ -82,9 +81,7 @@ def with_changes(raw: Mapping[str, Any], changes: Mapping[str, Any]) -> dict[str
             put(tables, keys_of(tables, name), value)
         except (KeyError, IndexError, TypeError) as error:
             found.append(Fault(name, str(error.args[0])))
-    if found:
-        raise DescriptionError(found)
-    return tables
+    return tables, found
 
 
 def keys_of(tables: Mapping[str, Any], name: str) -> list[str]:

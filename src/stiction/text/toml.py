@@ -31,22 +31,42 @@ MISWRITTEN = {  # a number of other programs or languages, and how TOML has it
 }
 UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 OF_STUDIES = ("axes", "study")  # tables of a description that is swept
+OF_RUNS = ("initial", "run", *OF_STUDIES)  # tables beside those of a slider
 
 
-def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Read a TOML file, or a TOML text of several lines, and change some parameters.
+def read_changed(
+    path: str | Path, changes: Mapping[str, Any] | None
+) -> tuple[dict[str, Any], list[Fault]]:
+    """Read a TOML file or text as `read_toml` does, and change some parameters.
 
     Parameters
     ----------
     path : str or Path
         The file, or the text.
-    changes : mapping, optional
+    changes : mapping or None
         From the path of a parameter (see `stiction.text.paths`) to its value.
+
+    Returns
+    -------
+    tuple
+        The tables, and a fault for each parameter that does not exist.
 
     Raises
     ------
     DescriptionError
-        If the file cannot be read, a parameter does not exist, or `path` is not a path.
+        If the file cannot be read, or a value is nested too deeply.
+    """
+    raw, lost = with_changes(read_toml(path), changes or {})
+    return tame(raw, "the changes"), lost
+
+
+def read_toml(path: str | Path) -> dict[str, Any]:
+    """Read a TOML file, or a TOML text of several lines.
+
+    Raises
+    ------
+    DescriptionError
+        If the file cannot be read, or `path` is not a path.
     """
     if not isinstance(path, str | PathLike):
         message = f"{type(path).__name__} is not a description; give its file, or its text in TOML"
@@ -67,8 +87,7 @@ def read_toml(path: str | Path, changes: Mapping[str, Any] | None = None) -> dic
         use = _instead(path, written)
         message = f"is not TOML: {error}{_remedy(error, text)}{use and f'; {use}'}"
     else:
-        tame(raw, where)
-        return tame(with_changes(raw, changes), where) if changes else raw
+        return tame(raw, where)
     raise DescriptionError.of(where, message)
 
 
@@ -184,6 +203,11 @@ def _tables_in(table: Any, names: Iterable[str]) -> Iterator[str]:
     """Yield which of some names a table has as tables within it: ``[slider.friction]``."""
     if isinstance(table, Mapping):
         yield from (name for name in names if isinstance(table.get(name), Mapping))
+
+
+def without_run(raw: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables of a description without those of a run or a study."""
+    return {name: table for name, table in raw.items() if name not in OF_RUNS}
 
 
 def _strange(name: str, readers: Mapping[str, Reader]) -> str:

@@ -120,7 +120,7 @@ def test_a_store_of_another_study_says_what_differs(change, words, tmp_path):
     axes = {"phi": st.Values(["1 deg", "2 deg"])}
     study = st.Study(base=BASE, axes=axes, measures=["peak_force"])
     create(study, tmp_path / "a.zarr")
-    other = st.Study.from_dict(with_changes(study.to_dict(), change))
+    other = st.Study.from_dict(with_changes(study.to_dict(), change)[0])
     with pytest.raises(st.ResultError, match=words):
         st.sweep(other, tmp_path / "a.zarr")
 

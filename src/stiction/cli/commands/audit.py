@@ -18,6 +18,7 @@ from stiction.cli.options import (
     rig_from,
 )
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 
 def audit(
@@ -69,14 +70,19 @@ def audit(
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
 
-    rig = rig_from(config, preset, changes(set), trust)
+    given, faults = changes(set), Faults()
+    with faults.of_part():
+        rig = rig_from(config, preset, given, trust)
     title = str(config or preset)
     if output is not None:
         from stiction.auditing.page import SUFFIXES
         from stiction.storage.files import placeable
 
-        placeable(output, SUFFIXES)
-    seen = record_or_none(record, measured, trust)
+        with faults.of_part():
+            placeable(output, SUFFIXES)
+    with faults.of_part():
+        seen = record_or_none(record, measured, trust)
+    faults.refuse()
     kept = None if seen is None else library_or_cache(library)
     with progress("auditing") as report:
         found = examine(rig, report, record=seen, simulations=simulations, library=kept)

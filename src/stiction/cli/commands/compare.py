@@ -11,6 +11,7 @@ from cyclopts import Parameter
 
 from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
@@ -66,10 +67,15 @@ def compare(
     from stiction.plotting.page.save import drawable, write
     from stiction.storage.files import usable_folder
 
-    description = description_from(config, preset, changes(set), trust)
-    drawable(output)
+    given, faults = changes(set), Faults()
+    with faults.of_part():
+        description = description_from(config, preset, given, trust)
+    with faults.of_part():
+        drawable(output)
     if data is not None:
-        usable_folder(data)
+        with faults.of_part():
+            usable_folder(data)
+    faults.refuse()
     with progress("simulating and drawing") as report:
         found = comparison.compare(description, law, progress=report)
         figure = figure_of(found.plot)

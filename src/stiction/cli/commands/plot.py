@@ -6,6 +6,7 @@ from pathlib import Path
 
 from stiction.cli.options import Output, Trust
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 
 def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
@@ -26,8 +27,14 @@ def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
     from stiction.plotting.door import plot as draw
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
+    from stiction.trajectory import load
 
-    drawable(output)
+    faults = Faults()
+    with faults.of_part():
+        drawable(output)
+    with faults.of_part():
+        run = load(result, trust=trust)
+    faults.refuse()
     with progress("drawing"):
-        written = write(figure_of(draw, result, trust=trust), output)
+        written = write(figure_of(draw, run), output)
     say(f"wrote {written}")

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
 from stiction.cli.terminal import say
-from stiction.errors import argument
+from stiction.errors import Faults, argument
 from stiction.text.quantity_text import percent
 
 REST = 1e-9  # of the drive velocity: slower slip counts as rest
@@ -53,8 +53,12 @@ def run(
     from stiction.storage.files import NETCDF, placeable
 
     given = changes(set)
-    description = description_from(config, preset, given, trust)
-    placeable(output, NETCDF)
+    faults = Faults()
+    with faults.of_part():
+        description = description_from(config, preset, given, trust)
+    with faults.of_part():
+        placeable(output, NETCDF)
+    faults.refuse()
     with progress("simulating") as report:
         result = simulation.run(description, progress=report)
         result.save(output)

@@ -9,6 +9,7 @@ from cyclopts import Parameter
 
 from stiction.cli.options import Changes, FromPreset, MaybeOutput, Trust, changes, slider_from
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 
 def stability(
@@ -56,21 +57,24 @@ def stability(
     """
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
-    from stiction.errors import StictionError
     from stiction.linear_stability.examination import OVER
     from stiction.linear_stability.examination import stability as examine
 
-    slider = slider_from(config, preset, changes(set), trust)
+    given, faults = changes(set), Faults()
+    with faults.of_part():
+        slider = slider_from(config, preset, given, trust)
     paths, ranges = over or OVER, [tuple(map(number, each)) for each in between or []]
     if len(paths) > 2 or len(ranges) not in (0, len(paths)):
         counts = f"{len(paths)} and {len(ranges)}"
-        raise StictionError(
+        faults.add(
             f"give --over once or twice, and --between as often or not at all, not {counts} times"
         )
     if output is not None:
         from stiction.plotting.page.save import drawable
 
-        drawable(output)
+        with faults.of_part():
+            drawable(output)
+    faults.refuse()
     found = examine(slider, paths, ranges or None)
     print_sections(str(config or preset), found.tables())
     if output is not None:

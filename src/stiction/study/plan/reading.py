@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
+from contextlib import suppress
 from typing import Any
 
 from stiction.errors import DescriptionError, Fault, echo
@@ -10,7 +11,7 @@ from stiction.names import by_new_names
 from stiction.study.plan.axes import Axis, read_axis
 from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES
 from stiction.system.description import Description
-from stiction.text.paths import canonical_path, keys_of
+from stiction.text.paths import canonical_path, keys_of, parameter_names
 from stiction.text.validation import faulty, unknown_name
 
 
@@ -39,6 +40,24 @@ def axes_of(value: Any) -> dict[str, Axis]:
     return axes
 
 
+def readable_axes(value: Any) -> dict[str, Axis]:
+    """Return the axes without a fault of their own, by their paths."""
+    axes = {}
+    for path, each in value.items() if isinstance(value, Mapping) else ():
+        with suppress(DescriptionError):
+            axes[canonical_path(str(path))] = read_axis(each, str(path))
+    return axes
+
+
+def unknown_axes(tables: Mapping[str, Any], value: Any) -> Iterator[Fault]:
+    """Yield a fault for each axis of a parameter that these tables cannot have."""
+    for path in value if isinstance(value, Mapping) else ():
+        for name in map(str.strip, str(path).split(",")):
+            if not _is_known(tables, name):
+                said = unknown_name("parameter", name, parameter_names(tables))
+                yield Fault(f"axes.{path}", said)
+
+
 def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]:
     """Return distinct names; refuse unknown ones."""
     if isinstance(value, str) or not hasattr(value, "__iter__"):
@@ -61,14 +80,8 @@ def traces_of(value: Any) -> tuple[str, ...]:
     return named_ones(value, "trace", TRACES)
 
 
-def refuse_varied(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> None:
-    """Refuse changes of parameters that vary along an axis: its values would replace them.
-
-    Raises
-    ------
-    DescriptionError
-        With each of them, and what to change instead.
-    """
+def varied_faults(tables: Mapping[str, Any], changes: Iterable[str]) -> Iterator[Fault]:
+    """Yield a fault for each change of a parameter along an axis, whose values would replace it."""
     axes = tables.get("axes")
     axes = axes if isinstance(axes, Mapping) else {}
     varied = {
@@ -77,15 +90,13 @@ def refuse_varied(tables: Mapping[str, Any], changes: Mapping[str, Any]) -> None
         for name in str(path).split(",")
         if _is_known(tables, name)
     }
-    found = []
     for name in changes:
-        path, axis = varied.get(tuple(keys_of(tables, name)), ("", None))
+        keys = keys_of(tables, name) if _is_known(tables, name) else ()
+        path, axis = varied.get(tuple(keys), ("", None))
         if path:
             ends = ("values",) if isinstance(axis, Mapping) and "values" in axis else ("from", "to")
             remedy = " and ".join(f"{echo(f'axes.{path}.{end}')}" for end in ends)
-            found.append(Fault(name, f"varies along an axis of the study; change {remedy} instead"))
-    if found:
-        raise DescriptionError(found)
+            yield Fault(name, f"varies along an axis of the study; change {remedy} instead")
 
 
 def _is_known(tables: Mapping[str, Any], name: str) -> bool:

@@ -13,7 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from stiction.drive.recorded.reading import Locate, locate_nothing, locator
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results
+from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.names import old_method
 from stiction.study.plan.axes import axis_table
 from stiction.study.plan.coordinates import (
@@ -29,8 +29,10 @@ from stiction.study.plan.reading import (
     axes_of,
     is_description,
     measures_of,
-    refuse_varied,
+    readable_axes,
     traces_of,
+    unknown_axes,
+    varied_faults,
 )
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observed_run import seconds_of
@@ -38,7 +40,7 @@ from stiction.system import parameter
 from stiction.system.description import Description
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, Table, as_html
-from stiction.text.toml import folder_of, read_json, read_toml
+from stiction.text.toml import folder_of, read_changed, read_json
 from stiction.text.units import Whole
 from stiction.text.validation import Described, faulty, unknown_name
 
@@ -194,16 +196,21 @@ class Study(Described):
         """
         folder = folder_of(path)
         find, locate = finder_for_descriptions(folder, trust), locator(folder, trust)
-        raw = read_toml(path, changes)
-        refuse_varied(raw, changes or {})
-        return cls.from_dict(raw, find=find, locate=locate)
+        raw, strange = read_changed(path, changes)
+        known = [*strange, *varied_faults(raw, changes or {})]
+        return cls.from_dict(raw, find=find, locate=locate, known=known)
 
     @classmethod
     def from_dict(
-        cls, raw: Mapping[str, Any], *, find: Find | None = None, locate: Locate | None = None
+        cls,
+        raw: Mapping[str, Any],
+        *,
+        find: Find | None = None,
+        locate: Locate | None = None,
+        known: Sequence[Fault] = (),
     ) -> Self:
-        """Read a study from nested tables, as in the TOML file."""
-        found: list[Fault] = []
+        """Read a study from nested tables, as in the TOML file; `known` faults are told too."""
+        found = [*known]
         own, axes = raw.get("study", {}), raw.get("axes")
         if not isinstance(own, Mapping):
             found.append(Fault("study", f"must be a table [study], is {echo(own)}"))
@@ -216,13 +223,21 @@ class Study(Described):
         elif axes is None:
             found.append(Fault("axes", "missing; write for example a table [axes.phi]"))
         else:
-            known = cls.model_fields.keys() - {"base", "axes"}
-            strange = [key for key in own if key not in known]
-            found += [Fault(f"study.{key}", unknown_name("key", key, known)) for key in strange]
-            own = {key: own[key] for key in own if key in known}
+            keys = cls.model_fields.keys() - {"base", "axes"}
+            strange = [key for key in own if key not in keys]
+            found += [Fault(f"study.{key}", unknown_name("key", key, keys)) for key in strange]
+            own = {key: own[key] for key in own if key in keys}
             found += [each for each in cls._faults(own, axes, None) if each.path != "study.base"]
         rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
-        base = Description.from_dict(rest, find=find, locate=locate, known=found)
+        waits = found if is_own(raw.get("friction")) else ()  # no user's code beside a fault
+        try:
+            base = Description.from_dict(rest, find=find, locate=locate, known=waits)
+        except DescriptionError as error:
+            found += [fault for fault in error.faults if fault not in found]
+            raise DescriptionError([*found, *unknown_axes(rest, axes)]) from None
+        if found:
+            also = coordinate_faults(base, readable_axes(axes), 0)
+            raise DescriptionError([*found, *(Fault(f"axes.{x.path}", x.message) for x in also)])
         return cls._make(own, axes, base)
 
     @classmethod

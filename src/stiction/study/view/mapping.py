@@ -135,8 +135,9 @@ def map(
     >>> st.map("phi.zarr").dims
     ('phi',)
     """
-    view = view_study(store, at or {}, trust)
-    return Map(view, tuple(choose_measures(view, [of] if isinstance(of, str) else of)))
+    measures = [of] if isinstance(of, str) else of
+    view = view_study(store, at or {}, trust, measures)
+    return Map(view, tuple(choose_measures(view, measures)))
 
 
 def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:

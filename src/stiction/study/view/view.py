@@ -50,8 +50,13 @@ class View(NamedTuple):
     changes: Sequence[xr.Dataset]
 
 
-def view_study(path: str | Path, cut: Mapping[str, Quantity], trust: bool = False) -> View:
-    """Return a study with some of its dimensions cut."""
+def view_study(
+    path: str | Path,
+    cut: Mapping[str, Quantity],
+    trust: bool = False,
+    measures: Sequence[str] = (),
+) -> View:
+    """Return a study with some of its dimensions cut, which has these measures."""
     with opening(path, "is damaged"):
         data = open_study(path)
         study = Study.from_json(data.attrs["description"], trust=trust)
@@ -70,6 +75,7 @@ def view_study(path: str | Path, cut: Mapping[str, Quantity], trust: bool = Fals
         except PydanticCustomError as error:
             found.append(Fault(dim, error.message()))
     left = [dim for dim in dims if dim not in at]
+    found += strange_measures(data, measures)
     if not found and not 1 <= len(left) <= 2:
         remedy = "cut it at a value: --at 'NAME=VALUE'" if left else "leave one or two"
         found.append(Fault(", ".join(dims), f"{len(left)} dimensions are left; {remedy}"))
@@ -130,18 +136,10 @@ def broken_changes(path: str | Path) -> list[str]:
 
 def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
     """Return the measures to draw."""
-    runs = view.data["status"].dims  # traces have time as well
-    kept = [
-        str(name)
-        for name, each in view.data.data_vars.items()
-        if name not in RUNS and each.dims == runs
-    ]
+    kept = kept_measures(view.data)
+    if strange := [*strange_measures(view.data, measures)]:
+        raise DescriptionError(strange)
     measures = by_new_names(measures, FORMERLY, "measure")
-    strange = [name for name in measures if name not in kept]
-    if strange:
-        raise DescriptionError(
-            [Fault(name, unknown_name("measure", name, kept)) for name in strange]
-        )
     if not kept:
         raise DescriptionError.of(
             "measures", "the study kept no measures; there is nothing to draw"
@@ -151,6 +149,22 @@ def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
     numbers = [name for name in view.study.measures if name != REGIME]
     two = len(view.data["status"].dims) == 2 or not numbers
     return [REGIME] if REGIME in kept and two else numbers[:1] or [REGIME]
+
+
+def kept_measures(data: xr.Dataset) -> list[str]:
+    """Return the names of the measures that a study kept."""
+    runs = data["status"].dims  # traces have time as well
+    return [
+        str(name) for name, each in data.data_vars.items() if name not in RUNS and each.dims == runs
+    ]
+
+
+def strange_measures(data: xr.Dataset, measures: Sequence[str]) -> Iterator[Fault]:
+    """Yield a fault for each measure that a study does not have."""
+    kept = kept_measures(data)
+    for name in measures:
+        if FORMERLY.get(name, name) not in kept:
+            yield Fault(name, unknown_name("measure", name, kept))
 
 
 def kinds(data: xr.Dataset) -> np.ndarray:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from cyclopts import Parameter
 
@@ -20,6 +20,7 @@ from stiction.cli.options import (
     record_or_none,
 )
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 Several = Annotated[list[str] | None, Parameter(consume_multiple=True, negative=())]
 
@@ -93,27 +94,39 @@ def design(
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.next_test.design import design as find
-    from stiction.inference.next_test.further import ANGLES
+    from stiction.inference.next_test.further import ANGLES, Wanted
     from stiction.inference.rig import Rig
+    from stiction.text.validation import read_arguments
 
+    altered, faults = changes(set), Faults()
     if output is not None:
         from stiction.plotting.page.save import drawable
 
-        drawable(output)
-    known = Rig.from_toml(rig, changes(set), trust=trust)
-    given = record_or_none(record, measured, trust)
+        with faults.of_part():
+            drawable(output)
+    with faults.of_part():
+        known = Rig.from_toml(rig, altered, trust=trust)
+    with faults.of_part():
+        given = record_or_none(record, measured, trust)
+    tests: dict[str, Any] = {
+        "channels": channels or ("force",),
+        "angles": ANGLES if angles is None else angles,
+        "velocities": velocities,
+        "loads": loads,
+        "noise": noise,
+        "position_noise": position_noise,
+        "simulations": simulations,
+    }
+    if faults.found:  # without any, they are checked beside the rig
+        with faults.of_part():
+            read_arguments(Wanted, **tests)
+    faults.refuse()
     with progress("simulating and learning") as report:
         found = find(
             known,
             given,
             of=of,
-            channels=channels or ("force",),
-            angles=ANGLES if angles is None else angles,
-            velocities=velocities,
-            loads=loads,
-            noise=noise,
-            position_noise=position_noise,
-            simulations=simulations,
+            **tests,
             library=library_or_cache(library),
             seed=seed,
             progress=report,

@@ -21,7 +21,7 @@ from stiction.cli.options import (
     record_in,
 )
 from stiction.cli.terminal import say
-from stiction.errors import DescriptionError
+from stiction.errors import DescriptionError, Faults
 from stiction.text.sections import Section
 
 if TYPE_CHECKING:
@@ -96,14 +96,24 @@ def fit(
     from stiction.inference.rig import Rig
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
-    placeable(output, NETCDF)
+    altered, faults, given = changes(set), Faults(), []
+    with faults.of_part():
+        placeable(output, NETCDF)
     if figures is not None:
-        usable_folder(figures)
+        with faults.of_part():
+            usable_folder(figures)
     if len(records) > 1 and measured is not None and measured.turned is not None:
         message = "would hold for each of these records; import the one that was turned with it"
-        raise DescriptionError.of("--turned", f"{message}, or state it in a file beside that one")
-    known = Rig.from_toml(rig, changes(set), trust=trust)
-    given = [record_in(path, measured, trust) for path in records]
+        with faults.of_part():
+            raise DescriptionError.of(
+                "--turned", f"{message}, or state it in a file beside that one"
+            )
+    with faults.of_part():
+        known = Rig.from_toml(rig, altered, trust=trust)
+    for path in records:
+        with faults.of_part():
+            given.append(record_in(path, measured, trust))
+    faults.refuse()
     kept = library_or_cache(library)
     with progress("simulating and learning") as report:
         found = infer(

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from stiction.cli.options import Output, Trust, Window
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 
 def animate(
@@ -42,18 +43,14 @@ def animate(
         oscillation; by default a third into the window. Example: --at 2.05s.
     """
     from stiction.cli.progress import progress
-    from stiction.media.film import animate as film_of
-    from stiction.media.film import filmable
+    from stiction.media.film import excerpt, filmable, make_film
 
-    target = filmable(output)
+    faults = Faults()
+    with faults.of_part():
+        target = filmable(output)
+    with faults.of_part():
+        shown = excerpt(result, window, length, at, trust=trust)
+    faults.refuse()
     with progress("filming") as report:
-        film = film_of(
-            result,
-            window=window,
-            length=length,
-            at=at,
-            kind=target.suffix[1:].lower(),
-            trust=trust,
-            progress=report,
-        )
-    say(f"wrote {film.save(target)}")
+        made = make_film(shown, target.suffix[1:].lower(), report)
+    say(f"wrote {made.save(target)}")

@@ -7,6 +7,7 @@ from typing import Literal
 
 from stiction.cli.options import Output, Trust, Window
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 
 def listen(
@@ -43,18 +44,20 @@ def listen(
         x.
     """
     from stiction.cli.progress import progress
-    from stiction.media.sound import WAV
-    from stiction.media.sound import listen as sound_of
+    from stiction.media.sound import WAV, make_sound, passage
     from stiction.storage.files import placeable
 
-    target = placeable(output, WAV)
+    faults = Faults()
+    with faults.of_part():
+        target = placeable(output, WAV)
+    with faults.of_part():
+        heard = passage(result, speed, window, axis, trust=trust)
+    faults.refuse()
     with progress("listening") as report:
-        sound = sound_of(
-            result, speed=speed, window=window, axis=axis, trust=trust, progress=report
-        )
+        made = make_sound(heard, report)
     pitch = "at its true pitch"
-    if sound.speed != 1.0:
-        slower = sound.speed < 1.0
-        times = 1.0 / sound.speed if slower else sound.speed
+    if made.speed != 1.0:
+        slower = made.speed < 1.0
+        times = 1.0 / made.speed if slower else made.speed
         pitch = f"{times:.6g} times {'slower and deeper' if slower else 'faster and higher'}"
-    say(f"wrote {sound.save(target)}: {sound.duration:.3g} s, {pitch}")
+    say(f"wrote {made.save(target)}: {made.duration:.3g} s, {pitch}")

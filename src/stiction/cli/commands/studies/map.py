@@ -9,6 +9,7 @@ from cyclopts import Parameter
 
 from stiction.cli.options import MaybeOutput, Trust, parse_assignment
 from stiction.cli.terminal import say
+from stiction.errors import Faults
 
 
 def map(
@@ -57,10 +58,14 @@ def map(
     from stiction.study.view.mapping import map as look
 
     cut = dict(parse_assignment(text, "--at") for text in at or ())
+    faults = Faults()
     if output is not None:
-        drawable(output)
+        with faults.of_part():
+            drawable(output)
     with progress("drawing"):
-        found = look(study, of or (), cut, trust=trust)
+        with faults.of_part():
+            found = look(study, of or (), cut, trust=trust)
+        faults.refuse()
         named = study if study.name.strip(".") else study.resolve()  # "." has no suffix
         written = write(figure_of(found.plot), output or named.with_suffix(".png"))
     say(f"wrote {written}")

@@ -12,7 +12,7 @@ from cyclopts import Parameter
 
 from stiction.cli.options import Changes, Output, Trust, changes, parse_assignment
 from stiction.cli.terminal import say
-from stiction.errors import DescriptionError, StictionError
+from stiction.errors import DescriptionError, Faults, StictionError
 
 if TYPE_CHECKING:
     from stiction.study.execution.engines import Engine
@@ -103,13 +103,17 @@ def sweep(
     from stiction.study.execution.sweep import sweep as do
 
     found = None
-    study = read_study(config, preset, changes(set), trust)
-    means = engine(threads, workers, scheduler, dashboard)
+    given, faults = changes(set), Faults()
     along, to = ("", "") if refine is None else parse_assignment(refine, "--refine")
-    if refine is not None:  # before the first of many runs
-        request(study, along, to, apart)
-    elif apart is not None:
-        raise StictionError("--apart needs --refine; give both")
+    with faults.of_part():
+        study = read_study(config, preset, given, trust)
+        if refine is not None:  # before the first of many runs
+            request(study, along, to, apart)
+    with faults.of_part():
+        means = engine(threads, workers, scheduler, dashboard)
+    if refine is None and apart is not None:
+        faults.add("--apart needs --refine; give both")
+    faults.refuse()
     if not (quiet or json_lines):  # before the first of many runs, too
         for doubt in doubts(study):
             say(doubt, error=True)
@@ -142,7 +146,7 @@ def read_study(
 ) -> Study:
     """Return the requested study, with changed parameters."""
     from stiction.study import presets
-    from stiction.study.plan.reading import refuse_varied
+    from stiction.study.plan.reading import varied_faults
     from stiction.study.plan.study import Study
     from stiction.text.paths import with_changes
 
@@ -154,9 +158,8 @@ def read_study(
     study = presets.preset(str(preset))
     if not given:
         return study
-    raw = with_changes(study.to_dict(), given)
-    refuse_varied(raw, given)
-    return Study.from_dict(raw)
+    raw, strange = with_changes(study.to_dict(), given)
+    return Study.from_dict(raw, known=[*strange, *varied_faults(raw, given)])
 
 
 def engine(
