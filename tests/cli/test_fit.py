@@ -91,7 +91,7 @@ def test_options_of_a_record_are_refused_where_there_is_none(
     (tmp_path / "my.toml").write_text(st.presets.nakano_popov_2020().to_toml())
     assert inside(*words.split(), "--time", "ms", "--normal-load", "1 N") == 2
     said = " ".join(capsys.readouterr().err.split())
-    assert "--time, --normal-load: there is no record that this could be said of" in said
+    assert "--time, --normal-load: there is no record to which this could apply" in said
     assert remedy in said
 
 

@@ -319,6 +319,23 @@ def test_independent_faults_are_named_in_one_round(
     assert [words for words in said if words not in told] == []
 
 
+@pytest.mark.parametrize(
+    ("command", "said"),
+    [
+        ("audit my.toml -n 10 --library sims", "--simulations, --library: there is no record"),
+        ("audit my.toml --set duration=10s", "duration: has no effect: only a run reads it"),
+        ("audit --preset leine-belt --set rtol=1e-5", "rtol: has no effect"),
+        ("stability my.toml --set initial.u_x=1mm", "initial.u_x: has no effect"),
+        ("sweep --preset yaw-angle -o a.zarr --quiet --json-lines", "exclude each other"),
+    ],
+)
+def test_an_option_without_effect_is_refused(command, said, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("my.toml").write_text(PAPER.to_toml())
+    assert inside(*command.split()) == 2
+    assert said in capsys.readouterr().err
+
+
 def test_a_misspelt_table_is_no_table_of_a_run():
     """An audit, a fit and a study of stability left [laod] out, without a word."""
     with pytest.raises(

@@ -51,6 +51,16 @@ Simulations = Annotated[
         ),
     ),
 ]
+MaybeSimulations = Annotated[
+    int | None,
+    Parameter(
+        name=("--simulations", "-n"),
+        help=(
+            "With --record, number of simulated records to learn from, by default 4000: more give "
+            "narrower intervals, and take longer. Example: -n 8000."
+        ),
+    ),
+]
 Seed = Annotated[
     int,
     Parameter(
@@ -205,17 +215,23 @@ def record_in(path: Path, measured: RecordOptions | None, trust: bool) -> Record
 
 
 def record_or_none(
-    path: Path | None, measured: RecordOptions | None, trust: bool, give: str = "give --record"
+    path: Path | None,
+    measured: RecordOptions | None,
+    trust: bool,
+    give: str = "give --record",
+    **others: Any,
 ) -> Record | None:
     """Do as `record_in`, if there is a record; refuse options of one where there is none.
 
-    `give` is how the command takes a record.
+    `give` is how the command takes a record; `others` are further options that need one, None where
+    they are not given.
     """
     if path is not None:
         return record_in(path, measured, trust)
-    if said := (measured or RecordOptions()).arguments():
+    further = {name: value for name, value in others.items() if value is not None}
+    if said := (measured or RecordOptions()).arguments() | further:
         named = ", ".join(f"--{name.replace('_', '-')}" for name in said)
-        raise StictionError(f"{named}: there is no record that this could be said of; {give}")
+        raise StictionError(f"{named}: there is no record to which this could apply; {give}")
     return None
 
 
@@ -257,7 +273,7 @@ def slider_from(
 
     if choose(config, preset) is None:
         return Slider.from_toml(Path(str(config)), given, trust=trust)
-    return description_from(config, preset, given, trust).slider
+    return rig_from(config, preset, given, trust).slider
 
 
 def rig_from(config: Path | None, preset: str | None, given: dict[str, Any], trust: bool) -> Rig:

@@ -23,7 +23,7 @@ from stiction.system.slider import OPTIONAL_TABLES, SLIDER_TABLES, Slider, slide
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.paths import canonical, slug, with_changes
 from stiction.text.sections import Section, as_html
-from stiction.text.toml import folder_of, gather, read_changed, toml_text, without_run
+from stiction.text.toml import folder_of, gather, read_slider, toml_text
 from stiction.text.units import NORMAL, QUANTITY, UNIFORM, Kind, split_uncertain
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*?)\s*")
@@ -77,14 +77,14 @@ class Rig(NamedTuple):
         1.0
         """
         folder = folder_of(path)
-        read, strange = read_changed(path, changes)
+        read, strange = read_slider(path, changes)
         raw, lost = with_rows(read, locator(folder, trust))
         stated: dict[str, Any] = {}
         certain = {
             name: dict(without_spread(table, (name,), stated))
             if isinstance(table, Mapping)
             else table
-            for name, table in without_run(raw).items()
+            for name, table in raw.items()
         }
         find = finder_for_descriptions(folder, trust)
         try:

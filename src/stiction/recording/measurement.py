@@ -226,6 +226,8 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
     notes += remarks
     notes += [_in_words(name, x) for name, x in sensors.items() if x.noise or x.quantisation]
     notes += _apparatus_in_words(asked.known)
+    if isinstance(asked.reading.wrap, float) and not found.keys() & {*DISPLACEMENTS}:
+        notes.append("wrap has no effect: there is no displacement")
     channels = {"time": time, **{name: each.values for name, each in found.items()}}
     origin = Origin(
         path.name,

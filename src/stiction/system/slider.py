@@ -35,7 +35,7 @@ from stiction.system.springs import Springs, read_springs, whole
 from stiction.system.tensors import ROUND, solver_axes, unit_vector
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
-from stiction.text.toml import Reader, folder_of, gather, read_changed, toml_text, without_run
+from stiction.text.toml import Reader, folder_of, gather, read_slider, toml_text
 from stiction.text.units import Angle, Damping, Force, Mass, Stiffness
 from stiction.text.validation import Described, faulty
 
@@ -409,11 +409,11 @@ class Slider(Apparatus):
         """
         folder = folder_of(path)
         find = finder_for_descriptions(folder, trust)
-        read, strange = read_changed(path, changes)
+        read, strange = read_slider(path, changes)
         raw, lost = with_rows(read, locator(folder, trust))
         return cls.from_parts(
             gather(
-                without_run(raw),
+                raw,
                 {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
                 absent=OPTIONAL_TABLES,
                 last=("friction",) if is_own(raw.get("friction")) else (),

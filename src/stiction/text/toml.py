@@ -14,7 +14,7 @@ from typing import Any
 
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.kinds import DESCRIPTION, STUDY, use_of
-from stiction.text.paths import with_changes
+from stiction.text.paths import keys_of, with_changes
 from stiction.text.validation import unknown_name
 
 Reader = Callable[[dict[str, Any]], Any]
@@ -205,9 +205,15 @@ def _tables_in(table: Any, names: Iterable[str]) -> Iterator[str]:
         yield from (name for name in names if isinstance(table.get(name), Mapping))
 
 
-def without_run(raw: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the tables of a description without those of a run or a study."""
-    return {name: table for name, table in raw.items() if name not in OF_RUNS}
+def read_slider(
+    path: str | Path, changes: Mapping[str, Any] | None
+) -> tuple[dict[str, Any], list[Fault]]:
+    """Do as `read_changed`, without the tables of a run or a study, of which none can change."""
+    raw, faults = read_changed(path, changes)
+    lost = {fault.path for fault in faults}
+    idle = [name for name in changes or () if name not in lost and keys_of(raw, name)[0] in OF_RUNS]
+    faults += [Fault(name, "has no effect: only a run reads it; take it out") for name in idle]
+    return {name: table for name, table in raw.items() if name not in OF_RUNS}, faults
 
 
 def _strange(name: str, readers: Mapping[str, Reader]) -> str:

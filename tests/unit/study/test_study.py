@@ -372,3 +372,14 @@ def test_what_is_no_study_is_not_swept(tmp_path):
     with pytest.raises(st.DescriptionError, match=r"study: None is not a Study; make one with"):
         st.refine(None, tmp_path / "a.zarr", along="phi", to="1 deg")
     assert not (tmp_path / "a.zarr").exists()
+
+
+def test_a_measure_that_a_map_of_samples_does_not_draw_is_refused(tmp_path):
+    base = st.Description(
+        st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="2 ms")
+    )
+    axes = {"phi": st.Random("1 deg", "3 deg", 2), "drive.velocity": st.Random(1e-3, 3e-3, 2)}
+    study = st.Study(base=base, axes=axes, measures=["regime", "peak_force"])
+    st.sweep(study, tmp_path / "samples.zarr")
+    with pytest.raises(st.DescriptionError, match="drawn by their kind of motion alone"):
+        st.map(tmp_path / "samples.zarr", of="peak_force")

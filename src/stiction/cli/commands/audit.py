@@ -9,8 +9,8 @@ from stiction.cli.options import (
     FromPreset,
     Library,
     MaybeOutput,
+    MaybeSimulations,
     RecordOptions,
-    Simulations,
     Trust,
     changes,
     library_or_cache,
@@ -30,7 +30,7 @@ def audit(
     trust: Trust = False,
     set: Changes = None,
     record: Path | None = None,
-    simulations: Simulations = 4000,
+    simulations: MaybeSimulations = None,
     library: Library = None,
     measured: RecordOptions | None = None,
 ) -> int:
@@ -69,6 +69,7 @@ def audit(
     from stiction.auditing.report import audit as examine
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
+    from stiction.inference.simulated import SIMULATIONS
 
     given, faults = changes(set), Faults()
     with faults.of_part():
@@ -81,11 +82,13 @@ def audit(
         with faults.of_part():
             placeable(output, SUFFIXES)
     with faults.of_part():
-        seen = record_or_none(record, measured, trust)
+        seen = record_or_none(record, measured, trust, simulations=simulations, library=library)
     faults.refuse()
     kept = None if seen is None else library_or_cache(library)
     with progress("auditing") as report:
-        found = examine(rig, report, record=seen, simulations=simulations, library=kept)
+        found = examine(
+            rig, report, record=seen, simulations=simulations or SIMULATIONS, library=kept
+        )
     print_sections(title, found.tables())
     if output is not None:
         with progress("drawing"):

@@ -137,6 +137,9 @@ def map(
     """
     measures = [of] if isinstance(of, str) else of
     view = view_study(store, at or {}, trust, measures)
+    if {*measures} - {REGIME} and are_points(view):
+        message = "samples of several parameters are drawn by their kind of motion alone"
+        raise DescriptionError.of("of", f"{message}; leave it out, or use xarray.open_zarr")
     return Map(view, tuple(choose_measures(view, measures)))
 
 
@@ -167,11 +170,10 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
     >>> axes = st.plotting.plot_map(st.map("phi.zarr"))
     """
     view = in_order(found.view)
-    names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
     with style():
         if len(found.dims) == 2:
             panels = _maps(view, found.measures, axes)
-        elif len({*names} - {"run.duration"}) > 1:
+        elif are_points(view):
             panels = _points(found.view, axes)
         else:
             panels = _curves(view, found.measures, axes)
@@ -179,6 +181,12 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
             wide = whole_figure(panels[0]).get_figwidth() / COLUMN
             panels[0].set_title(fill(cut(view), int(WIDTH * wide)), loc="left")
         return np.array(panels, dtype=object)
+
+
+def are_points(view: View) -> bool:
+    """Return whether a view has one dimension, along which several parameters vary together."""
+    names = [name for name, each in view.study.coordinates.items() if each.dim not in view.at]
+    return len(view.data["status"].dims) == 1 and len({*names} - {"run.duration"}) > 1
 
 
 def cut(view: View) -> str:

@@ -113,6 +113,8 @@ def sweep(
         means = engine(threads, workers, scheduler, dashboard)
     if refine is None and apart is not None:
         faults.add("--apart needs --refine; give both")
+    if quiet and json_lines:
+        faults.add("--quiet and --json-lines exclude each other; give one")
     faults.refuse()
     if not (quiet or json_lines):  # before the first of many runs, too
         for doubt in doubts(study):
