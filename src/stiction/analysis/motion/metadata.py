@@ -87,6 +87,12 @@ class StatedQuantity(NamedTuple):
         """Whether both agree; None if one is not known."""
         return self.low <= self.ratio <= self.high if isfinite(self.ratio) else None
 
+    @property
+    def is_same(self) -> bool:
+        """Whether the value found is the stated one, not only one that it allows."""
+        apart = abs(self.found - self.stated)
+        return bool(apart <= max(ALIKE * abs(self.stated), SURE * self.error))
+
 
 def compare_metadata(
     record: Record,
@@ -155,15 +161,10 @@ def _loading_rates(
         when = _part_in_words(begin, end)
         error = hypot(error, off)
         parts.append(whole._replace(found=found, error=error, part=when, begin=begin, end=end))
-    agree = [each for each in parts if _is_same(each)] or [x for x in parts if x.agrees]
+    agree = [each for each in parts if each.is_same] or [x for x in parts if x.agrees]
     if not agree:
         return parts
     return [each if each in agree else each._replace(stated=nan) for each in parts]
-
-
-def _is_same(each: StatedQuantity) -> bool:
-    """Return whether a value is the stated one, not only one that it allows."""
-    return bool(abs(each.found - each.stated) <= max(ALIKE * each.stated, SURE * each.error))
 
 
 def _part_in_words(begin: float, end: float) -> str:

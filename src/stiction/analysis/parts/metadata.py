@@ -10,6 +10,7 @@ from stiction.analysis.motion.metadata import (
     BY_RISE,
     BY_SLIPS,
     LOADING_RATE,
+    SURE,
     SWING,
     StatedQuantity,
 )
@@ -21,7 +22,6 @@ from stiction.text.units import in_words, times, with_error
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
-SAME, SURE = 0.1, 3.0  # relative, and standard errors: values that differ by less are the same
 ALLOWED = "possible"  # not the same, but the record gives a bound only, or a rough value
 NUMBERS = ("found", "error", "stated", "ratio")
 TOLD = (SWING, LOADING_RATE)  # among the warnings
@@ -75,9 +75,7 @@ def verdict(each: StatedQuantity) -> str:
     if not each.agrees:
         beyond = NOT_SHOWN if limit and each.unit == "Hz" else "contradicts"
         return "" if each.agrees is None else beyond
-    apart = abs(each.found - each.stated)
-    same = limit or apart <= max(SAME * abs(each.stated), SURE * each.error)
-    return "agrees" if same else ALLOWED
+    return "agrees" if limit or each.is_same else ALLOWED
 
 
 def _sentence(each: StatedQuantity) -> str:
