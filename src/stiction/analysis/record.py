@@ -311,6 +311,11 @@ class Record(Described):
         return 2.0 * pi * sqrt(self.mass / self.stiffness)
 
     @property
+    def loading_rate(self) -> float:
+        """How fast a spring is loaded (N/s), stiffness times drive velocity; 0 if unknown."""
+        return (self.stiffness or 0.0) * (self.drive_velocity or 0.0)
+
+    @property
     def drive_travel(self) -> Floats | None:
         """How far the drive has moved along the force, (n,), m, of a run whose drive varies."""
         return self._of_run and self._at_own_times(self._of_run.drive_travel)

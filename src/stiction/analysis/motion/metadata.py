@@ -140,7 +140,7 @@ def _loading_rates(
     if kind not in (STICK_SLIP, TRANSITIONAL):
         return []
     slopes, starts = cycles["stick_slope"], cycles["start"]
-    stated = (record.stiffness or nan) * (record.drive_velocity or nan)
+    stated = record.loading_rate or nan
     # a drift of the load cell seems to load the spring; one of friction does not
     off = 0.0 if drift is None else abs(drift.rate)
     found, error = _typical(slopes)

@@ -94,9 +94,7 @@ def _is_driven(record: Record, up: Floats, down: Floats, height: float) -> bool:
     rising, falling = float(np.median(up)), float(np.median(down))
     if max(rising, falling) > AS_SLOW * min(rising, falling):
         return False
-    if record.stiffness is None:
-        return False
     if (period := record.stated_period) is not None:
         return min(rising, falling) > period
-    rate = record.stiffness * (record.drive_velocity or 0.0)
-    return all(ALMOST * rate < height / each < AT_MOST * rate for each in (rising, falling))
+    least, most = ALMOST * record.loading_rate, AT_MOST * record.loading_rate
+    return all(least < height / each < most for each in (rising, falling))

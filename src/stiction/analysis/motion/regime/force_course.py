@@ -63,7 +63,7 @@ RIPPLE = 1e-3  # of the force's span: a vibration that is less is not a motion o
 def by_course(record: Record, found: Swings) -> Regime:
     """Return the kind of motion without cycles: settling, steady, stuck or vibrating."""
     way = course(record.time, record.force)
-    drive = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
+    drive = record.loading_rate
     evidence = {"change": way.change, "span": way.span, "scatter": way.scatter}
     if found.lines:
         evidence["line_taken_off"] = found.lines[0].frequency
