@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.record import Record
-from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.digitised import rounding_of_mean
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
-from stiction.recording.noise import difference_gain, rounding_error
+from stiction.recording.noise import difference_gain
 
 LEVELS = 40  # number of forces on the curve
 FEWEST_BINS = 10  # bins in a rise, each of at least two samples
@@ -55,8 +55,7 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     ResultError
         If the record lacks stiffness or drive velocity, or the rises have too few samples.
     """
-    rate = (record.stiffness or 0.0) * (record.drive_velocity or 0.0)
-    if not rate:
+    if not record.loading_rate:
         raise ResultError("the record states no stiffness and drive_velocity; give both")
     peak, drop = (float(np.median(cycles[name].values)) for name in ("peak", "drop"))
     begin = float(np.quantile(cycles["start_force"].values, 0.8))
@@ -71,7 +70,7 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     rows = []
     columns = (cycles[name].values for name in ("start", "peak_time", "peak"))
     for start, top, most in zip(*columns, strict=True):
-        row = _crept_forces(record, start, top, peak / most if peak > 0.0 else 1.0, rate, levels)
+        row = _crept_forces(record, start, top, peak / most if peak > 0.0 else 1.0, levels)
         if row is not None:
             rows.append(row)
     if not rows:
@@ -82,12 +81,13 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     table -= table.mean(axis=1, keepdims=True)
     middle = np.median(table, axis=0) if len(rows) >= 5 else table.mean(axis=0)
     apart = table - middle
-    error = np.hypot(_scatter(apart, rows), _rounding(record.force, (high - low) / LEVELS))
+    rounding = rounding_of_mean(record.force, (high - low) / LEVELS)
+    error = np.hypot(_scatter(apart, rows), rounding)
     return LoadingCurve(levels, middle, apart, np.full(LEVELS, error), peak, drop)
 
 
 def _crept_forces(
-    record: Record, start: float, top: float, scale: float, rate: float, levels: Floats
+    record: Record, start: float, top: float, scale: float, levels: Floats
 ) -> Floats | None:
     """Return k_x times the distance crept at each force in one cycle; None if too coarse."""
     first, last = np.searchsorted(record.time, [start, top], side="left")
@@ -103,7 +103,7 @@ def _crept_forces(
     order = np.argsort(force)
     if force[order[0]] > levels[0] or force[order[-1]] < levels[-1]:
         return None
-    crept = scale * (rate * (time - time[0])) - force
+    crept = scale * (record.loading_rate * (time - time[0])) - force
     return np.asarray(np.interp(levels, force[order], crept[order]))
 
 
@@ -115,12 +115,3 @@ def _scatter(apart: Floats, rows: list[Floats]) -> float:
             np.std(np.diff(rows[0], 3)) / difference_gain(3) ** 0.5
         )  # that of white noise, less a cubic
     return float(np.sqrt((apart**2).sum(axis=0).mean() / (count - 1) / count))
-
-
-def _rounding(force: Floats, width: float) -> float:
-    """Return the error (N) of a force that is read in steps, averaged over a width.
-
-    A ramp through many steps reduces it, and so does noise of their size.
-    """
-    step = resolution(force)
-    return rounding_error(force, step) * min(1.0, step / width)

@@ -7,10 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.digitised import rounding_of_mean
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
-from stiction.recording.noise import rounding_error
 from stiction.text.quantity_text import percent
 
 BINS = 10  # of each loading
@@ -113,7 +112,7 @@ def loadings(time: Floats, forces: Floats, cycles: xr.Dataset) -> LoadingSeries:
         raise ResultError(
             f"not determined: no loading of a cycle has {FEWEST} samples in each of {BINS} parts"
         )
-    rounding = np.array([*map(_rounding, forces, np.mean(widths, axis=0))])
+    rounding = np.array([*map(rounding_of_mean, forces, np.mean(widths, axis=0))])
     found = LoadingSeries(
         np.array(means), np.mean(noise, axis=0), np.array(peaks), rounding, np.array(spans)
     )
@@ -123,12 +122,3 @@ def loadings(time: Floats, forces: Floats, cycles: xr.Dataset) -> LoadingSeries:
             f"not determined: the force along rises by less than {percent(LEAST)} in a loading"
         )
     return found
-
-
-def _rounding(force: Floats, width: float) -> float:
-    """Return the standard error of the mean of a bin by rounding, N.
-
-    Its force moves by `width`, N: the more steps it passes, the less is left.
-    """
-    step = resolution(force)
-    return rounding_error(force, step) * step / max(step, width) if step else 0.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.recording.noise import dither_remainder, lattice
+from stiction.recording.noise import dither_remainder, lattice, rounding_error
 
 MANY, COARSE = 100_000, 1e-4  # samples examined for steps; smallest step, over the signal's range
 
@@ -23,6 +23,15 @@ def resolution(values: Floats) -> float:
         return step
     step = float(np.diff(np.unique(some)).min(initial=np.inf))
     return step if np.isfinite(step) and step >= COARSE * float(np.ptp(some)) else 0.0
+
+
+def rounding_of_mean(values: Floats, width: float) -> float:
+    """Return the standard error by rounding of a mean over which a signal moves by `width`.
+
+    A ramp through many steps reduces it, and so does noise of their size.
+    """
+    step = resolution(values)
+    return rounding_error(values, step) * (step / max(step, width)) if step else 0.0
 
 
 def rounding_line(values: Floats) -> float:
