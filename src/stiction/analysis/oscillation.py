@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import pi
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -166,8 +166,10 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
     )
 
 
-def stands_out(oscillation: xr.Dataset) -> bool:
-    """Return whether a line is seen for longer than by chance."""
+def stands_out(oscillation: xr.Dataset | None) -> TypeGuard[xr.Dataset]:
+    """Return whether there is a line, and it is seen for longer than by chance."""
+    if oscillation is None:
+        return False
     seen = np.isfinite(oscillation["frequency"].values)
     return bool(seen.any() and seen.mean() >= SELDOM)
 

@@ -312,7 +312,7 @@ def _besides(found: Analysis) -> str:
             f" Besides, the force swings at {swings}, by {in_words(height, 'N')} from crest to "
             "trough, which noise hides."
         )
-    if isinstance(found.source, Trajectory) or seen is None or not stands_out(seen):
+    if isinstance(found.source, Trajectory) or not stands_out(seen):
         return ""
     frequency, share = seen["frequency"].values, np.isfinite(seen["frequency"].values)
     middle, height = float(np.median(frequency[share])), float(np.median(seen["amplitude"][share]))

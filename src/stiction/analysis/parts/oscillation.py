@@ -74,6 +74,5 @@ def _note_hidden_cycles(found: Analysis) -> str:
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
     """Return the oscillation over time, if one stands out, and a row for each stick phase."""
-    its = found.oscillation
-    seen = its if its is not None and stands_out(its) else None
+    seen = found.oscillation if stands_out(found.oscillation) else None
     return {"oscillation": seen, "oscillation-phases": found.phases}

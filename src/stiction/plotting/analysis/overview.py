@@ -45,7 +45,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
         lines = _creep_lines(found, V)
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
     its = found.oscillation
-    if isinstance(found.source, Trajectory) and its is not None and stands_out(its):
+    if isinstance(found.source, Trajectory) and stands_out(its):
         drawn["oscillation"] = figure_of(plot_oscillation, found.source, its)
     if found.energy is not None:
         drawn["energy"] = figure_of(plot_energy, found.energy)
