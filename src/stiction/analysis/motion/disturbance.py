@@ -110,7 +110,7 @@ def slow_wave(grid: EvenGrid, force: Floats, frequency: float) -> Floats:
     even = grid.on(force)
     slow = _means_over(even, length)
     slow += _means_over(even - slow, length)
-    return np.asarray(np.interp(grid.places, np.arange(grid.size), slow))
+    return grid.between(slow)
 
 
 def _means_over(force: Floats, length: int) -> Floats:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -108,6 +109,10 @@ class EvenGrid:
         inside = (place >= 0) & (place < self.size)
         found[place[inside]] = values[near[inside]]
         return np.asarray(found)
+
+    def between(self, values: NDArray[Any]) -> NDArray[Any]:
+        """Return values that change slowly at the record's own times, from those on the grid."""
+        return np.asarray(np.interp(self.places, np.arange(self.size), values))
 
 
 def even_grid(time: Floats) -> EvenGrid | None:

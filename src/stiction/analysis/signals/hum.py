@@ -9,10 +9,9 @@ decide whether it is the motion or a disturbance (`stiction.analysis.motion.cycl
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.robust import inner_product, median, uniform_mean
@@ -162,7 +161,7 @@ def _measure_line(
     length = round(1.0 / cycles)
     even = grid.on(force)
     slow = uniform_mean(even, length)
-    quick, left = even - slow, force - _between(grid, slow)
+    quick, left = even - slow, force - grid.between(slow)
     turn = np.exp(2j * np.pi * cycles * np.arange(len(even)))
     for _ in range(2):  # as it wanders
         phase = _envelope(quick * turn.conj(), cycles)
@@ -179,8 +178,8 @@ def _measure_line(
             passed = 1.0 - np.sin(length * turns) / (length * np.sin(turns))
             envelope = _envelope(quick * own.conj(), cycles)
             if not grid.exact:
-                envelope = _between(grid, envelope)
-                own = np.exp(1j * k * _between(grid, turned))
+                envelope = grid.between(envelope)
+                own = np.exp(1j * k * grid.between(turned))
             harmonic = 2.0 / passed * (envelope * own).real
             if not grid.exact:  # on the grid it is smaller
                 harmonic *= _gain(left - values, harmonic)
@@ -194,11 +193,6 @@ def _gain(force: Floats, line: Floats) -> float:
     """Return by which factor a line fits a force best."""
     size = inner_product(line, line)
     return inner_product(force, line) / size if size > 0.0 else 1.0
-
-
-def _between(grid: EvenGrid, values: NDArray[Any]) -> NDArray[Any]:
-    """Return values that change slowly at the record's own times, from those on its grid."""
-    return np.asarray(np.interp(grid.places, np.arange(grid.size), values))
 
 
 def beat_frequency(time: Floats, force: Floats) -> float | None:
