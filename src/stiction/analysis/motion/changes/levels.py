@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.analysis.motion.changes.sliding import NO_LOAD
 from stiction.analysis.record import Record
-from stiction.analysis.signals.correlated_noise import standard_error
+from stiction.analysis.signals.correlated_noise import statistics
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import median, part_means
 from stiction.arrays import Floats
@@ -61,7 +61,7 @@ def levels(record: Record) -> list[Level]:
     half, load = 0.5 * (times[1] - times[0]), record.normal_load or np.nan
     found, step = [], resolution(record.force)
     for run in runs:
-        (force, error), (mu, mu_error) = _mean(raw[run]), _mean(means[run] / load)
+        (force, error, _), (mu, mu_error, _) = map(statistics, (raw[run], means[run] / load))
         ends = float(times[run.start] - half), float(times[run.stop - 1] + half)
         level = record.force[slice(*np.searchsorted(record.time, ends))]
         rounding = rounding_error(level, step)
@@ -93,8 +93,3 @@ def _changes(means: Floats, noise: float, one: slice, two: slice) -> bool:
     least = max(CHANGED * noise, WORTH * max(abs(before), abs(after)))
     shorter = min(int(run.stop - run.start) for run in (one, two))
     return abs(after - before) > least and two.start - one.stop <= QUICK * shorter
-
-
-def _mean(values: Floats) -> tuple[float, float]:
-    """Return the mean of a level, and its standard error."""
-    return float(values.mean()), standard_error(values)
