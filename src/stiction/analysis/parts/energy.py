@@ -39,16 +39,9 @@ def find(found: Analysis) -> xr.Dataset:
         )
     from stiction.analysis.energy import energy_budget  # with the solver, which no record needs
 
-    return energy_budget(found.source, edges(found.source, found.cycles))
-
-
-def edges(run: Trajectory, cycles: xr.Dataset) -> np.ndarray:
-    """Return the times (s) that bound the run and each of its cycles, ascending."""
-    first, last = (float(run.samples["time"][i]) for i in (0, -1))
-    if first == last:
-        raise ResultError("the run has a single sample; run it longer than 1/sample_rate")
-    inner = np.concatenate([cycles["start"].values, cycles["trough_time"].values[-1:]])
-    return np.unique(np.concatenate([[first], inner, [last]]))
+    ends, cycles = found.source.samples["time"][[0, -1]], found.cycles
+    borders = [ends, cycles["start"].values, cycles["trough_time"].values[-1:]]
+    return energy_budget(found.source, np.unique(np.concatenate(borders)))
 
 
 def section(found: Analysis) -> Section:
