@@ -248,7 +248,9 @@ def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionT
         run.description.run.rtol * float(np.abs(force).max(initial=0.0)),
         slider.law,
         drive,
-        stretches(drive, load_stretches(slider.normal_load, slider.load), d["time"]),
+        stretches(
+            drive_stretches(drive), load_stretches(slider.normal_load, slider.load), d["time"]
+        ),
     )
 
 
@@ -261,9 +263,9 @@ def of_record(
     """Return a record with a normal load as a friction test, by its program or as measured."""
     force = record.force
     if measured is None:
-        found = stretches(drive, loads, record.time)
+        found = stretches(drive_stretches(drive), loads, record.time)
     else:
-        found = _stretches(measured, loads, record.time, -inf)
+        found = stretches(measured, loads, record.time, -inf)
         force = _against_friction(record, found)
     load = (record.normal_load or nan) * record.relative_load()
     lag = force / record.stiffness if record.stiffness else np.zeros(len(force))
@@ -292,20 +294,13 @@ def _against_friction(record: Record, found: list[ConstantStretch]) -> Floats:
 
 
 def stretches(
-    drive: ConstantVelocity | DriveProgram, loads: Stretches, time: Floats
+    drives: Stretches, loads: Stretches, time: Floats, start: float = 0.0
 ) -> list[ConstantStretch]:
-    """Return the stretches of constant velocity and load while they are recorded.
+    """Return the stretches of constant velocity and load while they are recorded, from `start` (s).
 
     Ramps, harmonics and recorded pieces are left out, and so is all that a harmonic lies on. A
     border between equal pieces is none.
     """
-    return _stretches(drive_stretches(drive), loads, time, 0.0)
-
-
-def _stretches(
-    drives: Stretches, loads: Stretches, time: Floats, start: float
-) -> list[ConstantStretch]:
-    """Return the stretches while they are recorded, from a time `start` (s) on."""
     first, last = (float(time[0]), float(time[-1])) if len(time) else (inf, -inf)
     found: list[ConstantStretch] = []
     for end in sorted({end for end, _ in (*drives, *loads)}):
