@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from math import copysign, inf, isfinite, nan, radians, sqrt
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from stiction.auditing.chain import softest_path
 from stiction.auditing.prediction import predict
@@ -32,7 +32,6 @@ MORE = {
     "k_x": (2.0, 4.0, 8.0, 16.0, 32.0),
 }
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the softest one's
-NOT_TRIED = (nan, nan, None)  # fields of a `Remedy` without a better value so far
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
 STRONGEST = 10.0  # times critical damping: the strongest damper tried
 
@@ -50,8 +49,6 @@ class Remedy(NamedTuple):
         The searched range, and where in it steady sliding is stable; None where it is stable now.
     then : float
         The advised value; NaN if there is none in the range.
-    growth : float
-        The growth rate (1/s) at the advised value.
     tried : SimulatedTest or None
         The simulation with the advised value.
     work : int
@@ -64,9 +61,8 @@ class Remedy(NamedTuple):
     unit: str
     now: float
     critical: Critical | None
-    then: float
-    growth: float
-    tried: SimulatedTest | None
+    then: float = nan
+    tried: SimulatedTest | None = None
     work: int = 0
     cut: bool = False
 
@@ -76,6 +72,11 @@ class Remedy(NamedTuple):
         seen = self.tried
         slides = seen is not None and seen.run.status.ok and seen.comes_to == SLIDES
         return slides and self.growth < 0.0
+
+    @property
+    def growth(self) -> float:
+        """Growth rate of a small disturbance of steady sliding at the advised value, 1/s."""
+        return self.tried.growth if self.tried else nan
 
 
 def advise(
@@ -108,7 +109,7 @@ def advise_one(
     `found` is its critical values, None where steady sliding is stable.
     """
     now = read(slider, path)
-    advice = Remedy(path, unit(slider, path), now, found, *NOT_TRIED)
+    advice = Remedy(path, unit(slider, path), now, found)
     if found is None:
         ways = list(further(slider, path))
     else:
@@ -122,10 +123,9 @@ def advise_one(
         if left < LEAST_WORK:
             return advice._replace(cut=True)
         changed = change_parameter(slider, path, quantity(slider, path, then))
-        seen = try_change(changed, left, part(progress, number, len(ways)))
-        spent = advice.work + (seen["tried"].work if seen["tried"] else 0)
-        advice = advice._replace(then=then, work=spent, **seen)
-        if advice.tried is None or advice.works:
+        tried = try_change(changed, left, part(progress, number, len(ways)))
+        advice = advice._replace(then=then, tried=tried, work=advice.work + tried.work)
+        if advice.works:
             break
     return advice
 
@@ -154,10 +154,9 @@ def lever(path: str) -> str:
     return "k_x" if path.startswith("springs.") else path
 
 
-def try_change(slider: Slider, most_steps: int, progress: Progress) -> dict[str, Any]:
-    """Return growth rate and simulation of a changed slider."""
-    seen = simulate_coarsely(slider, predict(slider), most_steps, progress, multiscale="auto")
-    return {"growth": seen.growth, "tried": seen}
+def try_change(slider: Slider, most_steps: int, progress: Progress) -> SimulatedTest:
+    """Return the simulation of a changed slider."""
+    return simulate_coarsely(slider, predict(slider), most_steps, progress, multiscale="auto")
 
 
 def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:

@@ -28,14 +28,15 @@ CHANGES = (
 
 def chain_sections(found: Audit) -> list[Section]:
     """Return the sections on springs in series; none for a single spring."""
-    if found.chain is None:
+    chain, seen = found.chain, found.observation
+    if chain is None:
         return []
-    lines = [*softest(found.chain), *axes(found.slider), *masses(found.chain)]
+    lines = [*softest(chain), *axes(found.slider), *masses(chain)]
+    now = _row("all as they are", found.slider, found.prediction, seen)
+    changed = Table(CHANGES, [now, *map(_change, chain.replacements)])
     return [
-        Section(
-            "Springs in series", lines, Table(HEADINGS, [*map(_describe_part, found.chain.parts)])
-        ),
-        Section("One spring replaced", outcomes(found), Table(CHANGES, _changes(found))),
+        Section("Springs in series", lines, Table(HEADINGS, [*map(_describe_part, chain.parts)])),
+        Section("One spring replaced", outcomes(seen, chain), changed),
     ]
 
 
@@ -90,12 +91,11 @@ def _mass(part: Part, number: int) -> str:
     )
 
 
-def outcomes(found: Audit) -> list[str]:
-    """Return what the replacements change, in sentences."""
-    now, chain = final_motion(found.observation), found.chain
+def outcomes(seen: SimulatedTest, chain: Chain) -> list[str]:
+    """Return what the replacements change of a test from rest, in sentences."""
+    now = final_motion(seen)
     by = "Stiffness, A, ζ and f_y are by theory, friction and motion simulated from rest."
-    tried = [each for each in (chain.replacements if chain else ()) if each.tried]
-    other = [(each, final_motion(each.tried)) for each in tried if each.tried]
+    other = [(each, final_motion(each.tried)) for each in chain.replacements if each.tried]
     differing = [f"{_name(each)}: {then}" for each, then in other if then != now]
     if not other:
         return []
@@ -111,12 +111,6 @@ def _describe_part(part: Part) -> tuple[str, ...]:
     k_x, k_y = (in_words(1.0 / c, "N/m") if c > 0.0 else "rigid" for c in spring.compliances)
     angle = f" at {degrees(spring.angle):.3g} deg" if spring.angle else ""
     return f"{spring.name}{angle}", k_x, k_y, percent(part.along_x), percent(part.along_y)
-
-
-def _changes(found: Audit) -> list[tuple[str, ...]]:
-    chain, seen = found.chain, found.observation
-    rows = [_row("all as they are", found.slider, found.prediction, seen)]
-    return rows + [_change(each) for each in (chain.replacements if chain else ())]
 
 
 def _change(each: Replacement) -> tuple[str, ...]:
