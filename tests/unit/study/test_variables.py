@@ -14,7 +14,7 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
     shape,
 )
-from stiction.study.variables.fast_regime import KINDS
+from stiction.study.variables.fast_regime import KINDS, SwingShapes, by_shape
 from stiction.study.variables.features import features, zigzag
 from stiction.study.variables.measures import MEASURES
 from stiction.study.variables.observed_run import observe_run
@@ -344,6 +344,21 @@ def test_a_study_and_an_analysis_call_a_run_the_same(number):
     )
     run = run_in_study(slider, "1.4 s")
     assert run.regime == st.analysis.classify(st.simulate(slider, "1.4 s")).kind
+
+
+def test_an_even_number_of_cycles_has_the_shape_of_the_middle_two():
+    """As in an analysis: neither of the two alone says what is typical."""
+    shares = np.array([0.70, 0.82])
+    cycles = SwingShapes(np.ones(2), np.ones(2), shares, 2.0)
+    kind = by_shape(cycles, 0.1, (lambda _: np.zeros(2), lambda _: np.zeros(2)))
+    assert kind == shape(float(np.median(shares))) != shape(shares[1])
+
+
+def test_two_swings_die_out_by_the_rule_of_an_analysis():
+    """A second swing of 0.6 of the first, and quiet for long: it has less than two thirds."""
+    swings = SwingShapes(np.array([1.0, 0.6]), np.ones(2), np.full(2, 0.5), 2.0)
+    assert swings.die_out(2.0 + 3.1)
+    assert not swings.die_out(2.0 + 2.9)
 
 
 def test_a_vibrated_rig_has_the_period_of_its_vibration():

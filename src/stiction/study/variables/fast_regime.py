@@ -17,6 +17,7 @@ from stiction.analysis.motion.course import course_of_parts, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.vibration import FastOscillation, is_irregular
+from stiction.analysis.signals.robust import median
 from stiction.arrays import Floats
 from stiction.study.variables.features import Features
 
@@ -36,7 +37,6 @@ FORMERLY = {
     "damped approach": kinds.SETTLING,
     "song": kinds.TRANSVERSE,
 }
-FEWEST_CYCLES = 1  # cycles needed for a kind, as for an analysis of one run
 
 
 class SwingShapes(NamedTuple):
@@ -63,6 +63,10 @@ class SwingShapes(NamedTuple):
     def start(self) -> Floats:
         """Time of the trough before each, s."""
         return np.asarray(self.end - np.cumsum(self.period[::-1])[::-1])
+
+    def die_out(self, until: float) -> bool:
+        """Return whether they die out until a time (s): a transient, not cycles."""
+        return dies_out(self.drop, self.period, until - self.end)
 
     def some(self, which: slice) -> SwingShapes:
         """Return a subset."""
@@ -118,9 +122,9 @@ def kind_of(
 
     `complete` are all complete swings, of which `cycles_among` finds the cycles.
     """
-    if len(cycles.drop) >= FEWEST_CYCLES:
+    if len(cycles.drop):
         return by_shape(cycles, given.own, shares)
-    dying = die_out(complete, given.until)
+    dying = complete.die_out(given.until)
     kind = kinds.SETTLING if dying else by_course(found, given)
     last = (float(complete.drop[-1]), float(complete.period[-1])) if dying else ()
     slides = kind in (kinds.SETTLING, kinds.STEADY) and not given.stops
@@ -129,28 +133,18 @@ def kind_of(
 
 def cycles_among(found: SwingShapes, until: float) -> SwingShapes:
     """Return the swings that are cycles by the rules of `stiction.analysis.find_cycles`."""
-    none = is_over(found.period, until - found.end) or die_out(found, until)
+    none = is_over(found.period, until - found.end) or found.die_out(until)
     return found.some(slice(0, 0) if none else built_up(found.drop))
-
-
-def die_out(cycles: SwingShapes, until: float) -> bool:
-    """Return whether swings die out until a time (s): a transient, not cycles."""
-    drop = cycles.drop
-    # first a cheap necessary condition
-    dying = len(drop) > 0 and bool(drop[-1] < 0.5 * drop.max())
-    return dying and dies_out(drop, cycles.period, until - cycles.end)
 
 
 def by_shape(cycles: SwingShapes, own: float, shares: Shares) -> str:
     """Return the kind of cycles from their shape, size and period, and the rest in them."""
-    count = len(cycles.drop)
-    rise = float(np.sort(cycles.rise_share)[count // 2])
+    rise = median(cycles.rise_share)
     kind = kinds.shape(rise)
     if kinds.couples(kind, float(cycles.period.mean()), own):
         return kinds.TRANSVERSE
     if kind != kinds.STICK_SLIP:  # rest, where there is any, makes it one
-        known = (float(np.median(share(cycles))) for share in shares)
-        kind = kinds.shape(rise, *known)
+        kind = kinds.shape(rise, *(median(share(cycles)) for share in shares))
     irregular = kind == kinds.HARMONIC and is_irregular(cycles.period, cycles.drop)
     return kinds.IRREGULAR if irregular else kind
 
