@@ -12,6 +12,7 @@ from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.errors import Status
+from stiction.result.peak import largest_between
 from stiction.result.table import largest
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
@@ -49,6 +50,20 @@ def cell_force(run: Trajectory) -> Floats:
     cell = cell_axis(run.slider)
     force: Floats = cell.x * run.samples["spring_x"] + cell.y * run.samples["spring_y"]
     return force
+
+
+def largest_coefficient(run: Trajectory) -> float:
+    """Return the largest ratio of the load cell's force to the normal load; NaN without a load.
+
+    Under a constant load it may lie between two samples.
+    """
+    slider, samples = run.slider, run.samples
+    force, load = cell_force(run), samples["normal_load"]
+    if np.ptp(load) == 0.0 < load[0]:
+        cell = cell_axis(slider)
+        rate = cell.x * slider.k_x * samples["v_x"] + cell.y * slider.k_y * samples["v_y"]
+        return largest_between(samples["time"], force, rate).force / float(load[0])
+    return largest(np.divide(force, load, out=np.full_like(force, nan), where=load > 0.0))[1]
 
 
 def cell_symbol(slider: Slider) -> str:
@@ -149,13 +164,11 @@ def outcome(run: Trajectory) -> Outcome:
     moved[moved < ROUNDED * np.abs(places).max()] = 0.0
     rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
-    force, load = abs(cell_force(run)), run.samples["normal_load"]
-    _, peak = largest(np.divide(force, load, out=np.full_like(force, nan), where=load > 0.0))
     return Outcome(
         run.status,
         statistics.stick_count,
         statistics.time_stuck,
-        peak,
+        largest_coefficient(run),
         float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
         0.0 if rests else float(np.fmin.reduce(loading)),
         float(np.median(moved / np.diff(times[ends])) if len(moved) else loading[0]),

@@ -189,7 +189,7 @@ def read_speed(speed: float) -> float:
 
 
 def make_sound(heard: Passage, progress: Callable[[float], None] | None = None) -> Sound:
-    """Return the sound of an passage, or refuse one in which nothing oscillates."""
+    """Return the sound of a passage, or refuse one in which nothing oscillates."""
     description, start, end, chosen, axis = heard
     count = floor((end - start) / chosen * RATE)
     times = start + np.arange(count, dtype=np.float64) * (chosen / RATE)

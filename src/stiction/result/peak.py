@@ -1,4 +1,4 @@
-"""The largest spring force of a run, also where it lies between two samples.
+"""The largest force of a run, also where it lies between two samples.
 
 Samples hold a force and its rate: the cubic through both ends of an interval (Hermite's) has the
 peak between them. At the samples that `stiction.simulate` chooses by itself it was off
@@ -42,10 +42,7 @@ class LargestForce(NamedTuple):
 
 
 def largest_spring_force(samples: Mapping[Any, Any] | ColumnTable, k_x: float) -> LargestForce:
-    """Return the largest force of the spring along x, k_x u_x.
-
-    Each sample is compared with the cubic through its neighbours. Where they differ by so much that
-    a larger force may lie between samples, the largest sample is a lower bound.
+    """Return the largest force of the spring along x, k_x u_x; see `largest_between`.
 
     Examples
     --------
@@ -56,8 +53,16 @@ def largest_spring_force(samples: Mapping[Any, Any] | ColumnTable, k_x: float) -
     >>> [(round(peak.force, 4), peak.shown) for peak in peaks]
     [(1.9918, False), (1.9926, True), (1.9926, True)]
     """
-    time, force = np.asarray(samples["time"]), k_x * np.asarray(samples["u_x"])
-    rate = k_x * np.asarray(samples["v_x"])
+    u_x, v_x = np.asarray(samples["u_x"]), np.asarray(samples["v_x"])
+    return largest_between(np.asarray(samples["time"]), k_x * u_x, k_x * v_x)
+
+
+def largest_between(time: Floats, force: Floats, rate: Floats) -> LargestForce:
+    """Return the largest force, also where it lies between two samples, by its rates (N/s).
+
+    Each sample is compared with the cubic through its neighbours. Where they differ by so much that
+    a larger force may lie between samples, the largest sample is a lower bound.
+    """
     at, most = largest(force)
     if not most > 0.0 or len(time) < 2:
         return LargestForce(float(time[at]), most, at, True)
