@@ -6,7 +6,7 @@ from benchmarks.explore.rigs import first_slip
 from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
-from stiction.analysis.creep.first_slip import first_slip_time
+from stiction.analysis.creep.first_slip import first_loading, first_slip_time
 from stiction.analysis.motion.regime.kinds import (
     BACKWARD,
     STICK_SLIP,
@@ -14,8 +14,9 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
     shape,
 )
+from stiction.result.peak import largest_spring_force
 from stiction.study.variables.fast_regime import KINDS, SwingShapes, by_shape
-from stiction.study.variables.features import features, zigzag
+from stiction.study.variables.features import features, summit, zigzag
 from stiction.study.variables.measures import MEASURES
 from stiction.study.variables.observed_run import observe_run
 
@@ -39,10 +40,10 @@ def value(name, run):
 
 
 def test_the_paper_s_cycle(paper, paper_run):
-    """Against 10 kHz samples of the same solver: a parabola leans where a peak does, by 1e-4."""
+    """Against 10 kHz samples of the same solver."""
     data = paper_run.data
-    peak = float(data["spring_x"].max())
-    assert value("peak_force", paper) == pytest.approx(peak, rel=1e-4)
+    peak = largest_spring_force(paper_run.samples, 1e3).force
+    assert value("peak_force", paper) == pytest.approx(peak, rel=2e-6)
     assert value("peak_velocity", paper) == pytest.approx(float(data["V_X"].max()), rel=5e-3)
     cycles = st.analysis.find_cycles(st.analysis.record_of(paper_run))
     assert value("cycles", paper) == cycles.sizes["cycle"]
@@ -64,12 +65,48 @@ def test_creep_before_the_first_slip(paper, paper_run):
     """It begins between two samples of a study, where the mass moves at the drive's speed."""
     data = paper_run.data
     first = int(np.argmax(data["V_X"].values > 1e-3)) - 1
-    step = float(paper.time[1] - paper.time[0])
+    step = 1e-4  # s, of these samples; a study's are six times as far apart
     assert value("first_slip_time", paper) == pytest.approx(float(data["time"][first]), abs=step)
     assert first_slip_time(paper_run) == float(data["time"][first])
     crept = float(data["X"][first] - data["X"][0])
-    # X' grows on to a few V within a step
-    assert value("creep_distance", paper) == pytest.approx(crept, abs=5 * 1e-3 * step)
+    assert value("creep_distance", paper) == pytest.approx(crept, abs=2 * 1e-3 * step)
+
+
+@pytest.mark.parametrize(
+    ("slider", "duration"),
+    [
+        (PAPER.replace(k_y=2e3, phi="6 deg"), "3 s"),
+        (PAPER.replace(drive=st.ConstantVelocity("20 mm/s")), "0.2 s"),
+        (PAPER.replace(drive=st.ConstantVelocity("-20 mm/s")), "0.2 s"),
+        (NEARLY_ISOTROPIC, "0.4 s"),
+    ],
+)
+def test_creep_is_the_same_with_more_samples(slider, duration):
+    """At the next sample it was 10 to 25 % off: the mass moves as fast as the drive there."""
+    few, many = (run_in_study(slider, duration, sample_rate=rate) for rate in (None, "50 kHz"))
+    crept = value("creep_distance", many)
+    assert value("creep_distance", few) == pytest.approx(crept, rel=2e-3)
+    at = first_loading(slider, few.time, few.elongation, few.drive).slip
+    assert abs(few.positions[at] - few.positions[0] - crept) > 0.1 * crept
+
+
+def test_a_turning_point_lies_between_two_samples():
+    """Of a cubic exactly, of a sine within (omega dt)^4/384, and else at the sample."""
+    t = np.linspace(0.0, 1.0, 33)
+    for sign in (1.0, -1.0):
+        for top in (0.0, 0.011, 0.5, 0.99, 1.0):
+            near = int(np.rint(top * 32))
+            values = sign * (5.0 - (t - top) ** 2 * (3.0 + t))
+            rates = -sign * (2.0 * (t - top) * (3.0 + t) + (t - top) ** 2)
+            found = summit(t, values, rates, near, sign)
+            assert found == pytest.approx((top, 5.0 * sign), rel=1e-12, abs=1e-14)
+        sine = sign * np.sin(2.0 * np.pi * t + 0.5)
+        rate = 2.0 * np.pi * sign * np.cos(2.0 * np.pi * t + 0.5)
+        when, most = summit(t, sine, rate, int(np.argmax(sign * sine)), sign)
+        assert abs(most) == pytest.approx(1.0, abs=(2.0 * np.pi / 32.0) ** 4 / 384.0)
+        assert when == pytest.approx(0.25 - 0.25 / np.pi, abs=1e-4)
+    assert summit(t, t, np.ones(33), 32, 1.0) == summit(t, t, -np.ones(33), 32, 1.0) == (1.0, 1.0)
+    assert summit(t, -t, -np.ones(33), 0, 1.0) == (0.0, 0.0)
 
 
 @pytest.mark.parametrize("law", [PAPER.friction, st.Coulomb(mu_0=0.2)])

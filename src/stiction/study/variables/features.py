@@ -130,7 +130,7 @@ def features(
         if trough == (k % 2 == 0):
             turn_time[k], turn_value[k] = bottom(time, force, rate, i)
         else:
-            turn_time[k], turn_value[k] = vertex(time, force, i)
+            turn_time[k], turn_value[k] = summit(time, force, rate, i, 1.0)
         high = max(high, turn_value[k])
         if turn_time[k] >= time[late]:
             late_low, late_high = min(late_low, turn_value[k]), max(late_high, turn_value[k])
@@ -152,9 +152,31 @@ def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tu
     before, after, step = rate[a], rate[a + 1], time[a + 1] - time[a]
     short = after * step - (values[a + 1] - values[a])
     if not (before < 0.0 < after and short > 0.0):
-        return vertex(time, values, i)
+        return summit(time, values, rate, i, -1.0)
     passed = min(-2.0 * before * short / (after - before) ** 2, step)
     return time[a] + passed, values[a] + 0.5 * before * passed
+
+
+@compiled_with_arrays
+def summit(
+    time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int, sign: float
+) -> tuple[float, float]:
+    """Return time and value of a turning point beside a sample: a peak, or with -1 a trough.
+
+    It is that of the cubic through two samples and their rates (Hermite's), or the sample itself
+    where the rates at both do not show it.
+    """
+    a = min(max(i if sign * rate[i] > 0.0 else i - 1, 0), len(time) - 2)
+    before, after, step = sign * rate[a], sign * rate[a + 1], time[a + 1] - time[a]
+    if not before > 0.0 > after:
+        return time[i], values[i]
+    mean = sign * (values[a + 1] - values[a]) / step
+    # the rate is c s^2 + 2 b s + before, of which one root lies between
+    b, c = 3.0 * mean - 2.0 * before - after, 3.0 * (before + after - 2.0 * mean)
+    root = np.sqrt(b * b - c * before)
+    s = before / (root - b) if b <= 0.0 else -(b + root) / c
+    rise = step * s * (before + s * (b + s * c / 3.0))
+    return time[a] + s * step, values[a] + sign * rise
 
 
 @compiled_with_arrays
