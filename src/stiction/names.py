@@ -114,6 +114,12 @@ def picture(figure: str, *what: Any) -> str:
     return str(shown.picture(getattr(import_module("stiction.plotting"), figure), *what))
 
 
+def own_picture(what: Any) -> str:
+    """Return what an object's own ``plot`` draws as an image in HTML, for a notebook."""
+    shown, door = (import_module(f"stiction.plotting.{name}") for name in ("page.save", "door"))
+    return str(shown.picture(door.plot, what))
+
+
 def session_name(kind: type) -> str:
     """Return a class as one writes it in a session: ``st.laws.LuGre``; others by their name.
 

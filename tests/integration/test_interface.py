@@ -190,7 +190,10 @@ def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
         assert page.startswith("<h4>")
         assert "<table>" in page
         assert "<script" not in page
-    for each in (slider, run):  # a sketch, a small figure
+    assert "<td>1 N</td>" in record._repr_html_()
+    stability = st.stability(slider, over="phi")
+    # a sketch, small figures, and what each object's plot() draws
+    for each in (slider, run, record, st.analyse(run), stability):
         assert 'src="data:image/png;base64,iVBOR' in each._repr_html_()
     assert f"<td>{run.statistics.stick_count}</td>" in run._repr_html_()
     assert "<td>slider.phi</td><td>1 deg</td>" in slider._repr_html_()

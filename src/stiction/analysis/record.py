@@ -15,7 +15,7 @@ from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
-from stiction.names import draw
+from stiction.names import draw, own_picture
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.noise import ORDER, difference_gain, white_noise
 from stiction.recording.origin import Origin
@@ -25,6 +25,7 @@ from stiction.recording.stored import write_stored
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.text.samples import as_numbers, samples_to_si
+from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import (
     FORCE,
     LENGTH,
@@ -35,6 +36,7 @@ from stiction.text.units import (
     Mass,
     PositiveSpeed,
     Stiffness,
+    in_words,
     unit_on,
 )
 from stiction.text.validation import Described, faulty, unknown_name
@@ -427,6 +429,19 @@ class Record(Described):
         numbers = {name: value for name, value in known.items() if value is not None}
         channels = {"time": self.time, **self.channels()}
         return write_stored(path, channels, numbers, self.sensors or {}, self.origin)
+
+    def _repr_html_(self) -> str:
+        stated = {name: getattr(self, name) for name in KNOWN} | {"normal_load": self.stated_load}
+        rows = [
+            (name.replace("_", " "), in_words(value, KNOWN[name]))
+            for name, value in stated.items()
+            if value is not None
+        ]
+        sampled = f"{len(self)} samples over {in_words(self.duration, 's')}: "
+        said = Section("Record", [f"{sampled}{', '.join(self.channels())}."])
+        own = said._replace(table=Table(("stated", ""), rows)) if rows else said
+        read = [] if self.origin is None else self.origin.tables()
+        return as_html([own, *read]) + own_picture(self)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the force with its cycles; see `stiction.plotting.plot_cycles`."""

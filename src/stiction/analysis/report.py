@@ -30,7 +30,7 @@ from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.rotation.findings import GROWING
 from stiction.arrays import TINY, xr
-from stiction.names import draw, warn_renamed
+from stiction.names import draw, own_picture, warn_renamed
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
 
@@ -129,7 +129,7 @@ class Analysis(NamedTuple):
         return as_text(self.tables())
 
     def _repr_html_(self) -> str:
-        return as_html(self.tables())
+        return as_html(self.tables()) + own_picture(self)
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""

@@ -34,7 +34,7 @@ from stiction.inference.rig import Rig, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
-from stiction.names import old_attributes
+from stiction.names import old_attributes, own_picture
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.sections import Section, as_html, as_text
@@ -114,7 +114,7 @@ class Audit(NamedTuple):
         return as_text(self.tables())
 
     def _repr_html_(self) -> str:
-        return as_html(self.tables())
+        return as_html(self.tables()) + own_picture(self)
 
     @property
     def ok(self) -> bool:

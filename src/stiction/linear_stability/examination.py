@@ -23,7 +23,7 @@ from stiction.linear_stability.linear import (
     steady_sliding,
 )
 from stiction.linear_stability.roots import Critical, critical
-from stiction.names import draw, old_attributes
+from stiction.names import draw, old_attributes, own_picture
 from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, Table, as_html, as_text
@@ -65,7 +65,7 @@ class Stability:
         return as_text(self.tables())
 
     def _repr_html_(self) -> str:
-        return as_html(self.tables())
+        return as_html(self.tables()) + own_picture(self)
 
     @property
     def slider(self) -> Slider:

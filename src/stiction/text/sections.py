@@ -7,6 +7,8 @@ from collections.abc import Iterable, Sequence
 from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
+from stiction.names import own_picture
+
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -49,7 +51,8 @@ class Report:
         return as_text(self.tables())
 
     def _repr_html_(self) -> str:
-        return as_html(self.tables())
+        figure = own_picture(self) if hasattr(self, "plot") else ""
+        return as_html(self.tables()) + figure
 
 
 class SectionReport(Report):
