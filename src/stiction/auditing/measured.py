@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -39,7 +39,8 @@ DESCRIBED = (
 )
 REPEAT = ": write the fitted values into the description, and audit again"
 BOTH_HOLD = (
-    "Both hold, as the loading curve is compared with two sets of simulations: those with the "
+    "That the rig explains the record, and that rotation is not claimed, both hold, as the loading "
+    "curve is compared with two sets of simulations: those with the "
     "fitted values have one like it, which is enough for an explanation; of those with "
     "the parameters that its features suggest few have, and a claim of rotation needs both."
 )
@@ -215,7 +216,29 @@ def sections(found: RecordComparison) -> list[Section]:
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]
-    return [*parts, *(found.odds.tables() if found.odds else ()), *found.fit.tables()]
+    parts += [*(found.odds.tables() if found.odds else ()), *found.fit.tables()]
+    shared = found.fit.explanation, found.fit.narrow_priors
+    return say_once(parts, [words.strip() for words in shared if words])
+
+
+def say_once(parts: Sequence[Section], shared: Sequence[str]) -> list[Section]:
+    """Return sections in which shared sentences stand only where they are said first.
+
+    >>> parts = [Section("A", ["No. A pause."]), Section("B", ["Why? A pause."])]
+    >>> [part.sentences for part in say_once(parts, ["A pause."])]
+    [['No. A pause.'], ['Why?']]
+    """
+    told, found = set[str](), []
+    for part in parts:
+        sentences = []
+        for sentence in part.sentences:
+            again = [words for words in shared if words in sentence and words in told]
+            told |= {words for words in shared if words in sentence}
+            for words in again:
+                sentence = " ".join(sentence.replace(words, "").split())
+            sentences += [sentence] * bool(sentence)
+        found.append(part._replace(sentences=sentences))
+    return found
 
 
 def rotates(found: RecordComparison) -> bool:
@@ -310,8 +333,7 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
         f"measured one, by their features; below {percent(RARE)} it is unlike them.",
     ]
     if found.odds is not None:
-        claim, *_ = found.odds.sentences()  # its limits stand in a section of their own
-        lines += [claim, *found.odds.objections()]
+        lines.append("The odds of mechanisms, which have a section of their own.")
         if found.like and is_unusual_rotation(found.odds):
             lines.append(BOTH_HOLD)
     return lines

@@ -96,6 +96,8 @@ class Budget:
         How well to align.
     others : tuple of str
         The other uncertain parameters.
+    logarithmic : bool
+        Whether the prior of the misalignment is uniform in its logarithm, as a figure then is.
     """
 
     angles: Floats
@@ -105,6 +107,7 @@ class Budget:
     aligned: Reading
     alignment: Alignment
     others: tuple[str, ...]
+    logarithmic: bool = False
 
     @property
     def certain(self) -> bool:
@@ -152,7 +155,9 @@ def budget(rig: Rig, progress: Progress) -> Budget:
     progress(1.0)
     others, turn = tuple(name for name in names if name != "phi"), rig.slider.turn
     at_ends, aligned = found[count : count + len(ends)], Reading(*found[-1])
-    return Budget(angles - turn, found[:count], ends - turn, at_ends, aligned, limit, others)
+    angles, ends = angles - turn, ends - turn
+    even = getattr(rig.priors.get("phi"), "scale", "") == "log" and bool((ends > 0.0).all())
+    return Budget(angles, found[:count], ends, at_ends, aligned, limit, others, even)
 
 
 def draw_values(rig: Rig) -> dict[str, Floats]:

@@ -1,5 +1,6 @@
 """The tolerance budget of a rig with an uncertain misalignment."""
 
+from dataclasses import replace
 from math import degrees, nan, radians
 
 import numpy as np
@@ -205,3 +206,16 @@ def test_the_interval_holds_95_percent_of_other_tests():
 def test_the_page_states_what_is_uncertain_as_the_description_does(found):
     assert st.Rig.from_toml(found.to_toml()) == st.Rig.from_toml(TEXT)
     assert "uncertainty = &#34;1 deg&#34;" in page(found, "it")
+
+
+def test_the_axis_of_angles_is_logarithmic_where_the_prior_is(found):
+    """The posteriors' figures had such axes, this one had not."""
+    for even, scale in ((False, "linear"), (True, "log")):
+        panels = plot_tolerance(replace(found.budget, logarithmic=even)).ravel()
+        assert {ax.get_xscale() for ax in panels} == {scale}
+    prior = 'phi = {low = "1 deg", high = "3 deg", scale = "log"}'
+    rig = st.Rig.from_toml(TEXT.replace('phi = "2 +- 1 deg"', prior))
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(module, "DRAWS", 2)
+        patch.setattr(module, "read_all", lambda rigs, _: np.full((len(rigs), 4), 0.5))
+        assert budget(rig, lambda _: None).logarithmic

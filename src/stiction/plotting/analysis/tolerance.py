@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from numpy.typing import NDArray
 
 from stiction.plotting.page.canvas import grid_of
-from stiction.plotting.page.parameter import in_unit
+from stiction.plotting.page.parameter import in_unit, use_scale
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
 from stiction.text.quantity_text import percent
 
@@ -55,6 +55,7 @@ def plot_tolerance(budget: Budget, axes: Sequence[Axes] | None = None) -> NDArra
             )  # fmt: skip
             ax.set_ylabel(LABELS[i] + ("" if unit == "1" else f" ({unit})"))
         draw_limit(panels[0], budget)
+        use_scale(panels[0], "x", budget.logarithmic)  # the panels share it
         for ax in panels[2:]:
             ax.set_xlabel(r"misalignment $\varphi$ (deg)")
     return np.array(panels, dtype=object)

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
+from stiction.plotting.page.parameter import use_scale
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
 from stiction.text.paths import short_names
 from stiction.text.quantity_text import metric_prefix
@@ -29,7 +29,6 @@ SHARES = (0.95, 0.5)  # of the posterior inside each contour
 SMOOTH = 1.2  # bins: width of the smoothing of a two-dimensional histogram
 OUTER = 0.002  # share of the prior beyond each end of an axis
 PLAIN = {"deg": " (deg)", "1": ""}  # units without a metric prefix, as on axes
-SHORT = 5.0  # ratio of the ends of a logarithmic axis, below which its ticks are even
 SHARPEST = 6.0  # times as tall as its prior, a posterior is drawn; a sharper one, lower
 SHOWN = 5  # cycles
 RANK_BINS = 10  # of a histogram of ranks
@@ -103,27 +102,6 @@ def axis_of(fit: Fit, name: str) -> ParameterAxis:
         return ParameterAxis(1.0, f"{name}{PLAIN[unit]}", log)
     factor, prefix = metric_prefix(np.quantile(np.abs(values.values), 0.9))
     return ParameterAxis(1.0 / factor, f"{name} ({prefix}{unit})", log)
-
-
-class FewOnLog(LogLocator):
-    """Ticks of a logarithmic axis; even ones on a short axis, which else has hardly any."""
-
-    def tick_values(self, vmin: float, vmax: float) -> Any:
-        """Return the places of ticks between two values."""
-        if vmax < SHORT * vmin:
-            return MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]).tick_values(vmin, vmax)
-        return super().tick_values(vmin, vmax)
-
-
-def use_scale(ax: Axes, way: Literal["x", "y"], log: bool) -> None:
-    """Give an axis a logarithmic scale with plain numbers, if it has one."""
-    if not log:
-        return
-    ax.set(**{f"{way}scale": "log"})
-    axis = ax.xaxis if way == "x" else ax.yaxis
-    axis.set_major_locator(FewOnLog(subs=(1.0, 2.0, 5.0)))
-    axis.set_minor_locator(NullLocator())
-    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.3g}"))
 
 
 def draw_parameter(

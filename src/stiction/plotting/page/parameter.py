@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from math import degrees
-from typing import NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.axis import Axis
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import (
+    FuncFormatter,
+    LogLocator,
+    MaxNLocator,
+    NullFormatter,
+    NullLocator,
+)
 from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats
@@ -18,6 +25,7 @@ SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: the units suit the values
 
 SMALL = 1e-3  # below it with a power of ten
+SHORT = 5.0  # ratio of the ends of a logarithmic axis, below which its ticks are even
 FEW_DECADES = 30.0  # the ratio of the ends of an axis
 
 
@@ -75,6 +83,27 @@ def in_unit(values: ArrayLike, unit: str) -> tuple[float, str]:
         return 1.0, unit or "1"
     factor, prefix = metric_prefix(values)
     return factor, prefix + unit.replace("*", " ")
+
+
+class FewOnLog(LogLocator):
+    """Ticks of a logarithmic axis; even ones on a short axis, which else has hardly any."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """Return the places of ticks between two values."""
+        if vmax < SHORT * vmin:
+            return MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]).tick_values(vmin, vmax)
+        return super().tick_values(vmin, vmax)
+
+
+def use_scale(ax: Axes, way: Literal["x", "y"], log: bool) -> None:
+    """Give an axis a logarithmic scale with plain numbers, if it has one."""
+    if not log:
+        return
+    ax.set(**{f"{way}scale": "log"})
+    axis = ax.xaxis if way == "x" else ax.yaxis
+    axis.set_major_locator(FewOnLog(subs=(1.0, 2.0, 5.0)))
+    axis.set_minor_locator(NullLocator())
+    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:.3g}"))
 
 
 class Scale(NamedTuple):
