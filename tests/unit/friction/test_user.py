@@ -329,6 +329,26 @@ def test_friction_that_jumps_where_it_falls_steeply_is_refused(slider):
         slider.replace(friction=Vanishing(1e-2, 1e-3))
 
 
+class Rooted(NamedTuple):
+    """Friction that falls as a power of the speed."""
+
+    power: float
+
+    def coefficient(law, v):
+        return 0.3 - 0.01 * v**law.power
+
+    def slope(law, v):
+        return -0.01 * law.power * max(v, 1e-30) ** (law.power - 1.0)
+
+
+@pytest.mark.parametrize("power", [0.1, 0.5, 0.75])
+def test_friction_with_an_infinite_slope_at_rest_is_refused(slider, power):
+    """A run with it took 50 s to reach max_steps."""
+    with pytest.raises(st.DescriptionError, match="changes infinitely fast as slip vanishes"):
+        slider.replace(friction=Rooted(power))
+    assert slider.replace(friction=Rooted(1.0))
+
+
 @pytest.mark.parametrize("of", [lambda law: law, lambda law: st.laws.Anisotropic(law, ratio=1.5)])
 def test_a_law_made_in_python_is_checked_as_one_from_a_file(slider, of):
     """A list ended runs with "unhashable type"; with the slope's sign turned they were wrong."""

@@ -10,7 +10,7 @@ from stiction.errors import ResultError
 from stiction.inference import fit as fits
 from stiction.inference.mechanism import comparison
 from stiction.inference.next_test import design as designs
-from stiction.inference.simulated.library import library_folder
+from stiction.inference.simulated.library import BLOCK, library_folder, simulate_all
 from stiction.storage import arrays
 from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
 
@@ -77,3 +77,15 @@ def test_other_folders_are_written_or_refused(tmp_path, unwritable, capsys):
 def test_the_cache_is_in_the_users_cache():
     assert cache_folder().name == "libraries"
     assert "stiction" in cache_folder().parts
+
+
+def test_progress_is_told_within_the_first_block(monkeypatch):
+    """A design said nothing for its first 35 s."""
+    row = np.zeros(2), np.zeros(3)
+    monkeypatch.setattr("stiction.inference.simulated.library.simulate", lambda *_: row)
+    told = []
+    scores, _ = simulate_all(None, 40, None, seed=0, progress=told.append)
+    assert scores.shape == (40, 2)
+    assert told[0] == 1 / (2 * BLOCK)
+    assert told == sorted(told)
+    assert told[-1] == 1.0

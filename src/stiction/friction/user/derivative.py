@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from math import inf
 from typing import NamedTuple
 
 EPS = 2.2e-16
 HALVINGS = 60  # of an interval: down to two floats that are neighbours
+NEAR_REST = (1e-12, 1e-13, 1e-14, 1e-15)  # m/s, slower than a law can be resolved
+# shares of a change that a tenth of the speed leaves: 0.1 if proportional to it, 1 of a step
+STEEP, STEP = 0.15, 0.97
 REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
 
 
@@ -32,6 +36,21 @@ def _difference(function: Callable[[float], float], v: float, h: float) -> float
     if v == 0.0:
         return (4.0 * function(h) - 3.0 * function(0.0) - function(2.0 * h)) / (2.0 * h)
     return (function(v + h) - function(v - h)) / ((v + h) - (v - h))
+
+
+def is_steep_at_rest(function: Callable[[float], float]) -> bool:
+    """Return whether a function changes infinitely fast as its argument vanishes, as a root does.
+
+    Its change from 0 then falls by less than tenfold from one decade to the next, and still falls:
+    a step at 0 is not a slope.
+
+    >>> is_steep_at_rest(lambda v: 0.3 - v**0.5), is_steep_at_rest(lambda v: 0.3 - 1e6 * v)
+    (True, False)
+    """
+    changes = [abs(function(v) - function(0.0)) for v in NEAR_REST]
+    if not changes[-1] > 64.0 * EPS * abs(function(0.0)):
+        return False
+    return all(STEEP * a < b < STEP * a for a, b in pairwise(changes))
 
 
 class Jump(NamedTuple):

@@ -19,7 +19,7 @@ from typing import Any
 
 from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.law import has_state
-from stiction.friction.user.derivative import derivative, jump
+from stiction.friction.user.derivative import derivative, is_steep_at_rest, jump
 from stiction.friction.user.source import member
 from stiction.text.validation import unknown_name
 
@@ -228,6 +228,12 @@ def _wrong(law: Any) -> tuple[str, str] | None:
             )
             return f"slope(law, {v:g})", what
     coefficient, slope = partial(_value, law.coefficient), partial(_value, law.slope)
+    if is_steep_at_rest(coefficient):
+        what = (
+            "changes infinitely fast as slip vanishes, as a root does, which no step can follow; "
+            "let it be a straight line below a slow speed, such as 1 um/s"
+        )
+        return "coefficient(law, 0)", what
     largest = coefficient(0.0)
     for low, high in pairwise(DENSE):
         largest = max(coefficient(high), largest)

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from math import ceil
 from pathlib import Path
+from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
@@ -69,23 +69,48 @@ def simulate_all(
     )
     missing = [each for each in blocks if each not in done]
 
-    work = partial(simulate_block, plan, folder, seed)
-    for ready, (block, rows) in enumerate(Cores().results(work, missing), 1):
+    ready, lock = dict.fromkeys(missing, 0), Lock()
+
+    def report(block: int, rows: int) -> None:
+        """Tell how much is simulated, also while the first blocks are: they take long."""
+        with lock:
+            ready[block] = rows
+            progress(sum(ready.values()) / (BLOCK * len(missing)))
+
+    work = Simulate(plan, folder, seed, report)
+    for block, rows in Cores().results(work.block, missing):
         done[block] = rows
-        progress(ready / len(missing))
+        report(block, BLOCK)
     scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
     return scores, found
 
 
-def simulate_block(
-    plan: Plan, folder: Path | None, seed: int, block: int, _: Callable[[], bool]
-) -> tuple[int, tuple[Floats, Floats]]:
-    """Simulate a block, keep it in the folder, and return its number, scores and features."""
-    rows = [simulate(plan, i, seed) for i in range(block * BLOCK, (block + 1) * BLOCK)]
-    found = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
-    if folder is not None:
-        write_block(folder, block, *found)
-    return block, found
+def tell_nobody(block: int, rows: int) -> None:
+    """Tell nobody how many rows of a block are ready: another process has no way to."""
+
+
+class Simulate(NamedTuple):
+    """The work of simulating a block, which another process does without a report of its rows."""
+
+    plan: Plan
+    folder: Path | None
+    seed: int
+    report: Callable[[int, int], None] = tell_nobody
+
+    def block(self, block: int, _: Callable[[], bool]) -> tuple[int, tuple[Floats, Floats]]:
+        """Simulate a block, keep it in the folder, and return its number, scores and features."""
+        rows = []
+        for i in range(block * BLOCK, (block + 1) * BLOCK):
+            rows.append(simulate(self.plan, i, self.seed))
+            self.report(block, len(rows))
+        found = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
+        if self.folder is not None:
+            write_block(self.folder, block, *found)
+        return block, found
+
+    def __reduce__(self) -> tuple[type[Simulate], tuple[Plan, Path | None, int]]:
+        """Pickle without the report."""
+        return Simulate, (self.plan, self.folder, self.seed)
 
 
 def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
