@@ -29,6 +29,7 @@ from stiction.text.units import in_words
 
 ALLOWED = 0.02  # error of the static coefficient
 DRAWS = 64  # of the priors, a power of 2 for Sobol's sequence
+ENOUGH = 39  # values, whose smallest and largest hold (n - 1)/(n + 1) = 95 % of others in the mean
 MOST_ROUNDS = 100  # of them, until so many are taken by the description
 MOST_STEPS = 400_000  # of each test
 SCAN = 14  # misalignments at which the error is looked at, in a geometric series
@@ -115,13 +116,23 @@ class Budget:
         return len(self.ends) == 1
 
     @property
+    def counts(self) -> list[int]:
+        """How many of the tests have each reading, (4,)."""
+        return [int(each) for each in np.isfinite(self.drawn).sum(axis=0)]
+
+    @property
     def intervals(self) -> Floats:
-        """95 % intervals of the readings, (2, 4); NaN where no test has one."""
+        """95 % intervals of the readings of the tests that have one, (2, 4).
+
+        Of fewer than 39 they are from the smallest to the largest, which hold less; NaN of none.
+        """
         found = np.full((2, len(Reading._fields)), nan)
         for i, column in enumerate(self.drawn.T):
             values = column[np.isfinite(column)]
-            if len(values):
+            if len(values) >= ENOUGH:
                 found[:, i] = interval_95(values)
+            elif len(values):
+                found[:, i] = values.min(), values.max()
         return found
 
 
@@ -286,6 +297,16 @@ def section(found: Budget) -> Section:
             f"{start}, there only: {', '.join(found.others)}. In the other columns they "
             "are in the middle of their priors."
         )
+    if min(found.counts) < len(found.drawn):
+        lines.append(
+            "Some tests do not show every quantity, as where nothing slips: the last column is of "
+            "those that do, with their number in brackets."
+        )
+    if any(0 < count < ENOUGH for count in found.counts):
+        lines.append(
+            f"Of fewer than {ENOUGH} it has the smallest and the largest, which hold less than "
+            "95 % of others."
+        )
     unread = int(sum(isnan(each) for each in found.drawn[:, Reading._fields.index("static")]))
     if unread:
         lines.append(f"{unread} of the tests could not be simulated to their end.")
@@ -325,6 +346,14 @@ def limit(found: Alignment) -> str:
     return f"{said} on average; single tests are off by more from {first:g} deg on."
 
 
+def _interval(found: Budget, at: int, unit: str) -> str:
+    """Return the interval of a reading in words, and how many tests have it where not all do."""
+    count, total = found.counts[at], len(found.drawn)
+    low, high = (in_words(end, unit) for end in found.intervals[:, at])
+    said = low if count < 2 else f"{low} to {high}"
+    return said if count in (0, total) else f"{said} ({count} of {total})"
+
+
 def round_down(value: float) -> float:
     """Return a positive value, its third digit and all after it cut off.
 
@@ -342,7 +371,6 @@ def table(found: Budget) -> Table:
     ends = tuple(f"at {in_words(end, 'rad')}" for end in found.ends)
     rows = []
     for i, (label, unit) in enumerate(ROWS):
-        low, high = (in_words(end, unit) for end in found.intervals[:, i])
         values = (in_words(each, unit) for each in (found.aligned[i], *found.at_ends[:, i]))
-        rows.append((label, *values, f"{low} to {high}"))
+        rows.append((label, *values, _interval(found, i, unit)))
     return Table(("quantity", "aligned", *ends, "95 %"), rows)

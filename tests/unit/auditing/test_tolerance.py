@@ -219,3 +219,26 @@ def test_the_axis_of_angles_is_logarithmic_where_the_prior_is(found):
         patch.setattr(module, "DRAWS", 2)
         patch.setattr(module, "read_all", lambda rigs, _: np.full((len(rigs), 4), 0.5))
         assert budget(rig, lambda _: None).logarithmic
+
+
+def test_what_few_tests_show_has_their_number_and_no_95_percent():
+    """Creep of 1 test in 64 was "84.61 µm to 84.61 µm", said to hold 95 %."""
+    drawn = np.repeat((np.arange(64) + 0.5)[:, None], 4, axis=1)
+    drawn[1:, 1], drawn[38:, 2], drawn[:, 3] = nan, nan, nan
+    made = Budget(drawn[:, 0], drawn, drawn[:3, 0], drawn[:3], Reading(*drawn[0]),
+                  Alignment(nan, 0.1, 0.0), ("k_x",))  # fmt: skip
+    assert made.counts == [64, 1, 38, 0]
+    assert made.intervals[:, 2].tolist() == [0.5, 37.5]
+    said = module.section(made)
+    assert [row[-1] for row in said.table.rows] == [
+        "1.442 to 62.56",
+        "0.5 (1 of 64)",
+        "500 mm to 37.5 m (38 of 64)",
+        "none",
+    ]
+    text = " ".join(said.sentences)
+    assert "the last column is of those that do, with their number in brackets" in text
+    assert "Of fewer than 39 it has the smallest and the largest, which hold less than 95 %" in text
+    drawn[:] = drawn[:, :1]
+    assert "Of fewer" not in " ".join(module.section(made).sentences)
+    assert "brackets" not in " ".join(module.section(made).sentences)
