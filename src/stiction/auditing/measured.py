@@ -12,6 +12,7 @@ import numpy as np
 from stiction.analysis.record import Record, apparatus, stiffness_of_cell
 from stiction.analysis.report import analyse
 from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
+from stiction.arrays import Floats
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
@@ -56,6 +57,7 @@ HELD = (
 # relative: a value that priors change by more is not sure; by more of the stiffness along a cell's
 # axis, the spring across loads it
 SURE_OF, BY_ACROSS = 0.02, 0.1
+APART = 0.03  # relative: so far from the median simulation, and beyond all, a value is worth a word
 WARNINGS, GROUNDS = "Warnings about the record", "What that rests on"
 CHANGES = "What would change it"
 NAMES = {"force_across": "force across the drive", "position": "displacement of the mass"}
@@ -339,6 +341,40 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
     return lines
 
 
+def contradictions(found: Predictive | None) -> Iterator[str]:
+    """Yield how much faster or slower a force rises than any simulated one, and slips last.
+
+    The simulations have the fitted values, which come as near to the record as the priors allow:
+    of a stiffness or mass that is stated as certain and is wrong, they hide a part, at least so
+    much of the factor shows.
+    """
+    if found is None:
+        return
+    farther = "times as stated, or farther off: the other fitted values hide a part of it"
+    rate = _beyond(float(found.measured.rate), found.simulated.rate)
+    if rate is not None:
+        yield (
+            f"No simulation with the fitted values rises as {'fast' if rate > 1.0 else 'slowly'} "
+            "as the record: stiffness times drive velocity, or the gain of the load cell, may be "
+            f"{rate:.2g} {farther}. So may it seem where friction creeps as no simulation does."
+        )
+    lasts = _beyond(found.slip, found.slips)
+    if lasts is not None:
+        other = " So may it seem behind a filter that no sensor states." if lasts > 1.0 else ""
+        both = " That stiffness changes it too." if rate is not None else ""
+        yield (
+            f"The slips last {lasts:.2g} times as long as the simulated ones: mass over stiffness "
+            f"may be {lasts * lasts:.2g} {farther}.{both}{other}"
+        )
+
+
+def _beyond(value: float, simulated: Floats) -> float | None:
+    """Return a value over the median of simulated ones, where it lies well beyond all of them."""
+    ratio = value / float(np.median(simulated))
+    inside = simulated.min() <= value <= simulated.max()
+    return None if inside or abs(ratio - 1.0) < APART else ratio
+
+
 def _length(found: RecordComparison, conditions: Conditions) -> float:
     """Return the mean length of the cycles in a record, s; that simulated is rounded."""
     if found.seen is None:
@@ -386,6 +422,7 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
             "force, and the stated stiffness, mass, load and velocity (stiction analyse); at the "
             f"law of friction; and whether the priors are too narrow. {fit.narrow_priors}".rstrip()
         )
+        lines += contradictions(found.predictive)
     if found.absent:
         listed = " and ".join(NAMES.get(name, name) for name in found.absent)
         lines.append(f"Measuring the {listed} too would tell more of the misalignment.")

@@ -58,12 +58,18 @@ class Predictive(NamedTuple):
         than that of the record does, in its force, its bend or its rate.
     example : Synthetic
         The simulation with the curve nearest to the mean one.
+    slip : float
+        Mean time from peak to trough in the record, s.
+    slips : ndarray
+        (n,), of each simulation.
     """
 
     measured: Curve
     simulated: Curve
     larger: float
     example: Synthetic
+    slip: float
+    slips: Floats
 
     @property
     def bands(self) -> tuple[Floats, Floats]:
@@ -79,6 +85,11 @@ def loading_curve(step: float, force: Floats, cycles: Cycles) -> Curve:
     each = [np.interp(low + SHARES * (high - low), index, force) for low, high in pairs]
     length = step * float(np.mean([high - low for low, high in pairs]))
     return Curve(length * SHARES, np.mean(each, axis=0))
+
+
+def slip_time(step: float, cycles: Cycles) -> float:
+    """Return the mean time from peak to trough of samples `step` apart, s."""
+    return step * float(np.mean(cycles.after - cycles.peak))
 
 
 def predict(
@@ -103,7 +114,9 @@ def predict(
         np.concatenate([simulated.force, simulated.bend, simulated.rate[:, None]], axis=1),
     )
     larger = (1.0 + float((others >= own).sum())) / (1.0 + len(others))
-    return Predictive(measured, simulated, larger, made[int(np.argmin(others))])
+    slips = np.array([slip_time(step, each.cycles) for each in made])
+    example = made[int(np.argmin(others))]
+    return Predictive(measured, simulated, larger, example, slip_time(step, seen.cycles), slips)
 
 
 def simulate_one(

@@ -15,6 +15,7 @@ from stiction.auditing.measured import (
     WITHDRAWN,
     alternatives,
     compare,
+    contradictions,
     sections,
     verdict,
     with_description,
@@ -26,7 +27,7 @@ from stiction.inference.cycles import slip_cycles
 from stiction.inference.mechanism.odds import UNDECIDED
 from stiction.inference.mechanism.rest import Rest
 from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION, STATIC
-from stiction.inference.predictive import SHARES, loading_curve
+from stiction.inference.predictive import SHARES, Curve, Predictive, loading_curve
 from stiction.plotting import plot_predictive, plot_ranks
 
 
@@ -201,6 +202,39 @@ def test_what_looks_unlike_the_library_is_no_ground_for_a_verdict(found):
     assert seen.like
     assert not far.like
     assert not replace(seen, predictive=None).like
+
+
+def test_a_force_that_rises_or_falls_as_no_simulation_does_names_stiffness_and_mass():
+    """A stiffness or mass stated as certain and wrong by less than 2 was "No verdict" only."""
+    scatter = np.linspace(0.99, 1.01, 60)
+    made = Curve(SHARES * np.ones((60, 1)), scatter[:, None] * SHARES)
+
+    def said(rate, slip):
+        own = Curve(SHARES, rate * SHARES)
+        return [*contradictions(Predictive(own, made, 0.02, None, slip, 0.02 * scatter))]
+
+    assert said(1.005, 0.0199) == []
+    assert said(1.02, 0.0196) == []  # beyond all, but not worth a word
+    (stiffness,) = said(0.75, 0.02)
+    assert stiffness.startswith("No simulation with the fitted values rises as slowly as the")
+    assert "may be 0.75 times as stated, or farther off" in stiffness
+    assert "rises as fast as" in said(1.3, 0.02)[0]
+    (mass,) = said(1.0, 0.016)
+    assert mass.startswith("The slips last 0.8 times as long as the simulated ones: mass over stif")
+    assert "may be 0.64 times as stated" in mass
+    assert "filter" not in mass
+    assert "filter" in said(1.0, 0.024)[0]
+    assert "That stiffness changes it too." in said(0.75, 0.024)[1]
+    assert [*contradictions(None)] == []
+
+
+def test_a_wrong_stiffness_stands_below_no_verdict(found):
+    seen = found.measured
+    own = seen.predictive.measured
+    slow = seen.predictive._replace(measured=own._replace(force=0.75 * own.force), larger=0.01)
+    (change,) = (x for x in sections(replace(seen, predictive=slow)) if x.title == CHANGES)
+    assert "rises as slowly as the record" in str(change)
+    assert "rises as" not in str(sections(seen))
 
 
 def test_the_loading_curve_of_a_sawtooth_is_straight():
