@@ -38,8 +38,9 @@ SWINGS = 0.08
 DRAWN_OUT = 0.4  # of a fall: two thirds of what half a cosine takes from 90 % to 10 %
 REACH = 3.0  # standard deviations of noise: a force that is nearer to a peak may be on it
 RESTED = 1.1  # times two falls: rest makes a period longer; less may be another asymmetry
-PARTS = 200  # of a record, for the speed of a drive that may turn
+PARTS = 200, 66, 25  # of a record, for the speed of a drive that may turn, or rest within noise
 TO_AND_FRO = 0.8  # of its reach: a drive that comes less far on the whole turns
+HELD = 0.01  # of a drive's largest speed: in parts that are slower it rests
 NOISE = 20.0  # standard deviations, by which means of the displacement do not differ
 FEWEST_PER_FALL = 6  # samples: the duration of a fall, or a slope, is not known by fewer
 ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
@@ -278,9 +279,12 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
     way = line(record.time, record.drive_position)
     found, stated = abs(way.slope), record.drive_velocity or nan
     how = "slope of the drive's displacement"
-    speeds, net, reach = _speeds_of_parts(record.time, record.drive_position)
-    if min(found * record.duration, net) < TO_AND_FRO * reach:
-        found, how = float(np.median(speeds)), "median speed of its displacement, to and fro"
+    divided = [_speeds_of_parts(record.time, record.drive_position, most) for most in PARTS]
+    speeds, net, reach, rests = next((each for each in divided if each[-1]), divided[0])
+    turns = net < TO_AND_FRO * reach
+    if rests or turns or found * record.duration < TO_AND_FRO * reach:
+        found = float(np.median(speeds))
+        how = f"median speed of its displacement{', to and fro' if turns else ' in motion'}"
         error = float(speeds.std()) / len(speeds) ** 0.5
     else:
         left = way.deviations(record.time, record.drive_position)
@@ -288,13 +292,16 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
     return StatedQuantity("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
 
 
-def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float, float]:
-    """Return the speed in equal parts of a record (m/s), and how far they go (m).
+def _speeds_of_parts(
+    time: Floats, position: Floats, most: int
+) -> tuple[Floats, float, float, bool]:
+    """Return the speed in so many equal parts of a record (m/s), and how far they go (m).
 
     That is from the first to the last, and in all, beyond noise. Parts in which the drive turns are
-    the fewest: the median speed is that between the turns.
+    the fewest: the median speed is that between the turns. Parts in which it rests, as in a hold,
+    are left out; the last value is whether there are any.
     """
-    parts = min(PARTS, len(time) // FEWEST_PER_FALL)
+    parts = min(most, len(time) // FEWEST_PER_FALL)
     times, positions = (np.array_split(each, parts) for each in (time, position))
     slopes, middles, left = [], [], []
     for t, x in zip(times, positions, strict=True):
@@ -305,7 +312,12 @@ def _speeds_of_parts(time: Floats, position: Floats) -> tuple[Floats, float, flo
     rest = np.concatenate(left)
     noise = float(rest.std()) * (correlation_time(rest) * parts / len(rest)) ** 0.5
     reach = float(np.ptp(middles)) - NOISE * noise
-    return np.abs(slopes), abs(middles[-1] - middles[0]), reach
+    speeds, net = np.abs(slopes), abs(middles[-1] - middles[0])
+    still = NOISE * noise * parts / float(time[-1] - time[0])  # six errors of a slope
+    moves = speeds > max(still, HELD * float(speeds.max()))
+    if moves.all() or not moves.any() or np.median(speeds[moves]) < SURE * still:
+        return speeds, net, reach, False
+    return speeds[moves], net, reach, True
 
 
 def _normal_load(record: Record) -> StatedQuantity | None:

@@ -160,6 +160,20 @@ def test_the_speed_of_a_drive_that_turns_is_that_between_its_turns(strokes):
     assert "contradicts" not in said
 
 
+@pytest.mark.parametrize("noise", [1e-9, 1e-6, 1e-5])
+def test_the_speed_of_a_drive_that_rests_in_holds_is_that_of_its_motion(noise):
+    """Half of its parts stood still: it was "0.00053 times what is stated", and "to and fro"."""
+    lasts = np.ptp(TIME)
+    for holds in ([(0.2, 0.8)], [(0.3, 0.4), (0.6, 0.7)], [(0.0, 0.3)]):
+        rests = sum(np.clip((TIME - TIME[0]) / lasts, *hold) - hold[0] for hold in holds)
+        there = VELOCITY * ((TIME - TIME[0]) - lasts * rests)
+        there += noise * np.random.default_rng(2).standard_normal(len(TIME))
+        its, said = compare(sawtooth(), drive_velocity=VELOCITY, drive_position=there)
+        assert its["drive velocity"].found == pytest.approx(VELOCITY, rel=0.02)
+        assert its["drive velocity"].how == "median speed of its displacement in motion"
+        assert "contradicts drive velocity" not in said
+
+
 def drive_velocities(turns):
     """Of 60 drives at 1 m/s with correlated noise: off by how much, and by how many errors."""
     found = []
