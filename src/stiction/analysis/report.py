@@ -213,8 +213,8 @@ def _with_parts(analysis: Analysis) -> Analysis:
 def _agreeing(analysis: Analysis) -> Analysis:
     """Return an analysis without an angle of friction that turns where it is seen to grow."""
     shown = analysis.parts["rotation"]
-    if analysis.misalignment is None or shown is None or shown.kind != GROWING:
-        return analysis
+    if shown is None or shown.kind != GROWING:
+        return analysis  # else a bound of the angle, too, supposes what is not so
     why = (
         "not determined: Eq. (7) supposes that friction turns, and the force across shows that it "
         "grows (see Rotation of the force)"

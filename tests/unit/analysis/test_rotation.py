@@ -1,12 +1,14 @@
 """Whether the friction force turns or grows, of paths whose truth is known."""
 
 from itertools import product
+from typing import Any, NamedTuple
 
 import numpy as np
 import pytest
 
 import stiction as st
 from stiction.analysis.parts import rotation
+from stiction.analysis.report import _agreeing
 from stiction.analysis.rotation.findings import BOTH, GROWING, TURNING, UNDETERMINED, rotation_of
 from stiction.arrays import xr
 from stiction.errors import ResultError
@@ -179,3 +181,22 @@ def test_the_report_of_one_loading_leaves_out_a_drift_that_it_cannot_show():
     said = " ".join(rotation.section(analysis).sentences)
     assert "This is of one loading" in said
     assert "a drift of the zero beyond a stated one" in said
+
+
+class FoundAngle(NamedTuple):
+    """What is known of an angle beside a rotation."""
+
+    parts: dict[str, Any]
+    missing: dict[str, str]
+    misalignment: Any = None
+
+
+@pytest.mark.parametrize("angle", [None, 0.02])
+def test_a_force_that_grows_implies_no_angle_nor_a_bound_of_it(angle):
+    """Beside "It grows" stood "it is below 0.41 deg", of a rock at 1 deg."""
+    bound = {"misalignment": "it is below 0.41 deg"} if angle is None else {}
+    for across, known in ((0.0 * RISE, True), (TURN, False)):
+        its = rotation_of(record_of(across, 1e-3, 6, 0.0, 0.02), cycles_of())
+        found = _agreeing(FoundAngle({"rotation": its}, bound, angle))
+        assert (found.misalignment, found.missing != bound) == (None if known else angle, known)
+        assert ("shows that it grows" in found.missing.get("misalignment", "")) is known

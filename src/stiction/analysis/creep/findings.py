@@ -325,7 +325,20 @@ def _misalignment(
             "friction that turns"
         )
     if not found.phi_error < KNOWN * abs(found.phi):
-        most = degrees(abs(found.phi) + SURE * found.phi_error)
+        most = abs(found.phi) + SURE * found.phi_error
+        most = degrees(max(most, _held_angle(mean, V, across)))
         limit = f"; it is below {most:.2g} deg" if most < 45.0 else ""
         raise ResultError(f"not determined: it does not stand out of its uncertainty{limit}")
     return found
+
+
+def _held_angle(mean: xr.Dataset, V: float, across: float | None) -> float:
+    """Return the misalignment (rad) below which a mass may be held instead of creeping.
+
+    While it is held the spring across is loaded at k_y V sin(phi): at smaller angles by less than
+    the largest force of the loading, as long as that lasts.
+    """
+    lasts = float(np.fmax.reduce(mean["begin"].values, initial=0.0))
+    loaded = (across or inf) * V * lasts
+    largest = float(np.fmax.reduce(np.abs(mean["force"].values), initial=0.0))
+    return float(np.arcsin(min(largest / loaded, 1.0))) if loaded > 0.0 else 0.0

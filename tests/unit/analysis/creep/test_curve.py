@@ -12,7 +12,13 @@ from tests.parts import creep_of
 import stiction as st
 from stiction import theory
 from stiction.analysis.creep.curve import between_rests, bin_edges
-from stiction.analysis.creep.findings import BETTER, MISSED, _with_slip_time
+from stiction.analysis.creep.findings import (
+    BETTER,
+    MISSED,
+    _held_angle,
+    _misalignment,
+    _with_slip_time,
+)
 from stiction.analysis.creep.misalignment import (
     SLIDING,
     WEAKENINGS,
@@ -288,6 +294,28 @@ def test_no_slip_still_creeps(slider):
     curves = st.analysis.creep_curves(run, st.analysis.find_cycles(st.analysis.record_of(run)))
     assert curves.sizes["phase"] == 1
     assert np.isfinite(curves["velocity"]).any()
+
+
+def test_a_mass_that_may_be_held_bounds_no_misalignment_below_that():
+    """A rock at 1 deg was "below 0.41 deg": its spring across had not loaded to the friction."""
+    curve = exact_curve(radians(0.5), bin_edges(0.02, 1.9))
+    creep = 1e-4 * V * np.ones(curve.sizes["bin"])  # hardly any, within its error
+    quiet = curve.assign(
+        velocity=curve["velocity"].copy(data=creep),
+        velocity_error=curve["velocity"].copy(data=2.0 * creep),
+    )
+
+    def bound(across):
+        with pytest.raises(st.ResultError, match="out of its uncertainty; it is below") as error:
+            _misalignment(quiet, V, K, across, None, True)
+        return float(str(error.value).split()[-2])
+
+    lasts, largest = float(quiet["begin"].max()), float(quiet["force"].max())
+    across = largest / (V * lasts * np.sin(radians(5.0)))
+    assert np.degrees(_held_angle(quiet, V, across)) == pytest.approx(5.0)
+    assert bound(across) == pytest.approx(5.0, abs=0.05)
+    assert bound(30.0 * across) < 2.0
+    assert _held_angle(quiet, V, None) == 0.0
 
 
 def test_where_there_is_no_stick_phase_there_is_no_curve():
