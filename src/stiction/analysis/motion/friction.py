@@ -121,23 +121,25 @@ def friction_of(record: Record, regime: Regime, cycles: CycleTable) -> Friction:
     """Return the friction of a record with a known kind of motion, and known cycles."""
     if len(record) < FEWEST_SAMPLES:
         few = f"of the {FEWEST_SAMPLES} samples that are needed the record has {len(record)}"
-        return Friction(None, None, None, dict.fromkeys(("break_away", "static", "kinetic"), few))
+        return Friction(None, None, None, {}).without_any(few)
     relative, slides = record.relative_load(), sliding(record)
     end = len(record) if len(cycles) else slides.last  # the fall after it follows no break-away
-    load = (record.normal_load or np.nan) * relative[:end]
-    if record.load_variation() == 0.0 and np.isfinite(load).any():
-        load = np.full(end, np.nanmean(load))  # of which any part has more noise
-    break_away, reason = _find_break_away(record.time[:end], record.force[:end], cycles, load)
+    load = record.normal_load or np.nan
+    loads = load * relative[:end]
+    if record.load_variation() == 0.0 and np.isfinite(loads).any():
+        loads = np.full(end, np.nanmean(loads))  # of which any part has more noise
+    break_away, reason = _find_break_away(record.time[:end], record.force[:end], cycles, loads)
     if break_away is not None:
         break_away = break_away.with_load_error(record.load_noise())
     slid = break_away is not None and not len(cycles)
     if regime.kind == STUCK and not regime.runner_up:
         break_away, reason = None, "the mass does not slip"
     shared = _shared_error(record) if len(cycles) else 0.0
-    static, no_static = _static(record, regime, cycles, relative, shared)
+    static, no_static = _static(regime, cycles, load, shared)
     kinetic: Measured | None
     if regime.kind in SWINGING and len(cycles):
-        kinetic, no_kinetic = _middle(record, cycles, relative, shared), ""
+        middle = 0.5 * (cycles["peak"] + cycles["trough"])  # about which the mass swings
+        kinetic, no_kinetic = _over(middle, cycles["mu_kinetic"], load, shared), ""
     else:
         kinetic, no_kinetic = _kinetic(record, regime, slides, relative, slid)
     reasons = {"break_away": reason, "static": no_static, "kinetic": no_kinetic}
@@ -152,24 +154,12 @@ def _shared_error(record: Record) -> float:
 
 
 def _static(
-    record: Record, regime: Regime, cycles: CycleTable, relative: Floats, shared: float
+    regime: Regime, cycles: CycleTable, load: float, shared: float
 ) -> tuple[Measured | None, str]:
     """Return the static friction, or None and the reason."""
     if not regime.loads or not len(cycles):
         return None, f"it is the mean of the peaks of stick-slip, and {without_loading(regime)}"
-    peak = cycles["peak"]
-    reduced = peak / np.interp(cycles["peak_time"], record.time, relative)
-    return _over(peak, reduced, record.normal_load or np.nan, shared), ""
-
-
-def _middle(record: Record, cycles: CycleTable, relative: Floats, shared: float) -> Measured:
-    """Return the mean of peaks and troughs, about which a mass swings."""
-    peak, trough = cycles["peak"], cycles["trough"]
-    at_peak, at_trough = (
-        np.interp(cycles[name], record.time, relative) for name in ("peak_time", "trough_time")
-    )
-    reduced = 0.5 * (peak / at_peak + trough / at_trough)
-    return _over(0.5 * (peak + trough), reduced, record.normal_load or np.nan, shared)
+    return _over(cycles["peak"], cycles["mu_static"], load, shared), ""
 
 
 def _kinetic(
@@ -328,14 +318,14 @@ def _peak_excess(values: Floats, top: int, step: int) -> float:
     return float(max(meet, default=0.0))  # where it is level on both sides, as steps may be
 
 
-def _over(forces: Floats, reduced: Floats, load: float, rounding: float) -> Measured:
-    """Return the friction of forces, and of those as they were under one load.
+def _over(forces: Floats, coefficients: Floats, load: float, shared: float) -> Measured:
+    """Return the mean friction of forces, and of these over the load at the same instant.
 
-    Rounding (N) may be the same for all of them: no mean is better than that.
+    All forces may share an error, N: no mean is better than that.
     """
     force, error, spread = statistics(forces)
-    mu, mu_error, mu_spread = (each / load for each in statistics(reduced))
-    error, mu_error = np.hypot(error, rounding), np.hypot(mu_error, rounding / load)
+    mu, mu_error, mu_spread = statistics(coefficients)
+    error, mu_error = np.hypot(error, shared), np.hypot(mu_error, shared / load)
     return Measured(force, float(error), spread, mu, float(mu_error), mu_spread)
 
 
@@ -345,9 +335,9 @@ def _sliding(record: Record, slides: Sliding, kind: str, relative: Floats) -> Me
     first, last = slides.first, slides.last
     if first or kind != STEADY:
         first = int(np.searchsorted(time, 0.5 * (time[first] + time[last - 1])))
-    force, reduced = record.force[first:last], record.force[first:last] / relative[first:last]
+    force = record.force[first:last]
+    over_load = force / relative[first:last] / load
     rounding = rounding_error(force, resolution(record.force))
-    blocks = _over(part_means(force, BLOCKS), part_means(reduced, BLOCKS), load, rounding)
-    mean, spread = mean_and_spread(force)
-    mu, mu_spread = (each / load for each in mean_and_spread(reduced))
+    blocks = _over(part_means(force, BLOCKS), part_means(over_load, BLOCKS), load, rounding)
+    (mean, spread), (mu, mu_spread) = mean_and_spread(force), mean_and_spread(over_load)
     return Measured(mean, blocks.error, spread, mu, blocks.coefficient_error, mu_spread)
