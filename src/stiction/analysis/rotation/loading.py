@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.signals.digitised import rounding_of_mean
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.quantity_text import percent
@@ -75,9 +76,7 @@ class LoadingSeries(NamedTuple):
         variance = variance + self.rounding**2
         x_error, y_error = np.sqrt(np.maximum(variance, (ROUNDING * peak) ** 2))
         at = self.spans.mean(axis=1)
-        levels, drift = self.means[:, 1].mean(axis=1), 0.0
-        if count >= SEVERAL:
-            drift = float(np.polyfit(at, levels, 1)[0])
+        drift = line(at, self.means[:, 1].mean(axis=1)).slope if count >= SEVERAL else 0.0
         lasts = float(np.ptp(self.spans, axis=1).mean())
         errors = float(x_error), float(y_error)
         return MeanLoading(mean[0], mean[1], *errors, peak, float(at.mean()), lasts, drift)

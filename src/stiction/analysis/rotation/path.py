@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.rotation.loading import MeanLoading
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 
 # Of the mean peak: radii of arcs on which the force may slip there, weakened before or not
@@ -56,9 +57,9 @@ class Arc(NamedTuple):
 
 def line_misfit(its: MeanLoading) -> float:
     """Return the sum of squares, in standard errors, about the best straight line."""
-    slope, level = np.polyfit(its.x, its.y, 1)
-    variance = its.y_error**2 + (slope * its.x_error) ** 2
-    return float(((its.y - level - slope * its.x) ** 2).sum() / variance)
+    found = line(its.x, its.y)
+    variance = its.y_error**2 + (found.slope * its.x_error) ** 2
+    return float((found.deviations(its.x, its.y) ** 2).sum() / variance)
 
 
 def best_arc(its: MeanLoading, known: float = 0.0) -> Arc:
