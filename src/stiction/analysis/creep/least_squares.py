@@ -13,6 +13,7 @@ from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.units import in_words
 
+FEWEST_USED = 5  # bins of a fit, which has two or three unknowns
 THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 
 
@@ -20,14 +21,15 @@ def used_bins(curve: xr.Dataset, low: float, high: float) -> Bins:
     """Return the bins of a curve in a stretch (s to slip); their errors include the theory's."""
     bins = Bins(*(curve[name].values for name in CURVES))
     inside = (bins.end >= low) & (bins.begin <= high) & np.isfinite(bins.velocity)
-    if inside.sum() < 5:
+    if inside.sum() < FEWEST_USED:
         longest = float(np.fmax.reduce(bins.begin, initial=0.0))
         remedy = "st.analysis.creep_curves in Python makes narrower bins (width)"
         if longest < high:
             remedy = f"the longest stick phase takes {in_words(longest, 's')} only"
         raise ResultError(
             f"not determined: {inside.sum()} bins of the creep curve lie between "
-            f"{in_words(low, 's')} and {in_words(high, 's')} before slip and 5 are needed; {remedy}"
+            f"{in_words(low, 's')} and {in_words(high, 's')} before slip and {FEWEST_USED} are "
+            f"needed; {remedy}"
         )
     error = np.hypot(np.nan_to_num(bins.error), THEORY * np.abs(bins.velocity))
     return bins._replace(error=error).some(inside)

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.creep.curve import Bins
-from stiction.analysis.creep.least_squares import THEORY, best_fit, used_bins
+from stiction.analysis.creep.least_squares import FEWEST_USED, THEORY, best_fit, used_bins
 from stiction.analysis.creep.presliding import fit_presliding
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
@@ -26,7 +26,7 @@ OFF = 0.1  # of the velocity: largest common error of the theory that is tried
 # Angles theta (rad) at which creep is tabled: near zero, where only a trial of a fit comes, and far
 ANGLES = np.concatenate([np.geomspace(1e-3, 0.5, 300), np.linspace(0.5, pi - 0.01, 300)[1:]])
 STRETCH = 0.05, 1.0  # of the loading time: time to slip of the bins that are fitted
-REST_SPEED, FEWEST = 1e-6, 5  # of the drive velocity: slower is rest; bins, of creep alone
+REST_SPEED = 1e-6  # of the drive velocity: slower is rest
 SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
 
 
@@ -273,7 +273,7 @@ def _after_rest(used: Bins, drive_velocity: float) -> Bins:
         return used
     later = begin < rests.min()
     later &= begin < begin[later].max(initial=0.0)
-    if later.sum() < FEWEST:
+    if later.sum() < FEWEST_USED:
         raise ResultError(
             f"not determined: the mass creeps in only {later.sum()} bins of the curve, and rests "
             "before"
