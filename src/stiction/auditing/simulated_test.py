@@ -184,7 +184,7 @@ def simulate_test(
     """
     load_up = prediction.load_up
     if slips_at_once(slider):  # the soft spring goes on loading until friction lies along the drive
-        load_up = max(load_up, loading_time(slider))
+        load_up = max(load_up, slider.loading_time)
     slips = CYCLES * prediction.period if prediction.slips else 0.0
     if not prediction.slips and growth > 0.0:  # what grows swings, and may rest between swings
         slips = CYCLES * 2.0 / prediction.f_x
@@ -204,11 +204,6 @@ def simulate_test(
         progress=progress,
     )
     return SimulatedTest(run, growth)
-
-
-def loading_time(slider: Slider) -> float:
-    """Return the time in which the drive loads the spring along x by all of friction, s."""
-    return slider.F_0 / (slider.k_x * slider.drive_speed)
 
 
 def simulate_coarsely(

@@ -298,6 +298,11 @@ class Slider(Apparatus):
         return self.law.coefficient(sliding if has_state(self.law) else 0.0) * self.normal_load
 
     @property
+    def loading_time(self) -> float:
+        """Time in which the drive loads the spring along x by all of friction, s."""
+        return self.F_0 / (self.k_x * self.drive_speed)
+
+    @property
     def natural_frequencies(self) -> tuple[float, float]:
         """Natural frequencies of the mass on its spring, the slower first, in Hz."""
         m_x, m_y = self.masses

@@ -11,7 +11,7 @@ import numpy as np
 from stiction import theory
 from stiction.analysis.creep.first_slip import along_force, force_direction, slips_at_once
 from stiction.analysis.motion.regime.kinds import TRANSVERSE
-from stiction.auditing.simulated_test import SLIDES, loading_time
+from stiction.auditing.simulated_test import SLIDES
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
 from stiction.system.slider import Slider
@@ -75,7 +75,7 @@ def _without_creep(found: Audit) -> str:
             f"{natural} A transverse oscillation needs creep, and here the first stick ends in a "
             f"slip: the mass swings along the force of both springs, at {in_words(swings, 'Hz')}."
         )
-    if decay * max(p.load_up, loading_time(found.slider)) > SOON:
+    if decay * max(p.load_up, found.slider.loading_time) > SOON:
         return (
             f"{natural} A transverse oscillation begins with creep, and dies out within some "
             f"{in_words(5.0 / decay, 's', 1)}: dampers, or friction that rises with "

@@ -141,7 +141,7 @@ def longer(result: Trajectory) -> str:
     V = slider.drive_speed
     if not V > 0.0:
         return "run it longer"
-    most, load = in_words(slider.F_0, "N"), in_words(slider.F_0 / slider.k_x / V, "s")
+    most, load = in_words(slider.F_0, "N"), in_words(slider.loading_time, "s")
     return (
         f"a spring is loaded to the {most} that friction can hold after some {load}; "
         "set a longer duration"

@@ -93,7 +93,7 @@ def with_noise(conditions: Conditions, slider: Slider, wanted: Wanted) -> Condit
 def with_cycle(conditions: Conditions, slider: Slider) -> Conditions | None:
     """Return conditions with the cycle's length, found by simulation; None without stick-slip."""
     rig = conditions.slider_of(slider)
-    guess = rig.F_0 / (rig.k_x * abs(conditions.velocity))
+    guess = rig.loading_time
     wanted = 2 * LEAST_CYCLES  # the first slips may be too small for cycles, and the last is cut
     times = guess / PER_CYCLE * np.arange(LONGEST_CYCLE * wanted * PER_CYCLE)
     motion = move(
