@@ -282,6 +282,21 @@ def test_a_small_vibration_on_both_springs(phi, V):
     assert value("period", run) == pytest.approx(float(found.cycles["period"].mean()), rel=0.02)
 
 
+@pytest.mark.parametrize("later", [1e-4, 3e-4, 3e-3, 1e-2])
+def test_a_run_that_ends_just_after_a_trough(later):
+    """An analysis counted a cycle more than a study, until the force had risen by 1e-3 of its span.
+
+    The share of a period after the trough at which the run ends, about that of the span.
+    """
+    its = run_in_study(PAPER, "5 s").cycles
+    period = float(its.period.mean())
+    duration = its.end + later * period
+    found = st.analysis.find_cycles(st.simulate(PAPER, duration))
+    count = len(run_in_study(PAPER, duration).cycles.drop)
+    assert count == found.sizes["cycle"]
+    assert found["trough_time"][-1] < duration - 1e-3 * period
+
+
 WEAKENED = PAPER.replace(
     mass=0.1, k_x=3186.0, k_y=4e6, phi="8.142 deg", normal_load=9.387,
     friction=st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s"),

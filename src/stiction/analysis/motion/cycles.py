@@ -38,11 +38,14 @@ from stiction.analysis.signals.hum import (
 )
 from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.robust import uniform_mean, without_outliers
-from stiction.analysis.signals.turning_points import turning_points
+from stiction.analysis.signals.turning_points import TurningPoints, turning_points
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
 
 FEWEST_CYCLES = 3  # cycles beside a ringing
+# Of the span of the force in the last quarter: a run, whose force has no noise, ends in a trough if
+# the force has risen by more after it. A study counts each reversal by this share
+REVERSAL = 1e-3
 LINES = 4  # subtracted at most
 SAME = 0.01  # of a line's frequency: two lines are at least so far apart
 OWN_HARMONICS = 10.0  # of the cycles: lower ones can be lines as well; they make no cycles more
@@ -294,6 +297,8 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
     """
     force = record.force if wave is None else record.force - wave
     points, few = turning_points(force), None
+    if record.sticks is not None and record.steady_until(record.time[0]) >= record.time[-1]:
+        points = without_open_end(points, force)
     if len(points.index) <= 2 * FEW + 1 and wave is None and record.slip_speed is None:
         few = few_slips(record.time, force)
     if few is not None and not len(points.index):
@@ -313,3 +318,13 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
         none = Vertices(np.zeros(0), np.zeros(0))
         found = found._replace(few=tabulate(record, few.corners(record.time), none, points.least))
     return found._replace(over=over)
+
+
+def without_open_end(points: TurningPoints, force: Floats) -> TurningPoints:
+    """Leave out a trough after which a run's force (n,) has hardly risen: it may fall further."""
+    late = force[3 * len(force) // 4 :]
+    if len(points.index) < 3 or not points.trough[-1]:
+        return points
+    if points.after - points.values[points.index[-1]] > REVERSAL * np.ptp(late):
+        return points
+    return points._replace(index=points.index[:-1], trough=points.trough[:-1])

@@ -124,7 +124,7 @@ def features(
         end_low, end_high = min(end_low, force[i]), max(end_high, force[i])
     height = max(reversal * (end_high - end_low), least * max(high, -low))
     index = zigzag(force, height)
-    turn_time, turn_value = np.empty(len(index)), np.empty(len(index))
+    turn_time, turn_value = np.empty(len(index) + 1), np.empty(len(index) + 1)
     trough = len(index) > 0 and force[index[0]] < force[0]
     for k, i in enumerate(index):
         if trough == (k % 2 == 0):
@@ -134,11 +134,34 @@ def features(
         high = max(high, turn_value[k])
         if turn_time[k] >= time[late]:
             late_low, late_high = min(late_low, turn_value[k]), max(late_high, turn_value[k])
+    count = len(index)
+    if driven == n and count > 0 and trough == (count % 2 == 0):  # the last one is a peak
+        at, value = last_bottom(time, force, rate, index[count - 1])
+        if force[n - 1] - value > height:
+            turn_time[count], turn_value[count] = at, value
+            count += 1
     late_mean, late_span = total / (n - late), late_high - late_low
     return Features(
-        high, late_mean, late_span, fastest, means, turn_time, turn_value, trough,
+        high, late_mean, late_span, fastest, means, turn_time[:count], turn_value[:count], trough,
         force[0], force[n - 1],
     )  # fmt: skip
+
+
+@compiled_with_arrays
+def last_bottom(
+    time: np.ndarray, values: np.ndarray, rate: np.ndarray, peak: int
+) -> tuple[float, float]:
+    """Return the time and value of the lowest place after the last peak, also between samples.
+
+    Samples may be so far apart that the last one, on the way up already, is the lowest.
+    """
+    last = len(values) - 1
+    lowest = peak + int(np.argmin(values[peak:]))
+    if lowest < last:
+        return bottom(time, values, rate, lowest)
+    if rate[last - 1] < 0.0 < rate[last]:
+        return bottom(time, values, rate, last - 1)
+    return time[last], values[last]
 
 
 @compiled_with_arrays

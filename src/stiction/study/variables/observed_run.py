@@ -11,6 +11,7 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import first_loading
 from stiction.analysis.motion.course import COURSE_PARTS
+from stiction.analysis.motion.cycles import REVERSAL
 from stiction.analysis.motion.regime.kinds import STUCK, UNDETERMINED
 from stiction.analysis.motion.rest import (
     rests_throughout,
@@ -45,11 +46,10 @@ PER_IMPOSED_PERIOD = 2 * PER_SLOW_PERIOD
 LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of a run
 # The fast oscillation is measured over its last periods.
 PER_FAST_PERIOD = 16
-# Smallest reversal of the force that counts, as a share of its span in the last quarter of the time
-# until the drive stops for good; afterwards friction holds the force. It is ten times the fast
-# oscillation of the paper's system, and small enough to see swings die out. It is at least the
-# solver's tolerance for the largest force.
-REVERSAL = 1e-3
+# `REVERSAL`, the smallest reversal of the force that counts, is a share of its span in the last
+# quarter of the time until the drive stops for good; afterwards friction holds the force. It is ten
+# times the fast oscillation of the paper's system, and small enough to see swings die out. It is at
+# least the solver's tolerance for the largest force.
 # Largest change of the force between two samples that their rates do not explain, as a share of the
 # smallest drop, and largest such velocity, as a share of the fastest. Harmonics of 10 and of 8
 # samples a period have as much, and their peaks are 1e-3 and 0.07 off at most
