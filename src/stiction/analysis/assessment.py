@@ -76,10 +76,10 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
     missing = _meaningless(record, cycles, regime)
     if turns and len(cycles):
         missing |= {"mu_kinetic": turns}
-    told = cycles.blank(missing)
+    given = cycles.blank(missing)
     sticking = cycles if regime.loads else cycles.part(slice(0))
     return Assessment(
-        told, told, sticking, friction, (), warnings_of_run(run, record, cycles), missing
+        given, given, sticking, friction, (), warnings_of_run(run, record, cycles), missing
     )
 
 
@@ -115,8 +115,8 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     for name in ("static", "kinetic"):
         if getattr(whole, name) is not None and getattr(friction, name) is None:
             missing[f"mu_{name}"] = friction.missing[name]
-    told = cycles.blank(missing)
-    return Assessment(told, told.part(~apart), sticking, friction, stated, doubts, missing)
+    given = cycles.blank(missing)
+    return Assessment(given, given.part(~apart), sticking, friction, stated, doubts, missing)
 
 
 def _friction(

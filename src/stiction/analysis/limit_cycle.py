@@ -44,9 +44,9 @@ def settle(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Fou
         if amplitudes[-1] < DECAYED * small:
             return Found(amplitudes[-1], REST, state)
         late = amplitudes[count // 2 :]
-        told = abs(growth) * block * len(late) > TOLD * EVEN  # else slow change looks settled
+        changes = abs(growth) * block * len(late) > TOLD * EVEN  # else slow change looks settled
         if (
-            told
+            changes
             and count >= FEWEST_BLOCKS
             and min(late) > GROWN * small
             and max(late) < (1 + EVEN) * min(late)

@@ -202,7 +202,7 @@ def audit(
     <Audit: settling; steady sliding is stable>
     """
     rig = rig_of(slider)
-    told = progress or silent
+    inform = progress or silent
     before = FITTING if record is not None else 0.0
     measured = None
     if record is not None:
@@ -212,9 +212,9 @@ def audit(
         seen = record if isinstance(record, Record) else as_record(read_source(record))
         measured = compare(
             seen, rig, simulations=simulations, library=library,
-            progress=lambda fraction: told(before * fraction),
+            progress=lambda fraction: inform(before * fraction),
         )  # fmt: skip
-    return _examine(rig, measured, lambda fraction: told(before + (1.0 - before) * fraction))
+    return _examine(rig, measured, lambda fraction: inform(before + (1.0 - before) * fraction))
 
 
 def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) -> Audit:

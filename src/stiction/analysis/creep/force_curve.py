@@ -170,8 +170,8 @@ def _fit(curve: LoadingCurve, tails: Floats) -> _Fit:
 
     def deviation(p: Floats) -> Floats:
         x = crept_force(curve.force, p[0], curve.peak * (1.0 + exp(p[1])), exp(p[3]), exp(p[4]))
-        told = (x + curve.force) * (1.0 + p[2]) - curve.force  # by a stiffness off by so much
-        return np.asarray(seen - (told - told.mean()))
+        modelled = (x + curve.force) * (1.0 + p[2]) - curve.force  # by a stiffness off by so much
+        return np.asarray(seen - (modelled - modelled.mean()))
 
     def weighted_misfit(p: Floats) -> Floats:
         assumed = (p[2:] - middle) / width

@@ -36,6 +36,7 @@ SLOW_SLIP = 0.4
 # k/m 0.77 to 1.32 times the true one in 9 of 10 random rigs that vibrate so
 SWINGS = 0.08
 DRAWN_OUT = 0.4  # of a fall: two thirds of what half a cosine takes from 90 % to 10 %
+MOST_HIDDEN = 0.25  # of a fall's height at each end, within noise
 REACH = 3.0  # standard deviations of noise: a force that is nearer to a peak may be on it
 RESTED = 1.1  # times two falls: rest makes a period longer; less may be another asymmetry
 PARTS = 200, 66, 25  # of a record, for the speed of a drive that may turn, or rest within noise
@@ -261,7 +262,7 @@ def _unseen_ends(record: Record, cycles: CycleTable) -> tuple[float, float]:
     """
     reach = REACH * white_noise(record.force) + resolution(record.force)
     falls = cycles["trough_time"] - cycles["peak_time"]
-    share = min(reach / float(np.median(cycles["drop"])), 0.25)
+    share = min(reach / float(np.median(cycles["drop"])), MOST_HIDDEN)
     hidden = 2.0 * float(np.arccos(1.0 - 2.0 * share)) / pi  # of a slip, at both ends
     rate = max(float(np.median(cycles["stick_slope"])), TINY)
     return 1.0 / (1.0 - hidden), max(1.0 - reach / rate / float(np.median(falls)), 0.0)

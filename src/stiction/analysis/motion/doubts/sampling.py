@@ -12,6 +12,7 @@ from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import (
     BY_SLIPS,
     FEWEST_PER_FALL,
+    MOST_HIDDEN,
     REACH,
     SLOW_SLIP,
     StatedQuantity,
@@ -25,7 +26,6 @@ from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
-MOST_HIDDEN = 0.25  # of a fall's height at each end, within noise
 SLOWLY = 1e3  # s between samples
 ENOUGH_VALUES = 16  # that are all repeated as often
 # Samples in a fall as they are seen, about one more than it lasts, and by which share the largest
