@@ -277,20 +277,22 @@ def _drive_velocity(record: Record) -> StatedQuantity | None:
     """Compare the slope of the drive's displacement with the stated velocity."""
     if record.drive_position is None or len(record) < FEWEST_PER_FALL:
         return None
-    way = line(record.time, record.drive_position)
-    found, stated = abs(way.slope), record.drive_velocity or nan
-    how = "slope of the drive's displacement"
+    way, stated = line(record.time, record.drive_position), record.drive_velocity or nan
+    error = standard_error(way.deviations(record.time, record.drive_position))
+    whole = StatedQuantity(
+        "drive velocity", "m/s", abs(way.slope), error / float(record.time.std()), stated,
+        1 - ALIKE, 1 + ALIKE, "slope of the drive's displacement",
+    )  # fmt: skip
+    if whole.agrees:  # a drive that jerks, or rings, rests and turns as well
+        return whole
     divided = [_speeds_of_parts(record.time, record.drive_position, most) for most in PARTS]
     speeds, net, reach, rests = next((each for each in divided if each[-1]), divided[0])
     turns = net < TO_AND_FRO * reach
-    if rests or turns or found * record.duration < TO_AND_FRO * reach:
-        found = float(np.median(speeds))
-        how = f"median speed of its displacement{', to and fro' if turns else ' in motion'}"
-        error = float(speeds.std()) / len(speeds) ** 0.5
-    else:
-        left = way.deviations(record.time, record.drive_position)
-        error = standard_error(left) / float(record.time.std())
-    return StatedQuantity("drive velocity", "m/s", found, error, stated, 1 - ALIKE, 1 + ALIKE, how)
+    if not rests and not turns and whole.found * record.duration >= TO_AND_FRO * reach:
+        return whole
+    how = f"median speed of its displacement{', to and fro' if turns else ' in motion'}"
+    error = float(speeds.std()) / len(speeds) ** 0.5
+    return whole._replace(found=float(np.median(speeds)), error=error, how=how)
 
 
 def _speeds_of_parts(

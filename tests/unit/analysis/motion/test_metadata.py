@@ -9,7 +9,7 @@ from tests.measured import read_measured
 from tests.parts import assess
 
 import stiction as st
-from stiction.analysis.motion.metadata import SWING, compare_metadata
+from stiction.analysis.motion.metadata import SWING, _drive_velocity, compare_metadata
 from stiction.presets.preset import on_a_line
 
 RATE = 2000.0
@@ -172,6 +172,22 @@ def test_the_speed_of_a_drive_that_rests_in_holds_is_that_of_its_motion(noise):
         assert its["drive velocity"].found == pytest.approx(VELOCITY, rel=0.02)
         assert its["drive velocity"].how == "median speed of its displacement in motion"
         assert "contradicts drive velocity" not in said
+
+
+@pytest.mark.parametrize("noise", [1e-9, 1e-6])
+def test_a_drive_that_moves_in_steps_does_not_contradict_its_mean_velocity(noise):
+    """It rests between its steps as in holds: it was said to be 2 to 50 times as fast as stated."""
+    travel = VELOCITY * (TIME - TIME[0])
+    white = noise * np.random.default_rng(2).standard_normal(len(TIME))
+    for steps, share in ((13, 0.4), (40, 0.5), (6, 0.001)):
+        length = travel[-1] / steps
+        there = length * (travel // length + np.minimum(travel % length / length / share, 1.0))
+        record = st.Record(time=TIME, force=sawtooth(), drive_position=there + white)
+        mean = _drive_velocity(record.model_copy(update={"drive_velocity": VELOCITY}))
+        assert mean.found == pytest.approx(VELOCITY, rel=0.02 + 0.5 / steps)
+        assert mean.agrees
+        fast = _drive_velocity(record.model_copy(update={"drive_velocity": 4.0 * VELOCITY / share}))
+        assert fast.agrees is False
 
 
 def drive_velocities(turns):
