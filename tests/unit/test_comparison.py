@@ -331,6 +331,15 @@ def test_outcome_tells_creep_from_rest(runs: dict[str, st.Trajectory]) -> None:
     assert creep.status.ok
 
 
+def test_a_mass_at_rest_has_no_creep_by_rounding_and_one_sample_has_its_speed(
+    slider: st.Slider,
+) -> None:
+    """Places of 3 mm are known to 1e-18 m, over hundredths of a second."""
+    assert outcome(st.simulate(slider.replace(phi="0 deg"), 3.0, sample_rate=1e3)).creep == 0.0
+    one = st.simulate(slider, 1e-6, sample_rate=1e3)
+    assert outcome(one).creep == one.samples["slip_speed"][0] > 0.0
+
+
 @pytest.mark.parametrize("rate", [500.0, 700.0, 1e3, 1e4])
 def test_the_median_creep_does_not_depend_on_the_samples(slider: st.Slider, rate: float) -> None:
     """At 1 kHz, the frequency of the oscillation, it was 23 % too large; 93 % on a random rig."""

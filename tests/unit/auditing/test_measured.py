@@ -226,6 +226,9 @@ def test_a_force_that_rises_or_falls_as_no_simulation_does_names_stiffness_and_m
     assert "filter" in said(1.0, 0.024)[0]
     assert "That stiffness changes it too." in said(0.75, 0.024)[1]
     assert [*contradictions(None)] == []
+    wide = Curve(made.time, (1.0 + 20.0 * (scatter[:, None] - 1.0)) * SHARES)  # 0.8 to 1.2
+    own = Curve(SHARES, 1.15 * SHARES)
+    assert [*contradictions(Predictive(own, wide, 0.02, None, 0.02, 0.02 * scatter))] == []
 
 
 def test_a_wrong_stiffness_stands_below_no_verdict(found):

@@ -239,6 +239,12 @@ def test_what_few_tests_show_has_their_number_and_no_95_percent():
     text = " ".join(said.sentences)
     assert "the last column is of those that do, with their number in brackets" in text
     assert "Of fewer than 39 it has the smallest and the largest, which hold less than 95 %" in text
+    drawn[:39, 2] = np.arange(39) + 0.5
+    assert made.intervals[0, 2] > 0.5  # of 39 they are those of 95 %
+    drawn[:, :3] = drawn[:, :1]
+    text = " ".join(module.section(made).sentences)
+    assert "brackets" in text
+    assert "Of fewer" not in text  # nothing is shown of what no test has
     drawn[:] = drawn[:, :1]
     assert "Of fewer" not in " ".join(module.section(made).sentences)
     assert "brackets" not in " ".join(module.section(made).sentences)

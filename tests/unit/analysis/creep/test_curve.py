@@ -316,6 +316,9 @@ def test_a_mass_that_may_be_held_bounds_no_misalignment_below_that():
     assert bound(across) == pytest.approx(5.0, abs=0.05)
     assert bound(30.0 * across) < 2.0
     assert _held_angle(quiet, V, None) == 0.0
+    back = quiet.assign(force=quiet["force"].copy(data=-quiet["force"].values))
+    assert _held_angle(back, V, across) == _held_angle(quiet, V, across)
+    assert _held_angle(quiet, V, 1e-3 * across) == 0.5 * np.pi  # it never loads to the friction
 
 
 def test_where_there_is_no_stick_phase_there_is_no_curve():
