@@ -200,6 +200,16 @@ def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
     assert "COMPLETED" in run._repr_html_() or "completed" in run._repr_html_()
 
 
+def test_a_record_without_samples_shows_itself_without_a_figure():
+    """A notebook showed a traceback instead of its report."""
+    record = st.Record(time=[], force=[], stiffness="1 N/mm")
+    for each in (record, st.analyse(record)):
+        assert each._repr_html_().startswith("<h4>")
+        assert "<img" not in each._repr_html_()
+        with pytest.raises(st.ResultError, match="no samples"):
+            each.plot()
+
+
 @pytest.mark.parametrize("room", [st, st.theory], ids=["st", "st.theory"])
 def test_hints_of_public_functions_can_be_evaluated(room):
     """Tools that check arguments do so: `typing.get_type_hints(st.stability)` raised NameError."""

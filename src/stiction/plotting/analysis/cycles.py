@@ -14,6 +14,7 @@ from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import Floats, xr
+from stiction.errors import ResultError
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
 from stiction.plotting.run.lines import draw_line
@@ -64,6 +65,8 @@ def plot_motion(
     axes: Axes | Sequence[Axes] | None = None,
 ) -> NDArray[np.object_]:
     """Draw what `plot_cycles` draws, where cycles and kind of motion are known."""
+    if not len(record):
+        raise ResultError("the record has no samples; there is nothing to draw")
     many = cycles.sizes["cycle"] > FEW
     with style():
         panels = grid_of(axes, (PAGE, 4.4 if many else 2.6), 2 if many else 1, 1)
