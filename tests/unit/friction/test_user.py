@@ -149,11 +149,15 @@ def test_a_law_lies_in_the_folder_of_its_description(config, to):
 
 def test_a_law_is_not_run_before_all_else_is_right(config):
     folder = config.parent / "working"
+    surface = TABLE.replace("v_h =", "anisotropy = { ratio = -1 }\nv_h =")
     wrong = [TABLE.replace("0.25 kg", "-0.25 kg"), TABLE.replace("50 ms", "50 m"), TABLE + "[x]\n"]
-    for text in wrong:
+    wrong = [(st.Description, text) for text in (*wrong, surface)]
+    wrong += [(st.Study, TABLE + "[axes.masss]\nvalues = [1, 2]\n")]
+    wrong += [(st.Rig, TABLE.replace("1 deg", "1 +- 0 deg"))]
+    for kind, text in wrong:
         config.write_text(text)
         with pytest.raises(st.DescriptionError) as error:
-            st.Description.from_toml(config)
+            kind.from_toml(config)
         assert len(error.value.faults) == 1
     study = "[study]\nmeasures = ['pig']\nseed = -1\n[axes.phi]\nfrom = '1 deg'\ncount = 0\n"
     config.write_text(TABLE.replace("0.25 kg", "-0.25 kg") + study)
@@ -330,23 +334,31 @@ def test_friction_that_jumps_where_it_falls_steeply_is_refused(slider):
 
 
 class Rooted(NamedTuple):
-    """Friction that falls as a power of the speed."""
+    """Friction that changes as a power of the speed, and falls by default."""
 
     power: float
+    change: float = -0.01
 
     def coefficient(law, v):
-        return 0.3 - 0.01 * v**law.power
+        return 0.3 + law.change * v**law.power
 
     def slope(law, v):
-        return -0.01 * law.power * max(v, 1e-30) ** (law.power - 1.0)
+        return law.change * law.power * max(v, 1e-30) ** (law.power - 1.0)
 
 
 @pytest.mark.parametrize("power", [0.1, 0.5, 0.75])
-def test_friction_with_an_infinite_slope_at_rest_is_refused(slider, power):
+def test_friction_that_falls_infinitely_fast_from_rest_is_refused(slider, power):
     """A run with it took 50 s to reach max_steps."""
-    with pytest.raises(st.DescriptionError, match="changes infinitely fast as slip vanishes"):
+    with pytest.raises(st.DescriptionError, match="falls infinitely fast from rest"):
         slider.replace(friction=Rooted(power))
     assert slider.replace(friction=Rooted(1.0))
+
+
+def test_friction_that_rises_as_a_root_is_not_refused(slider):
+    """That of a grease (Herschel and Bulkley) does; it slides at k_x u_x = mu(V) W cos(phi)."""
+    run = st.simulate(slider.replace(friction=Rooted(0.5, 0.1)), "5 s")
+    wanted = Rooted(0.5, 0.1).coefficient(1e-3) * slider.normal_load * math.cos(slider.misalignment)
+    assert slider.k_x * run.samples["u_x"][-1] == pytest.approx(wanted, rel=1e-6)
 
 
 @pytest.mark.parametrize("of", [lambda law: law, lambda law: st.laws.Anisotropic(law, ratio=1.5)])

@@ -10,7 +10,7 @@ from typing import NamedTuple
 EPS = 2.2e-16
 HALVINGS = 60  # of an interval: down to two floats that are neighbours
 NEAR_REST = (1e-12, 1e-13, 1e-14, 1e-15)  # m/s, slower than a law can be resolved
-# shares of a change that a tenth of the speed leaves: 0.1 if proportional to it, 1 of a step
+# shares of a fall that a tenth of the speed leaves: 0.1 if proportional to it, 1 of a step
 STEEP, STEP = 0.15, 0.97
 REACHES = tuple(10.0 ** (-i / 2) for i in range(1, 13))  # of a difference, relative
 
@@ -39,18 +39,20 @@ def _difference(function: Callable[[float], float], v: float, h: float) -> float
 
 
 def is_steep_at_rest(function: Callable[[float], float]) -> bool:
-    """Return whether a function changes infinitely fast as its argument vanishes, as a root does.
+    """Return whether a function falls infinitely fast from its value at 0, as 1 - sqrt(v) does.
 
-    Its change from 0 then falls by less than tenfold from one decade to the next, and still falls:
-    a step at 0 is not a slope.
+    Its fall from 0 then becomes less than ten times smaller from one decade to the next, and does
+    become smaller: a step at 0 is not a slope.
 
     >>> is_steep_at_rest(lambda v: 0.3 - v**0.5), is_steep_at_rest(lambda v: 0.3 - 1e6 * v)
     (True, False)
+    >>> is_steep_at_rest(lambda v: 0.3 + v**0.5)
+    False
     """
-    changes = [abs(function(v) - function(0.0)) for v in NEAR_REST]
-    if not changes[-1] > 64.0 * EPS * abs(function(0.0)):
+    falls = [function(0.0) - function(v) for v in NEAR_REST]
+    if not falls[-1] > 64.0 * EPS * abs(function(0.0)):
         return False
-    return all(STEEP * a < b < STEP * a for a, b in pairwise(changes))
+    return all(STEEP * a < b < STEP * a for a, b in pairwise(falls))
 
 
 class Jump(NamedTuple):

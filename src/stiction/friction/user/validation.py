@@ -230,8 +230,8 @@ def _wrong(law: Any) -> tuple[str, str] | None:
     coefficient, slope = partial(_value, law.coefficient), partial(_value, law.slope)
     if is_steep_at_rest(coefficient):
         what = (
-            "changes infinitely fast as slip vanishes, as a root does, which no step can follow; "
-            "let it be a straight line below a slow speed, such as 1 um/s"
+            "falls infinitely fast from rest, as 1 - sqrt(v) does: runs at a slow drive would not "
+            "end; let it be a straight line below a slow speed, such as 1 um/s"
         )
         return "coefficient(law, 0)", what
     largest = coefficient(0.0)
