@@ -9,7 +9,7 @@ A law whose friction depends on more than the slip velocity has internal states,
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from stiction.errors import Faults
 from stiction.friction.law import FrictionLaw as FrictionLaw
@@ -33,7 +33,7 @@ from stiction.friction.user.loading import (
 )
 from stiction.text.toml import choose
 
-STAND_IN = LAWS["coulomb"](mu_0=0.0)  # for one that cannot be read
+STAND_IN: Law = LAWS["coulomb"](mu_0=0.0)  # for one that cannot be read
 
 
 def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
@@ -42,7 +42,9 @@ def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
     `find` locates a user's law.
     """
     surface, own = table.pop("anisotropy", None), is_own(table)
-    faults, law = Faults(), None
+    faults, law = Faults(), STAND_IN
+    if own and surface is not None:
+        read_anisotropy(STAND_IN, surface)  # before the law's file is run
     with faults.of_part():
         law = (
             read_own(table, find or finder_for_descriptions(Path()))
@@ -51,9 +53,9 @@ def read_law(table: dict[str, Any], find: Find | None = None) -> Law:
         )
     if surface is not None:
         with faults.of_part():
-            law = read_anisotropy(STAND_IN if law is None else law, surface)
+            law = read_anisotropy(law, surface)
     faults.refuse()
-    return cast(Law, law)
+    return law
 
 
 def law_table(law: Any) -> dict[str, Any]:

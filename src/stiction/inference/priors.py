@@ -15,7 +15,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
+from decimal import Decimal
 from math import inf, log
 from typing import Any
 
@@ -132,7 +132,7 @@ def share_of(value: Any, percent: str) -> str | float:
     """
     found = QUANTITY.fullmatch(str(value).replace("−", "-"))
     assert found is not None  # the value has been read
-    size = float(abs(Fraction(found[1])) * Fraction(repr(to_si(percent, PLAIN))) / 100)
+    size = float(abs(Decimal(found[1])) * Decimal(repr(to_si(percent, PLAIN))) / 100)
     unit = found[2].strip()
     return f"{size!r} {unit}" if unit else size
 

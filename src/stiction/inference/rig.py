@@ -87,18 +87,20 @@ class Rig(NamedTuple):
             for name, table in raw.items()
         }
         find = finder_for_descriptions(folder, trust)
+        own, wrong = is_own(certain.get("friction")), prior_faults(stated)
         try:
             slider = Slider.from_parts(
                 gather(
                     certain,
                     {**SLIDER_TABLES, "friction": partial(read_law, find=find)},
                     absent=OPTIONAL_TABLES,
-                    last=("friction",) if is_own(certain.get("friction")) else (),
-                    known=[*strange, *lost],
+                    last=("friction",) if own else (),
+                    known=[*strange, *lost, *(wrong if own else ())],
                 )
             )
         except DescriptionError as error:
-            raise DescriptionError(with_prior_faults(error.faults, stated)) from None
+            others = [fault for fault in error.faults if fault not in wrong]
+            raise DescriptionError(with_prior_faults(others, wrong, stated)) from None
         priors = read_priors(partial(unit, slider), stated)
         slider = in_the_middle(slider, priors)
         priors = within_ranges(slider, priors)
@@ -210,9 +212,9 @@ def spread(value: Any) -> dict[str, Any] | None:
 
 
 def with_prior_faults(
-    faults: Sequence[Fault], stated: Mapping[str, Mapping[str, Any]]
+    faults: Sequence[Fault], wrong: Sequence[Fault], stated: Mapping[str, Mapping[str, Any]]
 ) -> list[Fault]:
-    """Return the faults of a description, and those of its uncertain values by themselves.
+    """Return the faults of a description, and the `wrong` ones of uncertain values elsewhere.
 
     A value that cannot be read stands for a prior: where it is the middle of one, that is said.
     """
@@ -221,21 +223,27 @@ def with_prior_faults(
         table = stated.get(canonical(path), {})
         between = f"; it lies between low = {echo(table.get('low'))} and high" * ("low" in table)
         found.append(Fault(path, message + between))
+    return found + [fault for fault in wrong if fault.path not in places]
+
+
+def prior_faults(stated: Mapping[str, Mapping[str, Any]]) -> Sequence[Fault]:
+    """Return the faults of uncertain values by themselves, whatever they are values of."""
     try:
         read_priors(lambda path: own_unit(stated[path]), stated)
     except DescriptionError as error:
-        found += [fault for fault in error.faults if fault.path not in places]
-    return found
+        return error.faults
+    return ()
 
 
 def own_unit(table: Mapping[str, Any]) -> str:
-    """Return the unit in which a prior is written.
+    """Return the first unit in which a prior is written; '' for plain numbers.
 
-    >>> own_unit({"low": "1 deg", "high": "3 deg"}), own_unit({"value": 0.3, "uncertainty": 0.1})
+    >>> own_unit({"low": 0, "high": "3 deg"}), own_unit({"value": 0.3, "uncertainty": "10 %"})
     ('deg', '')
     """
-    found = QUANTITY.fullmatch(str(table.get("value", table.get("low"))))
-    return found[2].strip() if found else ""
+    found = [QUANTITY.fullmatch(str(value)) for value in table.values()]
+    units = [each[2].strip() for each in found if each]
+    return next((each for each in units if each not in ("", "%")), "")
 
 
 def read_priors(

@@ -137,3 +137,21 @@ def test_a_share_has_the_digits_of_the_value():
     assert rig(mu_0='{value = 0.3, uncertainty = "7 %"}').priors["friction.mu_0"].deviation == 0.021
     with pytest.raises(DescriptionError, match="mu_0: 'few' is not one number"):
         rig(mu_0='{value = 0.3, uncertainty = "few %"}')
+
+
+def test_a_share_of_next_to_nothing_ends_at_once():
+    """That of 1e-99999999 deg was computed with all of its digits, for minutes."""
+    with pytest.raises(DescriptionError, match="phi: uncertainty must be greater than 0"):
+        rig(phi='{value = "1e-99999999 deg", uncertainty = "10 %"}')
+
+
+@pytest.mark.parametrize(
+    "mass", ['{value = 0.25, uncertainty = "9 g"}', '{low = 0.1, high = "1 kg"}']
+)
+def test_an_uncertain_value_beside_a_fault_is_read_in_any_of_its_units(mass):
+    """'9 g' must be a number without a unit, it said, which is not so."""
+    text = PLAIN.replace('"250 g"', mass)
+    assert st.Rig.from_toml(text).priors
+    with pytest.raises(DescriptionError) as error:
+        st.Rig.from_toml(text, {"colour": 1})
+    assert [fault.path for fault in error.value.faults] == ["colour"]

@@ -229,12 +229,14 @@ class Study(Described):
             own = {key: own[key] for key in own if key in keys}
             found += [each for each in cls._faults(own, axes, None) if each.path != "study.base"]
         rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
-        waits = found if is_own(raw.get("friction")) else ()  # no user's code beside a fault
+        lost = [*unknown_axes(rest, axes)]
+        # no user's code beside a fault
+        waits = [*found, *lost] if is_own(raw.get("friction")) else ()
         try:
             base = Description.from_dict(rest, find=find, locate=locate, known=waits)
         except DescriptionError as error:
-            found += [fault for fault in error.faults if fault not in found]
-            raise DescriptionError([*found, *unknown_axes(rest, axes)]) from None
+            told = dict.fromkeys([*found, *error.faults, *lost])
+            raise DescriptionError([*told]) from None
         if found:
             also = coordinate_faults(base, readable_axes(axes), 0)
             raise DescriptionError([*found, *(Fault(f"axes.{x.path}", x.message) for x in also)])
