@@ -336,6 +336,22 @@ def test_an_option_without_effect_is_refused(command, said, tmp_path, capsys, mo
     assert said in capsys.readouterr().err
 
 
+def test_no_simulations_of_an_audit_are_not_those_by_default(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("my.toml").write_text(PAPER.to_toml())
+    asked = []
+
+    def audit(*_, simulations, **__):
+        asked.append(simulations)
+        raise st.StictionError("enough")
+
+    monkeypatch.setattr("stiction.auditing.report.audit", audit)
+    monkeypatch.setattr("stiction.cli.commands.audit.record_or_none", lambda *_, **__: "record")
+    for given in ((), ("-n", "0"), ("-n", "7")):
+        assert inside("audit", "my.toml", "--record", "my.csv", *given) == 2
+    assert asked == [4000, 0, 7]
+
+
 def test_a_misspelt_table_is_no_table_of_a_run():
     """An audit, a fit and a study of stability left [laod] out, without a word."""
     with pytest.raises(

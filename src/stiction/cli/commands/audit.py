@@ -85,10 +85,9 @@ def audit(
         seen = record_or_none(record, measured, trust, simulations=simulations, library=library)
     faults.refuse()
     kept = None if seen is None else library_or_cache(library)
+    count = SIMULATIONS if simulations is None else simulations
     with progress("auditing") as report:
-        found = examine(
-            rig, report, record=seen, simulations=simulations or SIMULATIONS, library=kept
-        )
+        found = examine(rig, report, record=seen, simulations=count, library=kept)
     print_sections(title, found.tables())
     if output is not None:
         with progress("drawing"):
