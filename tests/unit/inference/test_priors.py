@@ -155,3 +155,14 @@ def test_an_uncertain_value_beside_a_fault_is_read_in_any_of_its_units(mass):
     with pytest.raises(DescriptionError) as error:
         st.Rig.from_toml(text, {"colour": 1})
     assert [fault.path for fault in error.value.faults] == ["colour"]
+
+
+def test_a_share_of_a_negative_value_is_that_of_its_size():
+    prior = rig(phi='{value = "−2 deg", uncertainty = "10 %"}').priors["phi"]
+    assert prior == Normal(-np.radians(2.0), np.radians(0.2))
+
+
+def test_a_value_in_another_unit_is_told_once():
+    with pytest.raises(DescriptionError) as error:
+        rig(phi='{value = "2 kg", uncertainty = "0 kg"}')
+    assert [fault.path for fault in error.value.faults] == ["slider.phi"]
