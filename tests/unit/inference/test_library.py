@@ -89,3 +89,10 @@ def test_progress_is_told_within_the_first_block(monkeypatch):
     assert told[0] == 1 / (2 * BLOCK)
     assert told == sorted(told)
     assert told[-1] == 1.0
+
+
+@pytest.mark.parametrize("count", [0, -40])
+def test_no_simulations_are_refused(count):
+    """A fit with -n 0 ended in a traceback."""
+    with pytest.raises(st.DescriptionError, match=f"simulations: must be at least 1, is {count}"):
+        simulate_all(None, count, None, seed=0)

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.arrays import Floats
-from stiction.errors import ResultError
+from stiction.errors import DescriptionError, ResultError
 from stiction.inference.columns import dummy
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features
@@ -60,7 +60,14 @@ def simulate_all(
 
     Features of a record with too few cycles are NaN. What a folder holds already is not simulated
     again: simulation number i is the same whatever the number of others.
+
+    Raises
+    ------
+    DescriptionError
+        If there is to be none.
     """
+    if count < 1:
+        raise DescriptionError.of("simulations", f"must be at least 1, is {count}")
     blocks = range((count + BLOCK - 1) // BLOCK)
     done = (
         {}
