@@ -255,7 +255,7 @@ def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = F
     with faults.of_part():
         exportable(path)
     with faults.of_part():
-        run = result if isinstance(result, Trajectory) else load(result, trust=trust)
+        run = run_of(result, trust)
     faults.refuse()
     about = {
         "description": run.description.to_toml(),
@@ -263,6 +263,11 @@ def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = F
         "status": run.status.name,
     }
     return write_tables({"samples": run.data, "sticks": run.sticks}, path, about)
+
+
+def run_of(source: Trajectory | str | Path, trust: bool) -> Trajectory:
+    """Return a run, or that of a file; see `load`."""
+    return source if isinstance(source, Trajectory) else load(source, trust=trust)
 
 
 def load(path: str | Path, *, trust: bool = False) -> Trajectory:

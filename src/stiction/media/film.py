@@ -32,7 +32,7 @@ from stiction.system.description import Description
 from stiction.text.quantity_text import metric_prefix
 from stiction.text.units import Duration, Quantity, in_words
 from stiction.text.validation import Described, read_arguments
-from stiction.trajectory import Trajectory, load
+from stiction.trajectory import Trajectory, run_of
 
 SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
 FRAME_RATE = 25  # frames a second
@@ -186,7 +186,7 @@ def excerpt(
                 f"{lasts:g} s"
             )
     with faults.of_part():
-        description = (run if isinstance(run, Trajectory) else load(run, trust=trust)).description
+        description = run_of(run, trust).description
         with faults.of_part():
             start, end = window_of(description, window)
         with faults.of_part():

@@ -23,7 +23,7 @@ from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.text.units import Quantity, in_words
 from stiction.text.validation import read_arguments
-from stiction.trajectory import Trajectory, load
+from stiction.trajectory import Trajectory, run_of
 
 WAV = (".wav",)
 RATE = 48_000  # samples of sound a second
@@ -158,7 +158,7 @@ def passage(
         with faults.of_part():
             chosen = read_speed(speed)
     with faults.of_part():
-        description = (run if isinstance(run, Trajectory) else load(run, trust=trust)).description
+        description = run_of(run, trust).description
         with faults.of_part():
             start, end = window_of(description, window)
     faults.refuse()

@@ -218,7 +218,7 @@ def test_swings_that_die_out_on_two_springs_alike_are_no_transverse_oscillation(
 
 
 def test_turning_points_of_a_known_signal():
-    """A sine's extrema are found to within the error of a parabola, (omega dt)^4/..., 1e-5."""
+    """A sine's extrema are found, to within the ripple on it and rates that are differences."""
     t = np.arange(0.0, 1.0, 1.0 / 320.0)
     signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
     found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0, len(t), 32)

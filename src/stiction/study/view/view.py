@@ -135,10 +135,8 @@ def broken_changes(path: str | Path) -> list[str]:
 
 
 def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
-    """Return the measures to draw."""
+    """Return the measures to draw: those given, which `view_study` has found, or its first."""
     kept = kept_measures(view.data)
-    if strange := [*strange_measures(view.data, measures)]:
-        raise DescriptionError(strange)
     measures = by_new_names(measures, FORMERLY, "measure")
     if not kept:
         raise DescriptionError.of(
