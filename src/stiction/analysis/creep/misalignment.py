@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from math import exp, inf, pi
+from math import cos, exp, inf, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -25,6 +25,7 @@ SLIDING = {w: exp(-0.5 * (w / 0.1) ** 2) for w in (-0.2, -0.1, 0.0, 0.1, 0.2)}
 OFF = 0.1  # of the velocity: largest common error of the theory that is tried
 # Angles theta (rad) at which creep is tabled: near zero, where only a trial of a fit comes, and far
 ANGLES = np.concatenate([np.geomspace(1e-3, 0.5, 300), np.linspace(0.5, pi - 0.01, 300)[1:]])
+SINE, COSINE = np.sin(ANGLES), np.cos(ANGLES)
 STRETCH = 0.05, 1.0  # of the loading time: time to slip of the bins that are fitted
 REST_SPEED = 1e-6  # of the drive velocity: slower is rest
 SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
@@ -300,10 +301,11 @@ def turning_creep(phi: float, weakening: float, ratio: float) -> TurningCreep:
     With r = 0 this is Eq. (7), |s| = V sin(phi)/sin(theta). Friction is F_0/(1 + weakening |s|/V),
     as in `crept_force`.
     """
-    sine, cosine = np.sin(ANGLES), np.cos(ANGLES)
-    turned = (1.0 - ratio) * sine * cosine / (sine**2 + ratio * cosine**2)
-    slip = np.cos(ANGLES - phi) - np.sin(ANGLES - phi) * turned  # below zero against the force
-    force = cosine / np.maximum(1.0 + weakening * np.abs(slip), TINY)
+    along = COSINE * cos(phi) + SINE * sin(phi)  # cos(theta - phi)
+    across = SINE * cos(phi) - COSINE * sin(phi)
+    turned = (1.0 - ratio) * SINE * COSINE / (SINE**2 + ratio * COSINE**2)
+    slip = along - across * turned  # below zero against the force
+    force = COSINE / np.maximum(1.0 + weakening * np.abs(slip), TINY)
     slips = int(np.argmax(force))
-    rising, velocity = force[slips:][::-1], (np.cos(ANGLES - phi) * slip)[slips:][::-1]
+    rising, velocity = force[slips:][::-1], (along * slip)[slips:][::-1]
     return TurningCreep(np.maximum.accumulate(rising), velocity)
