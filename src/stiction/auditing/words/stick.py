@@ -87,8 +87,9 @@ def _why(found: Audit, inertia: float) -> str:
             if isfinite(distance)
             else f"{in_words(_moved_while_loaded(seen), 'm')} while the force rises"
         )
+        creep = "mostly creep" if seen.shares.creep > seen.shares.rest else "creep with short rests"
         return (
-            f"The apparent stick is mostly creep under a turning friction force: an artefact "
+            f"The apparent stick is {creep} under a turning friction force: an artefact "
             f"of the misalignment. {moments}The mass covers {far}. The largest force shows how far "
             f"friction has turned; it is not evidence of static friction."
         )
