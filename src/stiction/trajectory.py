@@ -120,7 +120,8 @@ class Trajectory:
         return hash((self.status, self.statistics))
 
     def _repr_html_(self) -> str:
-        head = Section("Run", [str(self), f"Status: {self.status.value}."], self._facts())
+        seen = f"{len(self.samples['time'])} samples to {in_words(self.samples['time'][-1], 's')}"
+        head = Section("Run", [f"{seen}: {self.status.value}."], self._facts())
         slider = Section("Slider", [], parameter_table(slider_tables(self.slider)))
         return as_html([head]) + picture("plot_glance", self) + as_html([slider])
 

@@ -2,6 +2,7 @@
 
 import inspect
 import pydoc
+import re
 import typing
 
 import numpy as np
@@ -183,21 +184,54 @@ def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
         "st.Record(time=<3000 values>, force=<3000 values>, normal_load="
     )
     shown = (slider, run, st.analyse(run), study)
-    assert "<td>run.duration</td><td>5 s</td>" in base._repr_html_()
+    assert " run.duration  5 s " in words(base)
     for each in shown:
         assert len(repr(each)) < 250
         page = each._repr_html_()
         assert page.startswith("<h4>")
-        assert "<table>" in page
+        assert "<table><thead>" in page
         assert "<script" not in page
-    assert "<td>1 N</td>" in record._repr_html_()
+    assert " 1 N " in words(record)
     stability = st.stability(slider, over="phi")
     # a sketch, small figures, and what each object's plot() draws
     for each in (slider, run, record, st.analyse(run), stability):
         assert 'src="data:image/png;base64,iVBOR' in each._repr_html_()
-    assert f"<td>{run.statistics.stick_count}</td>" in run._repr_html_()
-    assert "<td>slider.phi</td><td>1 deg</td>" in slider._repr_html_()
-    assert "COMPLETED" in run._repr_html_() or "completed" in run._repr_html_()
+    assert f" {run.statistics.stick_count} " in words(run)
+    assert " slider.phi  1 deg " in words(slider)
+    assert " 501 samples to 50 ms: the run reached its duration. " in words(run)
+
+
+def words(shown):
+    """Return what a notebook shows of an object, without its tags."""
+    return re.sub("<.+?>", " ", shown._repr_html_()).replace("\N{NO-BREAK SPACE}", " ")
+
+
+def test_a_notebook_shows_values_as_a_file_states_them_without_the_brackets_of_python(slider):
+    """A rig showed {'low': '0.5 deg', ...}, a study st.Grid(start='1 deg', ...)."""
+    text = slider.to_toml().replace('"1 deg"', '{low = "0.5 deg", high = "5 deg", scale = "log"}')
+    base = st.Description(slider, st.Initial(), st.Settings(duration=5))
+    study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "3 deg", 3), "mass": st.Values([1])})
+    test = st.protocols.DriveProgram(
+        velocity="1 mm/s", program=[st.protocols.Hold("1 s"), st.protocols.Free()]
+    )
+    for shown, told in (
+        (st.Rig.from_toml(text), "slider.phi  low = 0.5 deg, high = 5 deg, scale = log "),
+        (study, "axes.phi  from = 1 deg, to = 3 deg, count = 3"),
+        (study, "axes.mass  values = 1"),
+        (slider.replace(drive=test), "drive.program  piece = hold, duration = 1 s; piece = free "),
+    ):
+        assert told in words(shown)
+        assert not set("{}[]()'") & set(words(shown))
+
+
+def test_a_notebook_aligns_words_at_the_left_and_numbers_at_the_right(paper_run):
+    """JupyterLab puts every cell at the right that does not say its side."""
+    page = st.analyse(paper_run)._repr_html_()
+    assert 'style="text-align: left">largest force</td>' in page
+    energy = page.split("<h4>Energy</h4>")[1]
+    assert '<th style="text-align: right">work' in energy.replace("\N{NO-BREAK SPACE}", " ")
+    assert "<td>" not in page
+    assert "<th>" not in page
 
 
 def test_a_record_without_samples_shows_itself_without_a_figure():

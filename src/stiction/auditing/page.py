@@ -16,7 +16,7 @@ from stiction.auditing.words.verdict import AS_DESCRIBED, RECORD, VERDICT
 from stiction.plotting.page.save import png
 from stiction.plotting.page.style import PAGE
 from stiction.storage.files import placeable, whole
-from stiction.text.sections import html
+from stiction.text.sections import html, table_html
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
@@ -90,7 +90,7 @@ def page(found: Audit, name: str) -> str:
     environment = Environment(
         loader=PackageLoader("stiction.auditing", "."), autoescape=True, trim_blocks=True
     )
-    environment.filters["html"] = html
+    environment.filters.update(html=html, table=table_html)
     return environment.get_template("page.html.jinja").render(
         name=name,
         version=stiction.__version__,

@@ -43,14 +43,8 @@ def table(found: Table, room: int = 80) -> Grid:
     wide = widths(columns, inside)
     if None in wide and len(columns) > 2:
         return cells_in_lines(found)
-    for cells, width in zip(columns, wide, strict=True):
-        numbers = all(number(cell) for cell in cells[1:])
-        shown.add_column(
-            plain(cells[0]),
-            justify="right" if numbers else "left",
-            overflow="fold",
-            width=width,
-        )
+    for heading, side, width in zip(found.headings, found.sides(), wide, strict=True):
+        shown.add_column(plain(heading), justify=side, overflow="fold", width=width)
     for row in found.rows:
         shown.add_row(*(plain(cell) for cell in row))
     return shown
@@ -89,12 +83,3 @@ def narrowest(cells: Iterable[str]) -> int:
     """
     words = (word for text in cells for word in re.split(r"(?<!\d)\s+(?!s/m)", text))
     return min(max(map(len, words), default=0), LONGEST_WORD)
-
-
-def number(text: str) -> bool:
-    """Return whether a cell is a bare number, or a placeholder for one."""
-    try:
-        float(text)
-    except ValueError:
-        return text == "none"
-    return True

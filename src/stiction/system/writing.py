@@ -37,22 +37,27 @@ def slider_tables(slider: Slider) -> dict[str, TomlTable]:
 def parameter_table(tables: Mapping[str, TomlTable]) -> Table:
     """Return the parameters of all tables of a description as rows of path and text."""
     rows = [
-        (f"{name}.{key}", str(abbreviate(value)))
+        (f"{name}.{key}", in_plain(value))
         for name, table in tables.items()
         for key, value in table.items()
     ]
     return Table(("parameter", "value"), rows)
 
 
-def abbreviate(value: Any) -> Any:
-    """Return a value in which a length replaces long lists of numbers, as of recorded tables."""
+def in_plain(value: Any) -> str:
+    """Return a value of a description without brackets, and the length of a long list of numbers.
+
+    >>> in_plain([{"piece": "hold", "duration": "1 s"}, {"piece": "free"}])
+    'piece = hold, duration = 1 s; piece = free'
+    """
     if isinstance(value, Mapping):
-        return {name: abbreviate(each) for name, each in value.items()}
+        return ", ".join(f"{name} = {in_plain(each)}" for name, each in value.items())
     if not isinstance(value, list | tuple):
-        return value
-    if len(value) > LONGEST_LIST and not any(isinstance(each, Mapping) for each in value):
+        return str(value)
+    tables = any(isinstance(each, Mapping) for each in value)
+    if len(value) > LONGEST_LIST and not tables:
         return f"{len(value)} values"
-    return [abbreviate(each) for each in value]
+    return ("; " if tables else ", ").join(map(in_plain, value))
 
 
 def describe(value: Any, names: Iterable[str]) -> TomlTable:

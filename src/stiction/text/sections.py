@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from stiction.names import own_picture
 
@@ -19,11 +19,25 @@ class Table(NamedTuple):
     headings: tuple[str, ...]
     rows: Sequence[tuple[str, ...]]
 
+    def sides(self) -> list[Literal["left", "right"]]:
+        """Return the side at which each column is aligned: bare numbers at the right."""
+        columns = list(zip(*self.rows, strict=True)) or [()] * len(self.headings)
+        return ["right" if all(map(_is_number, cells)) else "left" for cells in columns]
+
     def to_dataframe(self) -> pd.DataFrame:
         """Return the table as a pandas data frame, its cells as text."""
         import pandas as pd
 
         return pd.DataFrame(list(self.rows), columns=list(self.headings))
+
+
+def _is_number(text: str) -> bool:
+    """Return whether a cell is a bare number, or a placeholder for one."""
+    try:
+        float(text)
+    except ValueError:
+        return text == "none"
+    return True
 
 
 class Section(NamedTuple):
@@ -84,7 +98,7 @@ def as_text(parts: Iterable[Section]) -> str:
 
 def join_units(text: str) -> str:
     """Return a text whose numbers are not parted from their units at the end of a line."""
-    return re.sub(r"(?<=\d) (?=\S)", "\N{NO-BREAK SPACE}", text)
+    return re.sub(r"(?<=\d) (?=\S)| (?=s/m\b)", "\N{NO-BREAK SPACE}", text)
 
 
 def html(text: str) -> str:
@@ -103,10 +117,22 @@ def as_html(parts: Iterable[Section]) -> str:
         lines.append(f"<h4>{escape(part.title)}</h4>")
         lines += [f"<p>{html(sentence)}</p>" for sentence in part.sentences]
         if part.table is not None:
-            rows = [("th", part.table.headings), *(("td", row) for row in part.table.rows)]
-            body = (
-                "<tr>" + "".join(f"<{tag}>{escape(cell)}</{tag}>" for cell in row) + "</tr>"
-                for tag, row in rows
-            )
-            lines.append(f"<table>{''.join(body)}</table>")
+            lines.append(table_html(part.table))
     return "\n".join(lines)
+
+
+def table_html(table: Table) -> str:
+    """Return a table as HTML, each cell with its side: a notebook puts all of them at the right.
+
+    >>> table_html(Table(("sticks",), [("12",)])).split("<td ")[1]
+    'style="text-align: right">12</td></tr></tbody></table>'
+    """
+    sides = table.sides()
+
+    def line(tag: str, cells: Sequence[str]) -> str:
+        inside = zip(cells, sides, strict=True)
+        made = (f'<{tag} style="text-align: {side}">{html(cell)}</{tag}>' for cell, side in inside)
+        return f"<tr>{''.join(made)}</tr>"
+
+    body = "".join(line("td", row) for row in table.rows)
+    return f"<table><thead>{line('th', table.headings)}</thead><tbody>{body}</tbody></table>"

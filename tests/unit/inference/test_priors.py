@@ -130,7 +130,7 @@ def test_a_rig_writes_what_was_stated_and_reads_it_back():
     assert 'k_x = { value = "900 N/m", uncertainty = "63 N/m" }' in written
     assert f"mu_0 = {stated['mu_0']}" in written
     assert st.Rig.from_toml(written) == found
-    assert "900 N/m" in found._repr_html_()
+    assert "900\N{NO-BREAK SPACE}N/m" in found._repr_html_()
 
 
 def test_a_share_has_the_digits_of_the_value():

@@ -73,7 +73,7 @@ def test_what_is_stored_holds_its_rows(config, tmp_path):
         pickle.loads(pickle.dumps(made)),
     ):
         assert copy == made
-    assert "201 values" in made.slider._repr_html_()
+    assert "201\N{NO-BREAK SPACE}values" in made.slider._repr_html_()
 
 
 def test_changed_rows_are_refused(config):

@@ -39,7 +39,7 @@ from stiction.study.variables.observed_run import seconds_of
 from stiction.system import parameter
 from stiction.system.description import Description
 from stiction.system.writing import parameter_table, slider_tables
-from stiction.text.sections import Section, Table, as_html
+from stiction.text.sections import Section, as_html
 from stiction.text.toml import folder_of, read_changed, read_json
 from stiction.text.units import Whole
 from stiction.text.validation import Described, faulty, unknown_name
@@ -165,11 +165,11 @@ class Study(Described):
         return f"<Study of {self.layout.runs} runs: {axes}>"
 
     def _repr_html_(self) -> str:
-        axes = [(path, f"{axis.count} values: {axis!r}") for path, axis in self.axes.items()]
-        kept = f"Keeps of each run: {', '.join([*self.measures, *self.traces])}."
+        axes = {"axes": {path: axis_table(axis) for path, axis in self.axes.items()}}
+        kept = f"Stored of each run: {', '.join([*self.measures, *self.traces])}."
         return as_html(
             [
-                Section(f"Study of {self.layout.runs} runs", [kept], Table(("axis", ""), axes)),
+                Section(f"Study of {self.layout.runs} runs", [kept], parameter_table(axes)),
                 Section("Base", [], parameter_table(slider_tables(self.base.slider))),
             ]
         )
