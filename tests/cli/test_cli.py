@@ -100,6 +100,17 @@ def test_help_has_an_example_of_each_option_and_speaks_of_what_the_command_takes
     assert "CONFIG" in words or not any("CONFIG" in text for text in words.values())
 
 
+@pytest.mark.parametrize("name", ["analyse", "audit", "design", "explore", "fit", "import"])
+def test_help_has_the_options_of_a_record_s_file_behind_those_of_the_command(name, capsys):
+    """Twenty of them stood in one list with the four of `stiction analyse`."""
+    inside(name, "--help")
+    own, of_record = capsys.readouterr().out.split("How a record is read")
+    assert "--separator" in of_record
+    assert "--separator" not in own
+    for option in ("--output", "--port", "--trust", "--set"):
+        assert f"{option} " not in of_record
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [

@@ -82,7 +82,7 @@ Library = Annotated[
 ]
 
 
-@Parameter(name="*")
+@Parameter(name="*", group="How a record is read")
 @dataclass(frozen=True, kw_only=True)
 class RecordOptions:
     """What the user says about the file of a measured record.
