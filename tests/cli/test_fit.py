@@ -1,5 +1,6 @@
 """``stiction fit``, on a run that is taken as a record."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -49,7 +50,8 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     assert inside(*command, *units, "--mechanism") == 0
     said = capsys.readouterr().out
     assert "mN" in said  # the guess of the file is shown
-    assert "phi is" in said
+    assert len(re.findall(r"^ phi +\S+ deg +\S+ to ", said, re.M)) == 1
+    assert said.count("mu_inf ") == 1  # its interval stands in the table alone
     assert "Experimental" in said
     assert "Compared with" in said
     assert "called 1, 2" in said.lower()

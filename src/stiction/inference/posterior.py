@@ -27,7 +27,7 @@ from stiction.system.parameter import unit
 from stiction.text.paths import last_part, short_names
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Report, Section, Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, span
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95
@@ -178,11 +178,6 @@ class Fit(Report):
     def tables(self) -> list[Section]:
         """Return the report: what is known, and what the records do not say."""
         sentences = self.doubts
-        sentences += [
-            f"{x.name} is {in_words(x.median, x.unit)}, 95 % interval {in_words(x.low, x.unit)} to "
-            f"{in_words(x.high, x.unit)}."
-            for x in self.known
-        ]
         if self.unidentified:
             sentences.append(
                 f"Not identifiable from these records: {', '.join(self.unidentified)}. The "
@@ -204,7 +199,7 @@ class Fit(Report):
         remarks |= dict.fromkeys(self.beyond, "beyond its prior")
         short = short_names(x.name for x in self.estimates)  # the sentences have the whole name
         rows = [row(x, short[x.name], remarks.get(x.name, "")) for x in self.estimates]
-        headings = ("parameter", "posterior", "95 %", "prior", "95 %", "width", "coverage")
+        headings = ("parameter", "posterior", "its 95 %", "prior", "its 95 %", "width", "coverage")
         return [Section("Fit", sentences, Table(headings, rows))]
 
     @property
@@ -395,13 +390,12 @@ def dataset(plan: Plan, scores: Floats) -> xr.Dataset:
 
 def words(x: Estimate) -> str:
     """Return an estimate in a few words."""
-    return f"{in_words(x.median, x.unit)} ({in_words(x.low, x.unit)} to {in_words(x.high, x.unit)})"
+    return f"{in_words(x.median, x.unit)} ({span(x.low, x.high, x.unit)})"
 
 
 def row(x: Estimate, short: str, remark: str) -> tuple[str, ...]:
     """Return a row of the report; a remark stands in place of the value, if there is one."""
     after = remark or in_words(x.median, x.unit)
-    between = f"{in_words(x.low, x.unit)} to {in_words(x.high, x.unit)}"
-    before = f"{in_words(x.prior_low, x.unit)} to {in_words(x.prior_high, x.unit)}"
+    between, before = span(x.low, x.high, x.unit), span(x.prior_low, x.prior_high, x.unit)
     shares = percent(x.narrower), percent(x.coverage)
     return (short, after, between, in_words(x.prior_median, x.unit), before, *shares)
