@@ -114,7 +114,10 @@ def plot_creep(
         else:
             ax.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
             lowest = float(np.nanmin(value - 2.0 * error, initial=0.0)) / V
-            ax.set_ylim(min(-0.05, max(-0.4, 1.1 * lowest)), 1.3)
+            seen = np.append(value + 2.0 * error, curves["velocity"])
+            # the lines to compare with go up to the drive's velocity and beyond
+            highest = 1.3 if lines else min(1.1 * np.nanmax(seen / V, initial=0.05), 1.3)
+            ax.set_ylim(min(-0.05 * highest, max(-0.4, 1.1 * lowest)), highest)
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
         low, high = ax.get_ylim()
