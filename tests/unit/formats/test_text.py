@@ -144,7 +144,7 @@ def test_no_group_is_seen_in_columns(write):
 
 def test_a_comma_that_may_group_thousands_is_refused(write):
     path = write("time [s];force [N]\n1,000;1,500\n1,100;1,600\n1,200;1,700\n")
-    with pytest.raises(st.ResultError, match="or groups thousands; say --decimal comma"):
+    with pytest.raises(st.ResultError, match="or groups thousands; say decimal='comma'"):
         st.read_record(path)
     assert st.read_record(path, decimal="comma").force.tolist() == [1.5, 1.6, 1.7]
 
@@ -272,7 +272,7 @@ def test_a_column_without_a_unit_is_refused(write):
     path = write(f"time,force\n{lines()}")
     with pytest.raises(st.ResultError, match="column 2 'force' states no unit of the force"):
         st.read_record(path)
-    with pytest.raises(st.ResultError, match="column 1 'time' states no unit of time; say --time"):
+    with pytest.raises(st.ResultError, match="column 1 'time' states no unit of time; say time"):
         st.read_record(path, force="mN")
     record = st.read_record(path, time="ms", force="mN")
     assert record.time[1] == 0.5e-3
@@ -317,7 +317,7 @@ def test_grams_of_force(write, unit, size):
 @pytest.mark.parametrize("said", [{}, {"force": "MPa"}])
 def test_a_stress_is_a_force_by_the_area_it_acts_on(write, said):
     path = write("time [s],shear stress [MPa]\n" + lines(columns=(TIME, FORCE[::-1])))
-    with pytest.raises(st.ResultError, match=r"--force '2=25 mm\^2\*MPa'; a stress times the area"):
+    with pytest.raises(st.ResultError, match=r"force='2=25 mm\^2\*MPa'; a stress times the area"):
         st.read_record(path, **said)
     record = st.read_record(path, force="2=25 mm^2*MPa")
     assert record.force == pytest.approx(25.0 * FORCE[::-1])
@@ -353,7 +353,7 @@ def test_volts_whose_scale_stands_elsewhere(write):
     path = write(f"CH1 scale 2.5 N/V\ntime [s],CH1 [mV]\n{lines()}")
     with pytest.raises(st.ResultError) as error:
         st.read_record(path)
-    assert "column 2 'CH1 [mV]' is in mV, and its scale is needed; say --force '2=2.5 N/mV'" in str(
+    assert "column 2 'CH1 [mV]' is in mV, and its scale is needed; say force='2=2.5 N/mV'" in str(
         error.value
     )
     assert "line 1 says 'CH1 scale 2.5 N/V'" in str(error.value)
@@ -363,14 +363,14 @@ def test_volts_whose_scale_stands_elsewhere(write):
 
 def test_a_word_that_is_a_column_and_a_unit_is_refused(write):
     path = write(f"t [s],N [N],F [N]\n{lines(columns=(TIME, FORCE, FORCE))}")
-    with pytest.raises(st.ResultError, match="'N' is a column and a unit; say --force 'N='"):
+    with pytest.raises(st.ResultError, match="'N' is a column and a unit; say force='N='"):
         st.read_record(path, force="N")
     assert np.allclose(st.read_record(path, force="N=").force, FORCE, rtol=1e-15)
 
 
 def test_a_load_alone_may_be_either_force(write):
     path = write(f"time [s],load [N]\n{lines()}")
-    with pytest.raises(st.ResultError, match="say --force 2 or --load 2"):
+    with pytest.raises(st.ResultError, match="say force=2 or load=2"):
         st.read_record(path)
     assert st.read_record(path, force="load").load is None
 
@@ -504,7 +504,7 @@ def test_a_stated_interval_in_place_of_times(write, line, interval):
 
 def test_no_times_and_no_interval_is_refused(write):
     path = write(f"force [N]\n{lines(columns=(FORCE,))}")
-    with pytest.raises(st.ResultError, match=r"no column is the time.*or give --interval"):
+    with pytest.raises(st.ResultError, match=r"no column is the time.*or give interval"):
         st.read_record(path)
     assert st.read_record(path, interval="2 ms").time[1] == 2e-3
 
@@ -519,7 +519,7 @@ def test_a_time_column_that_holds_a_changing_sample_period(write):
 def test_a_column_that_may_be_a_clock_or_a_period_is_refused(write):
     values = np.repeat([1.0, 2.0], 100)
     path = write(f"time [ms],force [N]\n{lines(columns=(values, np.arange(200.0)))}")
-    with pytest.raises(st.ResultError, match="say --times clock or --times intervals"):
+    with pytest.raises(st.ResultError, match="say times='clock' or times='intervals'"):
         st.read_record(path)
     assert st.read_record(path, times="clock").duration < 3e-3
     assert st.read_record(path, times="intervals").duration == pytest.approx(0.299, rel=1e-12)
@@ -610,7 +610,7 @@ def test_points_that_may_group_thousands_are_asked_for(write, below, separator):
     path = write(f"Zeit [ms]{separator}Kraft [mN]\n" + "".join(
         f"{t}{separator}{f}\n" for t, f in rows
     ))  # fmt: skip
-    with pytest.raises(st.ResultError, match="say --decimal point or --decimal comma"):
+    with pytest.raises(st.ResultError, match="say decimal='point' or decimal='comma'"):
         st.read_record(path)
     record = st.read_record(path, decimal="comma")
     assert record.force == pytest.approx(1e-3 * force)
@@ -634,7 +634,7 @@ def test_a_bridge_has_a_scale_in_newtons_per_millivolt_per_volt(write):
     path = write("Time [s],Force [mV/V]\n" + lines(columns=(TIME, FORCE / 5.0), digits=6))
     for scale in ("2=5 N/(mV/V)", "2=5000 N/(V/V)"):
         assert st.read_record(path, force=scale).force == pytest.approx(FORCE)
-    with pytest.raises(st.ResultError, match=r"--force '2=2.5 N/\(mV/V\)'"):
+    with pytest.raises(st.ResultError, match=r"force='2=2.5 N/\(mV/V\)'"):
         st.read_record(path)
 
 
@@ -651,10 +651,10 @@ def test_a_remedy_names_a_column_that_may_serve(write):
     """It was always the second one."""
     days = 46082.5 + TIME / 86400.0
     cases = {
-        "Date,Force [N]\n" + lines(columns=(days, FORCE), digits=9): "--time '1=d'",
-        "Force [N],stamp\n" + lines(columns=(FORCE[::-1], TIME)): "--time '2=ms'",
+        "Date,Force [N]\n" + lines(columns=(days, FORCE), digits=9): "time='1=d'",
+        "Force [N],stamp\n" + lines(columns=(FORCE[::-1], TIME)): "time='2=ms'",
         "Time [s],Ch1 [V],Ch2 [V]\n" + lines(columns=(TIME, FORCE[::-1], FORCE)): "2=2.5 N/V",
-        ",force\n" + lines(columns=(2.0 * TIME, FORCE[::-1])): "--force '2=mN'",
+        ",force\n" + lines(columns=(2.0 * TIME, FORCE[::-1])): "force='2=mN'",
     }
     for text, remedy in cases.items():
         with pytest.raises(st.ResultError, match=remedy.replace("'", ".")):

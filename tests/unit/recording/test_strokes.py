@@ -83,7 +83,7 @@ def test_strokes_that_are_not_there_are_refused_with_a_remedy(path, tmp_path, ca
         st.read_record(path, stroke=0)
     alone = tmp_path / "force.csv"
     alone.write_text("time [s],Fx [N]\n" + "".join(f"{t},0.2\n" for t in range(9)))
-    with pytest.raises(st.ResultError, match="displacement of the drive; say --drive-position"):
+    with pytest.raises(st.ResultError, match="displacement of the drive; say drive_position"):
         st.read_record(alone, stroke=1)
     with pytest.raises(SystemExit) as ended:
         main(["analyse", str(path), "--block", "2"])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
@@ -17,6 +19,11 @@ from stiction.recording.strokes import stroke_of
 from stiction.storage.kinds import use_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
+
+WORDS = ("point", "comma", "clock", "intervals")  # values of options, which are not in quotes
+OPTION = re.compile(
+    rf"(?<![^\s(])--([a-z]+(?:-[a-z]+)*)(?: ('[^']*'|\d+|{'|'.join(WORDS)})(?!\w))?"
+)
 
 
 class ReadArguments(TypedDict, total=False):
@@ -108,6 +115,14 @@ def read_record(
     >>> record.force.tolist(), record.sample_rate
     ([0.0015, 0.0025, 0.0005], 2.0)
     """
+    with remedies_in_python():
+        return record_of_file(path, sidecar=sidecar, **said)
+
+
+def record_of_file(
+    path: str | Path, *, sidecar: str | Path | None = None, **said: Unpack[ReadArguments]
+) -> Record:
+    """Do as `read_record`, whose remedies are here options of a command."""
     found = _measurements(path, sidecar, dict(said))
     if len(found) > 1:
         listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")
@@ -148,6 +163,17 @@ def read_records(
     >>> [record.force.tolist() for record in st.read_records("strokes.csv")]
     [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
     """
+    with remedies_in_python():
+        return records_of_files(paths, sidecar=sidecar, **said)
+
+
+def records_of_files(
+    paths: str | Path | Iterable[str | Path],
+    *,
+    sidecar: str | Path | None = None,
+    **said: Unpack[ReadArguments],
+) -> tuple[Record, ...]:
+    """Do as `read_records`, whose remedies are here options of a command."""
     files = [Path(paths)] if isinstance(paths, str | Path) else [Path(each) for each in paths]
     if not files:
         raise ResultError("no file is given; name one or several")
@@ -176,11 +202,33 @@ def read_source(
         As of `stiction.load` or `read_record`; also if something is said about the file of a run.
     """
     if not is_run(Path(path)):
-        return read_record(path, sidecar=sidecar, **said)
+        return record_of_file(path, sidecar=sidecar, **said)
     given = [name for name, value in said.items() if value is not None]
     if given:
         raise ResultError(f"{path}: is the result of a run, in SI already: leave out {given[0]}")
     return load(path, trust=trust)
+
+
+@contextmanager
+def remedies_in_python() -> Iterator[None]:
+    """Turn options of a command, which errors give as remedies, into arguments of a function."""
+    try:
+        yield
+    except ResultError as error:
+        error.args = (OPTION.sub(as_argument, str(error)),)
+        raise
+
+
+def as_argument(option: re.Match[str]) -> str:
+    """Return an option as the argument of that name.
+
+    >>> OPTION.sub(as_argument, "say --force '2=mN', --block 1, --decimal comma or --normal-load")
+    "say force='2=mN', block=1, decimal='comma' or normal_load"
+    """
+    name, value = option[1].replace("-", "_"), option[2]
+    if value is None:
+        return name
+    return f"{name}={repr(value) if value in WORDS else value}"
 
 
 def is_run(path: Path) -> bool:

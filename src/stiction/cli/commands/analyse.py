@@ -123,7 +123,7 @@ def import_(
     json
         Write the guess as JSON, too. Example: --json guess.json.
     """
-    from stiction.analysis.measurement.reading import read_records
+    from stiction.analysis.measurement.reading import records_of_files
     from stiction.cli.tables import print_sections
     from stiction.storage.files import NETCDF, placeable, whole
 
@@ -132,7 +132,7 @@ def import_(
     if json is not None:
         placeable(json)
     said = (measured or RecordOptions()).arguments()
-    records = read_records([file, *files], **said)
+    records = records_of_files([file, *files], **said)
     targets: list[Path] = []
     if output is not None:
         several = len(records) > 1
