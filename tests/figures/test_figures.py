@@ -30,7 +30,7 @@ from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
-from stiction.plotting.inference.posterior import ParameterAxis, draw_parameter
+from stiction.plotting.inference.posterior import ParameterAxis, draw_parameter, panels_of
 from stiction.plotting.maps import Side, draw_slice
 from stiction.plotting.page.canvas import canvas, figure_of, fix_ticks
 from stiction.plotting.page.parameter import Scale, label_decades
@@ -975,3 +975,12 @@ def test_labels_of_ticks_have_room_beside_a_panel_that_a_legend_makes_lower() ->
     lay_out(fig)
     again = [ax.get_position().bounds for ax in (left, right)]
     assert np.array(first) == pytest.approx(np.array(again), abs=1e-3)
+
+
+@pytest.mark.parametrize(("count", "across"), [(1, 3), (4, 4), (5, 3), (6, 3), (7, 4), (9, 3)])
+def test_rows_of_parameters_are_as_long_as_each_other(count: int, across: int) -> None:
+    """Of five, four stood in a row and one below, beside an empty place for three."""
+    panels = panels_of(None, count, 1.6)
+    assert len(panels) == count
+    places = [ax.get_subplotspec() for ax in panels]
+    assert {each.get_gridspec().ncols for each in places if each is not None} == {across}

@@ -114,16 +114,15 @@ def plot_creep(
         else:
             ax.axhline(0.0, color=GREY, linewidth=0.6, zorder=1)
             lowest = float(np.nanmin(value - 2.0 * error, initial=0.0)) / V
-            seen = np.append(value + 2.0 * error, curves["velocity"])
-            # the lines to compare with go up to the drive's velocity and beyond
-            highest = 1.3 if lines else min(1.1 * np.nanmax(seen / V, initial=0.05), 1.3)
+            seen = [(value + 2.0 * error) / V, *(each.get_ydata() for each in ax.get_lines())]
+            highest = min(1.1 * float(np.nanmax(np.concatenate(seen), initial=0.05)), 1.3)
             ax.set_ylim(min(-0.05 * highest, max(-0.4, 1.1 * lowest)), highest)
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
         low, high = ax.get_ylim()
         for each in ax.get_lines():  # curves outside are not in the legend
-            seen = np.asarray(each.get_ydata(), dtype=np.float64)
-            if not ((seen > low) & (seen < high)).any():
+            its = np.asarray(each.get_ydata(), dtype=np.float64)
+            if not ((its > low) & (its < high)).any():
                 each.set_label("_outside")
         legend = ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
         legend.get_lines()[0].set_alpha(0.5)

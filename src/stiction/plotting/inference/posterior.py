@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from stiction.auditing.measured import RecordComparison
     from stiction.inference.posterior import Fit
 
-ACROSS = 4  # panels in a row
+ACROSS = 3, 4  # panels in a row, at least and at most
 BINS = 40
 FEW_BINS = 24  # of a posterior, whose draws repeat
 SHARES = (0.95, 0.5)  # of the posterior inside each contour
@@ -63,8 +63,10 @@ def plot_posterior(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.o
 
 def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequence[Axes]:
     """Return the given axes, or one for each parameter on a new page, in rows of a height (in)."""
-    rows = ceil(count / ACROSS)
-    panels = grid_of(axes, (PAGE, height * rows + 0.3), rows, ACROSS)
+    fewest, most = ACROSS
+    rows = ceil(count / most)
+    across = max(ceil(count / rows), fewest)
+    panels = grid_of(axes, (PAGE, height * rows + 0.3), rows, across)
     if axes is not None:
         return panels
     for ax in panels[count:]:

@@ -288,14 +288,14 @@ def test_trimmed_means_of_parts_are_those_of_their_sorted_values():
             assert error == pytest.approx(wanted, rel=1e-9, abs=1e-12, nan_ok=True)
 
 
-@pytest.mark.parametrize(("lines", "top"), [({}, 0.33), (creep_theory(V, 0.02, L_X), 1.3)])
+@pytest.mark.parametrize(("lines", "top"), [({}, 0.33), ({"to V": lambda t: V / (1.0 + t)}, 1.1)])
 def test_the_axis_of_a_creep_curve_ends_above_what_is_drawn(curves, lines, top):
     """It ended at 1.3 of the drive's velocity for a mass that rests, and creeps at 0.3 of it."""
     slow = curves.assign(velocity=curves["velocity"].clip(max=0.3 * V))
     mean = st.analysis.mean_creep(slow)
     rests = mean["velocity"].copy(data=[0.0, *mean["velocity"].values[1:]])
     ax = plot_creep(slow, mean.assign(velocity=rests), V, lines)
-    assert ax.get_ylim()[1] == pytest.approx(top)
+    assert ax.get_ylim()[1] == pytest.approx(top, rel=0.01)
 
 
 def test_no_slip_still_creeps(slider):
