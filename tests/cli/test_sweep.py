@@ -154,3 +154,19 @@ def test_an_interrupt_leaves_a_store_to_go_on_with(config, tmp_path):
     status = xr.open_zarr(tmp_path / "a.zarr")["status"].values
     assert 0 < (status == 0).sum() < status.size
     assert set(status.ravel().tolist()) == {-1, 0}
+
+
+@pytest.mark.parametrize(("duration", "said"), [("2.5 s", True), ("6 s", False)])
+def test_a_map_says_why_kinds_of_motion_are_not_known(tmp_path, capsys, duration, said):
+    """A white field of "undetermined" was all that told of runs that end before a cycle."""
+    base = st.Description(
+        st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration=duration, rtol=1e-3)
+    )
+    axes = {"phi": st.Values(["1 deg", "2 deg"]), "drive.velocity": st.Values(["1 mm/s", "2 mm/s"])}
+    store = tmp_path / "a.zarr"
+    st.sweep(st.Study(base=base, axes=axes, measures=["regime"]), store)
+    capsys.readouterr()
+    assert inside("map", store) == 0
+    told = capsys.readouterr().out
+    assert ("runs: most of such runs end before some whole cycles" in told) is said
+    assert not said or re.search(r"undetermined in [1-4] of 4 runs", told)

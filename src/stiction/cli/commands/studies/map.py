@@ -52,10 +52,12 @@ def map(
         The figure to write (.png, .pdf or .svg); by default STUDY.png beside the store. Example: -o
         map.png.
     """
+    from stiction.analysis.motion.regime.kinds import UNDETERMINED
     from stiction.cli.progress import progress
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
     from stiction.study.view.mapping import map as look
+    from stiction.study.view.view import REGIME, kinds
 
     cut = dict(parse_assignment(text, "--at") for text in at or ())
     faults = Faults()
@@ -69,3 +71,8 @@ def map(
         named = study if study.name.strip(".") else study.resolve()  # "." has no suffix
         written = write(figure_of(found.plot), output or named.with_suffix(".png"))
     say(f"wrote {written}")
+    if REGIME in found.measures and (unclear := int((kinds(found.data) == UNDETERMINED).sum())):
+        say(
+            f"undetermined in {unclear} of {found.data['status'].size} runs: most of such runs end "
+            "before some whole cycles; a longer duration shows them"
+        )
