@@ -2,9 +2,11 @@
 
 import json
 import re
+import shutil
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import xarray as xr
@@ -170,3 +172,25 @@ def test_a_map_says_why_kinds_of_motion_are_not_known(tmp_path, capsys, duration
     told = capsys.readouterr().out
     assert ("runs: most of such runs end before some whole cycles" in told) is said
     assert not said or re.search(r"undetermined in [1-4] of 4 runs", told)
+
+
+def test_the_next_command_has_the_trust_that_a_user_s_law_needs(config, tmp_path, capsys):
+    """`stiction map`, `plot` and `analyse`, as they were named, were refused."""
+    for name in ("mylaw.py", "own_law.toml"):
+        shutil.copy(Path(__file__).parents[2] / "examples" / name, tmp_path)
+    own = tmp_path / "own.toml"
+    own.write_text((tmp_path / "own_law.toml").read_text() + STUDY)
+    for path, trust in ((config, ""), (own, " --trust")):
+        short = (path, "--set", "duration=50ms", "-o")
+        capsys.readouterr()
+        assert inside("sweep", *short, path.with_suffix(".zarr"), "--threads", 1) == 0
+        assert f"next: stiction map {path.with_suffix('.zarr')}{trust}\n" in capsys.readouterr().out
+        plain = tmp_path / "plain.toml"
+        plain.write_text(path.read_text().replace(STUDY, ""))
+        assert inside("run", plain, *short[1:], tmp_path / "a.nc") == 0
+        said = capsys.readouterr().out
+        assert f"a.png{trust}, stiction analyse {tmp_path / 'a.nc'}{trust}\n" in said
+    command = [sys.executable, "-c", "from stiction.cli import main; main()"]
+    plot = [*command, "plot", "a.nc", "-o", "a.png"]
+    assert subprocess.run(plot, cwd=tmp_path, check=False, timeout=PATIENCE).returncode == 2
+    assert subprocess.run([*plot, "--trust"], cwd=tmp_path, check=False).returncode == 0

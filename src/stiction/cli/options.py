@@ -186,6 +186,14 @@ class RecordOptions:
         return {name: value for name, value in vars(self).items() if value is not None}
 
 
+def trust_in(slider: Slider) -> str:
+    """Return the option that later commands need where the law of a slider is a user's, or ''."""
+    from stiction.friction import law_table
+    from stiction.friction.user.loading import is_own
+
+    return " --trust" if is_own(law_table(slider.law)) else ""
+
+
 def library_or_cache(library: Path | None) -> Path:
     """Return the folder of libraries: that which is named, or else that in the user's cache.
 

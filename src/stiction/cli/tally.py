@@ -15,7 +15,6 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from stiction.cli.progress import EVERY, FIRST, clock, in_time, print_line
 from stiction.cli.terminal import say
-from stiction.errors import argument
 
 if TYPE_CHECKING:
     from stiction.study.execution.sweep import Tally
@@ -82,7 +81,6 @@ def _tell(output: Path, result: Summary) -> None:
     say(f"{output}: {result.runs - result.pending} runs")
     if result.first is not None:
         say(_failures(result))
-    say(f"next: stiction map {argument(output)}")
 
 
 def _failures(result: Summary) -> str:

@@ -5,7 +5,15 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
+from stiction.cli.options import (
+    Changes,
+    FromPreset,
+    Output,
+    Trust,
+    changes,
+    description_from,
+    trust_in,
+)
 from stiction.cli.terminal import say
 from stiction.errors import Faults, argument
 from stiction.text.quantity_text import percent
@@ -100,6 +108,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     count = len(result.samples["time"])
     sampled = " at start and end (sample_rate = 0)" if count <= 2 else ""
     seen = "" if peak.shown else ", at least"
+    name, trust = argument(output), trust_in(result.slider)
     lines += [
         f"{output}: {count} samples, stick intervals: "
         f"{statistics.stick_count}, {in_words(statistics.time_stuck, 's')} in all"
@@ -107,8 +116,8 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
         f"largest force of the spring along x, k_x u_x{sampled or seen}: "
         f"{in_words(peak.force, 'N')}"
         f"{f', {peak.force / load:.4g} of the normal load{then}' if load > 0.0 else ''}",
-        f"next: stiction plot {argument(output)} --output "
-        f"{argument(output.with_suffix('.png'))}, stiction analyse {argument(output)}",
+        f"next: stiction plot {name} --output {argument(output.with_suffix('.png'))}{trust}, "
+        f"stiction analyse {name}{trust}",
     ]
     if statistics.steps == 0 or (result.status.ok and rests_throughout(result)):
         still = not any(result.samples[name].any() for name in ("drive_X", "drive_Y"))

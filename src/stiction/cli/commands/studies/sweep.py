@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, Output, Trust, changes, parse_assignment
+from stiction.cli.options import Changes, Output, Trust, changes, parse_assignment, trust_in
 from stiction.cli.terminal import say
-from stiction.errors import DescriptionError, Faults, StictionError
+from stiction.errors import DescriptionError, Faults, StictionError, argument
 
 if TYPE_CHECKING:
     from stiction.study.execution.engines import Engine
@@ -130,6 +130,8 @@ def sweep(
     conclude(output, result)
     if found is not None and not (quiet or json_lines):
         say(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
+    if not (quiet or json_lines):
+        say(f"next: stiction map {argument(output)}{trust_in(study.base.slider)}")
     return 1 if result.failed else 0
 
 
