@@ -24,12 +24,13 @@ from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
 from stiction.text.sections import Report, Section, Table
 from stiction.text.toml import read_toml
+from stiction.text.units import in_words
 from stiction.text.validation import unknown_name
 from stiction.trajectory import Trajectory
 
 HEADINGS = (
-    "law", "sticks", "stuck (s)", "largest {}/W", "fastest slip (m/s)",
-    "slowest slip while loading (m/s)", "median slip while loading (m/s)",
+    "law", "sticks", "stuck", "largest {}/W", "fastest slip", "slowest slip while loading",
+    "median slip while loading",
 )  # fmt: skip
 ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is not a slip
 REST = 1e-9  # of the drive's speed: slower motion counts as rest
@@ -86,9 +87,9 @@ def row(label: str, run: Trajectory) -> tuple[str, ...]:
     drive = float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
     release = ROUNDED * initial.epsilon if initial.v_x is None else 0.0
     least = drive * (REST if o.fastest > release * drive else release)  # it sticks at once
-    speeds = (f"{v if v > least else 0.0:.3g}" for v in (o.fastest, o.slowest, o.creep))
-    stuck = (str(o.sticks), f"{o.time_stuck:.3g}")
-    return label, *stuck, f"{o.peak:.4f}", *speeds
+    shown = (v if v > least else 0.0 for v in (o.fastest, o.slowest, o.creep))
+    speeds = (in_words(v, "m/s", 3) for v in shown)
+    return label, str(o.sticks), in_words(o.time_stuck, "s", 3), f"{o.peak:.4f}", *speeds
 
 
 def add_sample_rate(description: Description) -> Description:

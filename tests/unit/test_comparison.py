@@ -455,7 +455,7 @@ def test_runs_that_never_slip_say_so_and_have_no_empty_axis(described: st.Descri
     legend = [text.get_text() for text in ax["words"].get_legend().get_texts()]
     assert all(each.endswith("no slip") for each in legend)
     fastest = found.tables()[0].table.rows[0][4]
-    assert fastest == "0"  # not the speed of the release, which a rest follows at once
+    assert fastest == "0 m/s"  # not the speed of the release, which a rest follows at once
 
 
 def test_zero_slip_is_shown_as_such(runs: dict[str, st.Trajectory]) -> None:
@@ -530,7 +530,7 @@ def test_compare_draws_and_tabulates(
     assert command(config, "--law", "coulomb", "--law", table, "-o", "a.png", "--data", "runs") == 0
     text = capsys.readouterr().out
     assert Path("a.png").read_bytes().startswith(b"\x89PNG")
-    rows = [line.rsplit(maxsplit=6) for line in text.splitlines() if line.startswith(names, 1)]
+    rows = [line.rsplit(maxsplit=10) for line in text.splitlines() if line.startswith(names, 1)]
     assert [row[0].strip() for row in rows] == [
         "exponential-weakening",
         "coulomb, mu_static = 0.2",
