@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Sequence
 from html import escape
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, NamedTuple
 
-from stiction.names import own_picture
+from stiction.names import draw, own_picture
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -70,7 +70,9 @@ class Report:
 
 
 class SectionReport(Report):
-    """A report of one section."""
+    """A report of one section, with a figure."""
+
+    _figure: ClassVar[str]  # its name in `stiction.plotting`
 
     @property
     def section(self) -> Section:
@@ -80,6 +82,10 @@ class SectionReport(Report):
     def tables(self) -> list[Section]:
         """Return the section, as reports of several do."""
         return [self.section]
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draw the figure that `stiction.plotting` has for it."""
+        return draw(self._figure, self, ax)
 
 
 def table_lines(table: Table) -> list[str]:

@@ -52,6 +52,8 @@ class Healing(SectionReport):
         the highest sample, a lower bound, and is not a point of the line.
     """
 
+    _figure = "plot_healing"
+
     hold: Floats
     steady: Floats
     peak: Floats

@@ -68,6 +68,8 @@ class Hysteresis(SectionReport):
         How many loops are left out, and why, in a sentence.
     """
 
+    _figure = "plot_hysteresis"
+
     loops: tuple[Loop, ...]
     left_out: tuple[str, ...] = ()
 

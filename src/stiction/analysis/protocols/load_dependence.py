@@ -44,6 +44,8 @@ class LoadDependence(SectionReport):
         Which levels are left out, and why, in sentences.
     """
 
+    _figure = "plot_load_dependence"
+
     load: Floats
     force: Floats
     coefficient: float

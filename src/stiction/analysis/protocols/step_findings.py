@@ -106,6 +106,8 @@ class VelocitySteps(SectionReport):
         standard error, 1/m; zero for a run, which has none.
     """
 
+    _figure = "plot_velocity_steps"
+
     steps: tuple[VelocityStep, ...]
     stiffness: float
     left_out: tuple[str, ...] = ()

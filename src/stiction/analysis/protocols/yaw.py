@@ -35,6 +35,8 @@ class ApparentFriction(SectionReport):
         (n,), friction along the drive in steady sliding, over the normal load: mu(V).
     """
 
+    _figure = "plot_apparent_friction"
+
     phi: Floats
     mean: Floats
     peak: Floats

@@ -115,7 +115,10 @@ def test_a_loop_of_constant_friction():
         assert each.width == pytest.approx(14e-3, abs=1e-5)
         assert each.area == pytest.approx(6.0 * 14e-3, abs=6.0 * 1e-5)
     assert "84 mJ" in str(found)
-    assert ">84\N{NO-BREAK SPACE}mJ</td>" in found._repr_html_()
+    page = found._repr_html_()
+    assert ">84\N{NO-BREAK SPACE}mJ</td>" in page
+    assert page.endswith('">')  # of the figure
+    assert "<img " in page
 
 
 LEVELS = st.protocols.load_ramp([20.0, 40.0, 30.0], ramp="0.2 s", hold="1 s")
