@@ -13,6 +13,7 @@ import stiction as st
 from stiction import plotting
 from stiction.cli import COMMANDS, main
 from stiction.cli.options import changes
+from stiction.errors import Faults
 from stiction.plotting.page.canvas import as_list, figure_of
 from stiction.text.paths import with_changes
 
@@ -226,7 +227,7 @@ TABLES = {
     ],
 )
 def test_a_parameter_is_set_by_its_path_or_short_name(text, way, value):
-    found, _ = with_changes(TABLES, changes([text]))
+    found, _ = with_changes(TABLES, changes([text], Faults()))
     for key in way:
         found = found[key]
     assert found == value
@@ -261,9 +262,42 @@ def test_set_reaches_every_command_that_reads_a_description(config, tmp_path, ca
     ],
 )
 def test_a_path_that_leads_nowhere_says_where_it_ends(text, words):
+    faults = Faults()
+    _, lost = with_changes(TABLES, changes([text], faults))
     with pytest.raises(st.StictionError) as error:
-        raise st.DescriptionError(with_changes(TABLES, changes([text]))[1])
+        raise st.DescriptionError(
+            [*lost, *(fault for each in faults.found for fault in each.faults)]
+        )
     assert words in str(error.value)
+
+
+def test_each_assignment_without_a_value_is_told_beside_other_faults(capsys, tmp_path):
+    """The first alone was told, and neither a further one nor another fault of the command."""
+    wrong = ("--set", "phi 3deg", "--set", "mass=3m", "--set", "k_x")
+    (tmp_path / "rig.toml").write_text(f'{PAPER.to_toml()}[run]\nduration = "5 s"\n')
+    for command in (
+        ("run", *wrong, "-o", tmp_path / "a.txt"),
+        ("compare", *wrong, "--law", "coulomb", "-o", tmp_path / "a.txt"),
+        ("audit", *wrong, "-o", tmp_path / "a.txt"),
+        ("stability", *wrong, "-o", tmp_path / "a.txt"),
+    ):
+        assert inside(command[0], tmp_path / "rig.toml", *command[1:]) == 2
+        told = capsys.readouterr().err
+        assert "--set 'phi 3deg' is not NAME=VALUE" in told
+        assert "--set 'k_x' is not NAME=VALUE" in told
+        assert "mass: '3m' is in m" in told
+        assert "unknown format '.txt'" in told
+    assert inside("sweep", "--preset", "yaw-angle", "-o", tmp_path / "a.zarr", *wrong,
+                  "--refine", "phi") == 2  # fmt: skip
+    told = capsys.readouterr().err
+    assert "--set 'k_x' is not NAME=VALUE" in told
+    assert "--refine 'phi' is not NAME=VALUE" in told
+    assert "mass: '3m' is in m" in told
+    assert inside("map", tmp_path / "none.zarr", "--at", "phi", "--at", "k_x") == 2
+    told = capsys.readouterr().err
+    assert "--at 'phi' is not NAME=VALUE" in told
+    assert "--at 'k_x' is not NAME=VALUE" in told
+    assert "none.zarr" in told
 
 
 RIG = PAPER.to_toml().replace('"1 deg"', '{low = "5 deg", high = "1 deg"}')

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from cyclopts import Parameter
 
-from stiction.errors import ResultError, StictionError, echo
+from stiction.errors import DescriptionError, Faults, ResultError, StictionError, echo
 
 if TYPE_CHECKING:
     from stiction.analysis.record import Record
@@ -313,16 +313,24 @@ def parse_assignment(text: str, option: str) -> tuple[str, str]:
     """Return name and value of an option's ``NAME=VALUE``."""
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
-        raise StictionError(
-            f"{option} {echo(text)} is not NAME=VALUE; write for example 'phi = 1 deg'"
-        )
+        message = f"{option} {echo(text)} is not NAME=VALUE; write for example 'phi = 1 deg'"
+        raise DescriptionError.of("", message)
     return name.strip(), value.strip()
 
 
-def changes(given: list[str] | None) -> dict[str, Any]:
+def parse_assignments(given: list[str] | None, option: str, faults: Faults) -> dict[str, str]:
+    """Return names and values of an option that may be repeated, and note those that are wrong."""
+    found: dict[str, str] = {}
+    for text in given or ():
+        with faults.of_part():
+            found.update([parse_assignment(text, option)])
+    return found
+
+
+def changes(given: list[str] | None, faults: Faults) -> dict[str, Any]:
     """Return the values of ``--set``: numbers, truth values and lists as in TOML."""
-    pairs = (parse_assignment(text, "--set") for text in given or ())
-    return {name: value(text) for name, text in pairs}
+    pairs = parse_assignments(given, "--set", faults)
+    return {name: value(text) for name, text in pairs.items()}
 
 
 def value(text: str) -> Any:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
-from functools import cache
+from functools import cache, partial
 from inspect import Parameter, Signature, signature
 from math import isinf
 from numbers import Real
@@ -225,7 +225,29 @@ def collect(
     try:
         return build(**values)
     except ValidationError as error:
-        raise DescriptionError(faults(error, path, known)) from None
+        found = faults(error, path, known)
+    again = partial(collect, path, build, known)
+    raise DescriptionError(with_faults_of_known(found, again, known, values))
+
+
+def with_faults_of_known(
+    found: Sequence[Fault],
+    build: Callable[[dict[str, Any]], object],
+    known: Iterable[str],
+    values: Mapping[str, Any],
+) -> list[Fault]:
+    """Return the faults of values, and those of the known ones against each other.
+
+    Beside an unknown one they were not compared.
+    """
+    names = set(known)
+    rest = {name: value for name, value in values.items() if name in names}
+    if len(rest) < len(values):
+        try:
+            build(rest)
+        except DescriptionError as error:
+            return [*found, *(each for each in error.faults if each not in found)]
+    return [*found]
 
 
 def read_arguments(kind: Callable[..., T], **given: Any) -> T:
@@ -365,7 +387,11 @@ def validate(kind: type[T]) -> type[T]:
         given = dict(zip(names, args, strict=False)) | values
         if len(args) > len(names):
             raise TypeError(f"{cls.__name__} takes {', '.join(names)}")
-        model = fields(cast(Any, cls))(**given)
+        try:
+            model = fields(cast(Any, cls))(**given)
+        except DescriptionError as error:
+            found = with_faults_of_known(error.faults, lambda rest: new(cls, **rest), names, given)
+            raise DescriptionError(found) from None
         value: T = plain(cls, **{name: getattr(model, name) for name in names})
         return _check(value)
 

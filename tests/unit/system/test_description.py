@@ -139,6 +139,19 @@ def test_a_fault_says_what_to_write(tmp_path, old, new, path, words):
     assert words in found[path]
 
 
+def test_values_are_compared_beside_an_unknown_key(tmp_path):
+    """They were not: a fault between two of them came only after the key was gone."""
+    law = {"law": ("v_f =", "colour = 3\nmu_static = 0.1\nv_f =")}
+    springs = 'springs = [{name = "cell", k_x = "2 kN/m", k_y = "9 MN/m"}]'
+    rig = {"rig": ("mass =", f"colour = 3\n{springs}\nmass =")}
+    with pytest.raises(st.DescriptionError) as error:
+        st.Slider.from_toml(write_file(tmp_path / "rig.toml", **law, **rig))
+    paths = [fault.path for fault in error.value.faults]
+    assert sorted(paths) == [  # each once
+        "friction.colour", "friction.mu_static", "slider.colour", "slider.k_x", "slider.k_y",
+    ]  # fmt: skip
+
+
 def test_unreadable_files(tmp_path):
     assert "No such file" in str(*faults(tmp_path / "none.toml").values())
     assert "not TOML" in str(*faults(write_file(tmp_path / "x.toml", "mass = 0.25 kg")).values())

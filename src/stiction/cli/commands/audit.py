@@ -71,7 +71,8 @@ def audit(
     from stiction.cli.tables import print_sections
     from stiction.inference.simulated import SIMULATIONS
 
-    given, faults = changes(set), Faults()
+    faults = Faults()
+    given = changes(set, faults)
     with faults.of_part():
         rig = rig_from(config, preset, given, trust)
     title = str(config or preset)

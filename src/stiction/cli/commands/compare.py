@@ -67,7 +67,8 @@ def compare(
     from stiction.plotting.page.save import drawable, write
     from stiction.storage.files import usable_folder
 
-    given, faults = changes(set), Faults()
+    faults = Faults()
+    given = changes(set, faults)
     with faults.of_part():
         description = description_from(config, preset, given, trust)
     with faults.of_part():

@@ -60,8 +60,8 @@ def run(
     from stiction.cli.progress import progress
     from stiction.storage.files import NETCDF, placeable
 
-    given = changes(set)
     faults = Faults()
+    given = changes(set, faults)
     with faults.of_part():
         description = description_from(config, preset, given, trust)
     with faults.of_part():

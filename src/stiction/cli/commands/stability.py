@@ -60,7 +60,8 @@ def stability(
     from stiction.linear_stability.examination import OVER
     from stiction.linear_stability.examination import stability as examine
 
-    given, faults = changes(set), Faults()
+    faults = Faults()
+    given = changes(set, faults)
     with faults.of_part():
         slider = slider_from(config, preset, given, trust)
     paths, ranges = over or OVER, [tuple(map(number, each)) for each in between or []]

@@ -98,7 +98,8 @@ def design(
     from stiction.inference.rig import Rig
     from stiction.text.validation import read_arguments
 
-    altered, faults = changes(set), Faults()
+    faults = Faults()
+    altered = changes(set, faults)
     if output is not None:
         from stiction.plotting.page.save import drawable
 

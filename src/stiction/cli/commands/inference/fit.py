@@ -96,7 +96,8 @@ def fit(
     from stiction.inference.rig import Rig
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
-    altered, faults, given = changes(set), Faults(), []
+    faults, given = Faults(), []
+    altered = changes(set, faults)
     with faults.of_part():
         placeable(output, NETCDF)
     if figures is not None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import MaybeOutput, Trust, parse_assignment
+from stiction.cli.options import MaybeOutput, Trust, parse_assignments
 from stiction.cli.terminal import say
 from stiction.errors import Faults
 
@@ -59,8 +59,8 @@ def map(
     from stiction.study.view.mapping import map as look
     from stiction.study.view.view import REGIME, kinds
 
-    cut = dict(parse_assignment(text, "--at") for text in at or ())
     faults = Faults()
+    cut = parse_assignments(at, "--at", faults)
     if output is not None:
         with faults.of_part():
             drawable(output)

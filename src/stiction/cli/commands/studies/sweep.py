@@ -103,11 +103,15 @@ def sweep(
     from stiction.study.execution.sweep import sweep as do
 
     found = None
-    given, faults = changes(set), Faults()
-    along, to = ("", "") if refine is None else parse_assignment(refine, "--refine")
+    faults = Faults()
+    given = changes(set, faults)
+    along, to = "", ""
+    if refine is not None:
+        with faults.of_part():
+            along, to = parse_assignment(refine, "--refine")
     with faults.of_part():
         study = read_study(config, preset, given, trust)
-        if refine is not None:  # before the first of many runs
+        if along:  # before the first of many runs
             request(study, along, to, apart)
     with faults.of_part():
         means = engine(threads, workers, scheduler, dashboard)
