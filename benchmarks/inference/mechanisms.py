@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from benchmarks.inference.fits import RIGS, rig_of
+from stiction.analysis.motion.rest import HELD
 from stiction.friction.laws import Anisotropic, Stribeck
 from stiction.inference.columns import bend_features, features_from
 from stiction.inference.features import USED
@@ -31,7 +32,7 @@ from stiction.inference.mechanism.classifier import Classifier, Simulations, lea
 from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE, surely
-from stiction.inference.mechanism.rest import ALIKE, MOSTLY, Rest, shares_at_rest
+from stiction.inference.mechanism.rest import ALIKE, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.mechanism.static_check import StaticCheck
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
@@ -243,10 +244,10 @@ def held_in_words(held: NDArray[np.bool_], rest: Floats) -> str:
     """
     if not len(held):
         return "never rotation"
-    right = f", rightly {(rest[held] >= MOSTLY).mean():.1%}" if held.any() else ""
+    right = f", rightly {(rest[held] >= HELD).mean():.1%}" if held.any() else ""
     return (
         f"of rotation {held.mean():.1%} said to be held{right}; in truth the mass rests for "
-        f"{MOSTLY:.0%} of the way and more in {(rest >= MOSTLY).mean():.1%}, in the middle for "
+        f"{HELD:.0%} of the way and more in {(rest >= HELD).mean():.1%}, in the middle for "
         f"{np.median(rest):.0%}"
     )
 

@@ -3,6 +3,7 @@ from base64 import b64decode
 from copy import copy
 from html import unescape
 from math import atan2, cos, degrees, hypot, isnan, pi, sin, sqrt
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,6 +15,7 @@ import stiction as st
 from stiction import theory
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
+from stiction.analysis.motion.rest import HELD
 from stiction.analysis.record import record_of
 from stiction.analysis.signals.reversals import extrema
 from stiction.auditing import advice, figures, report, simulated_test
@@ -27,6 +29,7 @@ from stiction.auditing.simulated_test import (
     OSCILLATES,
     SLIDES,
     UNSETTLED,
+    Shares,
     SimulatedTest,
     coarse_rate,
     creep_before_slip,
@@ -35,10 +38,11 @@ from stiction.auditing.simulated_test import (
 )
 from stiction.auditing.words.changes import _change, changes
 from stiction.auditing.words.numbers import apparent_stiffness, numbers
-from stiction.auditing.words.stick import stick
+from stiction.auditing.words.stick import _rests_for_moments, stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import final_motion, margin, motions, stability, verdict
 from stiction.cli import main
+from stiction.inference.mechanism.rest import Rest
 from stiction.inference.progress import silent
 from stiction.linear_stability import Critical, critical, steady_sliding
 from stiction.text.quantity_text import percent
@@ -778,6 +782,23 @@ def test_creep_is_most_of_the_stick_only_where_it_lasts_longer_than_the_rests(ri
     shares = found.observation.shares
     assert (shares.creep > shares.rest) == (creep == "mostly creep")
     assert f"The apparent stick is {creep} under a turning friction force" in " ".join(stick(found))
+
+
+@pytest.mark.parametrize("share", [HELD - 0.01, HELD + 0.01])
+def test_an_audit_and_a_verdict_say_at_the_same_share_that_the_mass_is_held(share):
+    """An audit said so from half of the drive's way across on, a verdict from four fifths."""
+    rig = st.Slider(**PIN, phi="2 deg", friction=WEAKENS, drive=st.ConstantVelocity("0.5 mm/s"))
+    way = 0.5e-3 * rig.direction[1]  # in the second from trough to peak
+    rests = np.linspace(0.1, 0.9, 5)
+    run = SimpleNamespace(
+        slider=rig,
+        stick_intervals=np.stack([rests, rests + 0.05], axis=1),
+        samples={"time": np.array([0.0, 1.0]), "u_y": np.array([0.0, share * way])},
+    )
+    loading = {"start": np.zeros(1), "peak_time": np.ones(1)}
+    table = CycleTable(loading, 0.0)
+    seen = seen_otherwise(SimulatedTest(run), table=table, shares=Shares(0.25, 0.7, 0.05))
+    assert (_rests_for_moments(seen) == "") == Rest(share, share, share).held
 
 
 def seen_otherwise(seen: SimulatedTest, **findings: object) -> SimulatedTest:

@@ -9,6 +9,7 @@ import xarray as xr
 from tests.uncertain import record_of
 
 import stiction as st
+from stiction.analysis.motion.rest import HELD
 from stiction.errors import DescriptionError, ResultError
 from stiction.friction.laws import Anisotropic, Coulomb, LuGre, RateStateAgeing
 from stiction.inference.columns import bend_features
@@ -34,7 +35,7 @@ from stiction.inference.mechanism.classifier import (
 from stiction.inference.mechanism.comparison import confusion
 from stiction.inference.mechanism.likeness import CURVES, Likeness
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
-from stiction.inference.mechanism.rest import MOSTLY, Rest, share_at_rest, shares_at_rest
+from stiction.inference.mechanism.rest import Rest, share_at_rest, shares_at_rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
     MISALIGNED_STATIC,
@@ -599,7 +600,7 @@ def test_the_share_at_rest_is_that_of_the_mass_whatever_the_sensor_shows(rig, ro
     assert both.sum() > 2
     plain, filtered = (each[both] for each in found)
     assert filtered.tolist() == plain.tolist()
-    assert (plain > MOSTLY).all() == (k_y == "20 kN/m")
+    assert (plain > HELD).all() == (k_y == "20 kN/m")
 
 
 @pytest.mark.parametrize("block", [1, 3])
@@ -668,7 +669,7 @@ def test_the_share_at_rest_is_not_known_of_loadings_between_two_samples(rig, rot
     made = next(filter(None, (next(draw(own, number, 6)[1]) for number in range(9))))
     motion, every = made.motion, 10
     few = SampledMotion(motion.time[::every], motion.rows[::every], motion.troughs // every)
-    assert share_at_rest(made._replace(motion=few), own.conditions[0]) > MOSTLY
+    assert share_at_rest(made._replace(motion=few), own.conditions[0]) > HELD
     saw = motion.rows[:40].copy()
     saw[:, 0] = np.tile([0.0, 0.1], 20)
     motion = SampledMotion(motion.time[:40], saw, motion.troughs)
@@ -758,12 +759,12 @@ def test_a_claim_needs_every_part_to_agree():
     assert odds_with(likeness=(USUAL, far, bent)).decision == ROTATION  # of the others
 
 
-HELD, CREEPING = Rest(0.9, 0.96, 1.0), Rest(0.7, 0.96, 1.0)
+FIRM, CREEPING = Rest(0.9, 0.96, 1.0), Rest(0.7, 0.96, 1.0)
 
 
 def test_where_rotation_is_claimed_and_its_mass_rests_it_is_static_friction_on_that_rig():
     """A mass that rests from slip to slip was called rotation, on granite in 46 % of records."""
-    held = odds_with(rest=HELD)
+    held = odds_with(rest=FIRM)
     assert held.decision == MISALIGNED_STATIC
     said = " ".join(held.sentences())
     assert f"Claimed: {MISALIGNED_STATIC}." in said
@@ -805,10 +806,10 @@ def test_where_simulations_may_creep_the_claim_is_rotation_and_says_how_long_the
 
 
 def test_rest_is_no_ground_for_a_claim():
-    unsure = odds_with(rest=HELD, probabilities=np.array([0.85, 0.1, 0.05]))
+    unsure = odds_with(rest=FIRM, probabilities=np.array([0.85, 0.1, 0.05]))
     assert unsure.decision == UNDECIDED
     sure = np.array([0.02, 0.95, 0.03])
-    static = odds_with(rest=HELD, probabilities=sure, by_halves=np.array([sure, sure]))
+    static = odds_with(rest=FIRM, probabilities=sure, by_halves=np.array([sure, sure]))
     assert static.decision == STATIC
 
 

@@ -16,6 +16,7 @@ ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them,
 # touches zero, by the root of that
 TOUCHES = 1e-3
 STILL = 0.1  # of the drive velocity: a mass that slips more slowly rests, or creeps
+HELD = 0.8  # of the drive's way across: a mass that does not follow it so far is held
 LAST, COME_TO_REST = 20, 1e-6  # part of a record, and of its largest slip speed
 _GAINED = 2.0 / np.tan(ANGLES)
 _CYCLE = np.pi + 2.0 * ANGLES + _GAINED  # omega times the period
@@ -134,6 +135,14 @@ def rests_throughout(time: Floats, speed: Floats | None, sticks: Floats | None) 
         return True
     within = sticks[0, 0] <= time[0] and time[-1] <= sticks[-1, 1]
     return bool(within and (sticks[1:, 0] <= sticks[:-1, 1]).all())
+
+
+def share_held(stretched: float, way: float) -> float:
+    """Return the share of the drive's way across (m) that the mass does not follow; 1 of no way.
+
+    By so much the spring across is stretched.
+    """
+    return min(max(stretched / way, 0.0), 1.0) if way else 1.0
 
 
 def stuck_until(time: ArrayLike, sticks: ArrayLike) -> Floats:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
+from stiction.analysis.motion.rest import HELD, share_held
 from stiction.auditing.simulated_test import CALM, SimulatedTest, end_of_loading, relative_speed
 from stiction.friction import has_state
 from stiction.text.quantity_text import percent
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 NEVER = 1e-3  # of the time: a smaller share is a matter of samples
-HELD = 0.5  # of the drive's way across: a mass that follows more of it turns friction
 FEW = 3  # rests in a loading: fewer are not those of a transverse oscillation
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 
@@ -115,11 +115,11 @@ def _rests_for_moments(seen: SimulatedTest) -> str:
     rests = seen.run.stick_intervals
     of = np.searchsorted(begin, rests[:, 0], side="right") - 1
     inside = (of >= 0) & (rests[:, 1] <= end[of])
-    if not way or inside.sum() <= FEW * len(loadings):
+    if inside.sum() <= FEW * len(loadings):
         return ""
     time, u_y = (seen.run.samples[name] for name in ("time", "u_y"))
     stretched = float((np.interp(end, time, u_y) - np.interp(begin, time, u_y)).sum())
-    if stretched / way > HELD:
+    if share_held(stretched, way) >= HELD:
         return ""
     each = float(f"{inside.sum() / len(loadings):.2g}")
     lasts = float(np.median(np.diff(rests[inside], axis=1)))

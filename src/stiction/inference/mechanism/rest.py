@@ -12,6 +12,7 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from stiction.analysis.motion.rest import HELD, share_held
 from stiction.arrays import Floats
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.observation import Conditions
@@ -21,7 +22,6 @@ from stiction.inference.simulated.synthetic import Synthetic, synthesise
 ALIKE = 32  # simulations with a record's parameters: enough for their quantiles
 FEWEST = 10  # of them with cycles: of fewer a tenth is not one
 QUANTILES = 0.1, 0.5, 0.9
-MOSTLY = 0.8  # of the way of the drive across: a mass that does not follow it so far is held
 
 
 class Rest(NamedTuple):
@@ -56,7 +56,7 @@ class Rest(NamedTuple):
     @property
     def held(self) -> bool:
         """Whether static friction holds the mass between slips, for sure."""
-        return self.low >= MOSTLY
+        return self.low >= HELD
 
 
 def shares_at_rest(plan: Plan, scores: Floats) -> Floats:
@@ -91,4 +91,4 @@ def share_at_rest(made: Synthetic, conditions: Conditions) -> float:
     if not lasts:
         return np.nan
     way = conditions.velocity * made.slider.direction[1] * lasts
-    return min(max(stretched / way, 0.0), 1.0) if way else 1.0
+    return share_held(stretched, way)

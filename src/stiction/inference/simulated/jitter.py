@@ -181,7 +181,7 @@ def first_loading(slider: Slider) -> float:
 
     It is as long as many cycles where a slip takes little of the force.
     """
-    return AT_REST * slider.F_0 / (slider.k_x * slider.drive_speed)
+    return AT_REST * slider.loading_time
 
 
 def stretch(times: Floats, begin: int, end: int) -> tuple[float, Floats]:
