@@ -25,10 +25,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.vibration import FAR_ABOVE, RARE
 from stiction.analysis.signals.reversals import smallest_legs
 from stiction.arrays import TINY, Floats, Indices
 
+# Times the largest of the other falls, and one in so many: such a fall says nothing of the others.
+# `stand_apart` compares cycles with their median; that of reversals depends on noise and samples
+FAR_ABOVE, RARE = 3.0, 20
 HALF = 0.5  # of the swing: a larger fall is a cycle
 ABOUT_HALF = (0.4, 0.6)  # of the swing: without a fall between these, half divides them clearly
 LEAST = 0.1  # of the swing: a smaller fall is a hesitation in any case

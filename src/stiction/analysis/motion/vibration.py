@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.changes.cycles import stand_apart
 from stiction.analysis.motion.course import MANY, ORDERED, order
 from stiction.arrays import Floats
 from stiction.drive.program import nominal_velocity
@@ -24,7 +25,6 @@ OWN_PERIODS = 1.2  # times that period: up to there a vibration is that of the m
 # has 0.57.
 REGULAR, EVEN = 0.25, 0.75
 LIKELY = 0.5  # likelihood above which swings are irregular
-FAR_ABOVE, RARE = 3.0, 20  # times the median, and one in so many: such swings are other events
 SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of either
 # That span of irregular vibrations, and of harmonic ones, measured among them, whose swings differ
 # by noise or slowly: the typical one, and the standard deviation of its logarithm
@@ -87,7 +87,8 @@ def irregularity(period: Floats, drop: Floats) -> float:
     """
     from scipy.special import expit, ndtr
 
-    period, drop = _without_rare(period, drop)
+    usual = ~(stand_apart(period) | stand_apart(drop))
+    period, drop = period[usual], drop[usual]
     count, likely = len(drop), 0.0
     if count < MANY or abs(order(period)) < -ORDERED:
         spread = float(period.std() / period.mean()) / REGULAR
@@ -103,14 +104,6 @@ def irregularity(period: Floats, drop: Floats) -> float:
         )
     )
     return max(likely, max(drops, 0.5) if spread > EVEN else min(drops, 0.5))
-
-
-def _without_rare(period: Floats, drop: Floats) -> tuple[Floats, Floats]:
-    """Leave out swings far longer or higher than the median, if these are rare."""
-    usual = (period < FAR_ABOVE * np.median(period)) & (drop < FAR_ABOVE * np.median(drop))
-    if np.count_nonzero(~usual) * RARE > len(usual):
-        return period, drop
-    return period[usual], drop[usual]
 
 
 def _log_density(value: float, typical: float, spread: float) -> float:

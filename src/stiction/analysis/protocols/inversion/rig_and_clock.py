@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import exp, expm1, isnan, log, sqrt
+from math import exp, expm1, isnan, log
 
 import numpy as np
 
+from stiction.analysis.protocols.common_mean import CommonMean, common_mean
 from stiction.analysis.protocols.inversion.fit import Inversion
 from stiction.analysis.protocols.inversion.step import StepData, has_changed, onset
-from stiction.arrays import Floats
 from stiction.text.lists import in_list, number_text
 from stiction.text.units import in_words
 
@@ -34,10 +34,11 @@ def say_rig_and_clock(
     known = [(step, fit) for step, fit in pairs if not isnan(fit.D_c)]
     if not known:
         return said
-    stiffer = np.array([(fit.stiffer, fit.stiffer_error) for _, fit in known])
-    late = np.array([(fit.delay / step.speed, fit.delay_error / step.speed) for step, fit in known])
+    stiffer = [(fit.stiffer, fit.stiffer_error) for _, fit in known]
+    late = [(fit.delay / step.speed, fit.delay_error / step.speed) for step, fit in known]
     interval = max(step.interval for step, _ in known)
-    return [*_say_stiffness(*_mean(stiffer)), *_say_delay(late, interval, drive), *said]
+    of_stiffness, of_delay = (common_mean(*np.array(each).T) for each in (stiffer, late))
+    return [*_say_stiffness(of_stiffness), *_say_delay(of_delay, interval, drive), *said]
 
 
 def _say_clock(steps: Sequence[StepData], drive: str) -> list[str]:
@@ -61,8 +62,9 @@ def _say_clock(steps: Sequence[StepData], drive: str) -> list[str]:
     return said
 
 
-def _say_stiffness(by: float, error: float) -> list[str]:
+def _say_stiffness(found: CommonMean) -> list[str]:
     """Return that a rig is stiffer or softer than stated, if it surely is."""
+    by, error = found.value, found.scaled_error
     if abs(by) < max(SURE * error, ALIKE):
         return []
     share, way = 100.0 * abs(expm1(by)), "stiffer" if by > 0.0 else "softer"
@@ -73,18 +75,10 @@ def _say_stiffness(by: float, error: float) -> list[str]:
     ]
 
 
-def _say_delay(late: Floats, interval: float, drive: str) -> list[str]:
+def _say_delay(late: CommonMean, interval: float, drive: str) -> list[str]:
     """Return that steps come earlier or later than stated, if they do by more than a sample."""
-    mean, error = _mean(late)
+    mean, error = late.value, late.scaled_error
     if abs(mean) < max(SURE * error, interval):
         return []
     way, by = "later" if mean > 0.0 else "earlier", in_words(abs(mean), "s", 2)
     return [f"The steps come {by} {way} than {drive} has them, ± {in_words(error, 's', 1)}."]
-
-
-def _mean(values: Floats) -> tuple[float, float]:
-    """Return the weighted mean of values with errors (n, 2), and its error, also by scatter."""
-    weights = values[:, 1] ** -2.0
-    mean = float(np.average(values[:, 0], weights=weights))
-    scatter = float(weights @ (values[:, 0] - mean) ** 2) / max(len(values) - 1, 1)
-    return mean, sqrt(max(scatter, 1.0) / float(weights.sum()))
