@@ -13,6 +13,7 @@ from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycles import OWN_HARMONICS, Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.even_grid import MOST_MISSING, EvenGrid, even_grid
 from stiction.analysis.signals.hum import Band, lines_like, without_bands
 from stiction.analysis.signals.robust import block_means
@@ -50,7 +51,6 @@ MANTISSAS = (1.0, 1.2, 1.5, 1.8, 2.2, 2.7, 3.3, 4.0, 5.0, 6.0, 7.5, 9.0, 10.0)
 LOADED, LATEST, SHORTEST = (0.2, 0.6), 0.8, 10.0
 DIGITS = 4  # of sampling interval and quantisation: those of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
-SURE = 2.0  # standard uncertainties of a drift: hardly any is larger
 DITHER = 0.5  # of a step: noise that hides it, so that rounding is noise too
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 
@@ -166,7 +166,7 @@ class Observation(NamedTuple):
     def trend(self) -> Trend:
         """p-values of a trend of the cycles beyond the stated drift of the zero."""
         drift = self.conditions.noise["force"].drift * self.conditions.step
-        return trend(self.force, self.cycles, SURE * drift)
+        return trend(self.force, self.cycles, ERRORS_95 * drift)
 
 
 def trend(force: Floats, cycles: Cycles, drift: float = 0.0) -> Trend:

@@ -15,7 +15,6 @@ from stiction.analysis.creep.force_curve import misalignment_from_force
 from stiction.analysis.creep.misalignment import (
     REST_SPEED,
     SLIDING,
-    SURE,
     WEAKENINGS,
     Misalignment,
     fit_misalignment,
@@ -29,6 +28,7 @@ from stiction.analysis.creep.normal_load import (
     refuse_change,
 )
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
 from stiction.errors import ResultError, StictionError
@@ -186,7 +186,7 @@ def _mean(curves: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
     V = record.drive_velocity or 0.0
     ratio = (record.stiffness or 1.0) / (stated.stiffness or record.stiffness or 1.0)
     most = np.fmax(velocity, V - ratio * (V - velocity))
-    backward = np.mean(most < -SURE * np.nan_to_num(error) - BACKWARD * V)
+    backward = np.mean(most < -ERRORS_95 * np.nan_to_num(error) - BACKWARD * V)
     step = resolution(record.force)
     if backward > SOME and step > COARSE * float(np.ptp(record.force)):
         raise ResultError(
@@ -256,7 +256,7 @@ def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
     """Return the divergence of creep, if it exceeds its uncertainty."""
     found = fit_divergence(mean, loading)
     n, error = found.exponent, found.exponent_error
-    if not error < KNOWN or not found.amplitude > SURE * found.amplitude_error or n <= 0.0:
+    if not error < KNOWN or not found.amplitude > ERRORS_95 * found.amplitude_error or n <= 0.0:
         raise ResultError("not determined: no divergence exceeds its uncertainty")
     return found
 
@@ -325,7 +325,7 @@ def _misalignment(
             "friction that turns"
         )
     if not found.phi_error < KNOWN * abs(found.phi):
-        most = abs(found.phi) + SURE * found.phi_error
+        most = abs(found.phi) + ERRORS_95 * found.phi_error
         most = degrees(max(most, _held_angle(mean, V, across)))
         limit = f"; it is below {most:.2g} deg" if most < 45.0 else ""
         raise ResultError(f"not determined: it does not stand out of its uncertainty{limit}")

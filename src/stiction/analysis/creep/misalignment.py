@@ -11,6 +11,7 @@ import numpy as np
 from stiction.analysis.creep.curve import Bins
 from stiction.analysis.creep.least_squares import FEWEST_USED, THEORY, best_fit, used_bins
 from stiction.analysis.creep.presliding import fit_presliding
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 
@@ -28,7 +29,6 @@ ANGLES = np.concatenate([np.geomspace(1e-3, 0.5, 300), np.linspace(0.5, pi - 0.0
 SINE, COSINE = np.sin(ANGLES), np.cos(ANGLES)
 STRETCH = 0.05, 1.0  # of the loading time: time to slip of the bins that are fitted
 REST_SPEED = 1e-6  # of the drive velocity: slower is rest
-SURE = 2.0  # standard errors by which an angle, or a creep, must differ from zero
 
 
 class Misalignment(NamedTuple):
@@ -57,12 +57,12 @@ class Misalignment(NamedTuple):
     @property
     def interval(self) -> tuple[float, float]:
         """The 95 % interval of phi (rad), two standard errors to each side."""
-        return self.phi - SURE * self.phi_error, self.phi + SURE * self.phi_error
+        return self.phi - ERRORS_95 * self.phi_error, self.phi + ERRORS_95 * self.phi_error
 
     @property
     def stands_out(self) -> bool:
         """Whether phi differs from zero by more than two standard errors."""
-        return abs(self.phi) > SURE * self.phi_error
+        return abs(self.phi) > ERRORS_95 * self.phi_error
 
 
 def fit_misalignment(
@@ -247,7 +247,7 @@ def _over_weakenings(
         float(phi_error),
         float(F_0) * peak,
         float(F_0_error) * peak,
-        misfit=float(np.median(np.maximum(off - SURE * used.error, 0.0) / size)),
+        misfit=float(np.median(np.maximum(off - ERRORS_95 * used.error, 0.0) / size)),
         scatter=float(np.sqrt(np.mean((off / used.error) ** 2))),
         weakening=_median(np.array(list(weakenings)), likely),
     )

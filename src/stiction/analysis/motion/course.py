@@ -33,7 +33,7 @@ COURSE_PARTS = 4 * PER_QUARTER
 BRIEF, STANDS_OUT = 1 / 16, 15.0
 # Standard deviations of a mean by which a final fall stands out: the largest of `MEANS_OF_RECORD`
 # exceeds the last by so much once in a thousand records, were there no loading
-SURE = 6.0
+FALLS_BY = 6.0
 
 
 def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
@@ -119,7 +119,7 @@ def final_fall(time: Floats, force: Floats) -> tuple[float, float] | None:
     noise = max(white_noise(force, order=2) / size**0.5, resolution(force))
     below, top = np.maximum.accumulate(means) - means, int(np.argmax(means))
     height = float(below[-1])
-    if height <= max(SURE * noise, float(below[: top + 1].max())):
+    if height <= max(FALLS_BY * noise, float(below[: top + 1].max())):
         return None
     return float(time[part_starts(len(force), MEANS_OF_RECORD)[top]]), height
 

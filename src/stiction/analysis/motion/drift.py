@@ -12,16 +12,15 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
-from stiction.analysis.signals.correlated_noise import error_of_few
+from stiction.analysis.signals.correlated_noise import ERRORS_997, error_of_few
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 
-SURE = 4.0  # standard errors
+SURE, LIKELY = 4.0, ERRORS_997  # standard errors of a drift, in a sentence and in errors alone
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
 PARTS = 20  # number of means of a force without cycles, over its second half
 FEWEST_CYCLES = 4  # cycles that show a drift
-LIKELY = 3.0  # standard errors of a drift that is not sure, but for which errors allow
 LASTING = 1.0  # of its rate, by which that of the two halves may differ
 
 

@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITI
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import (
+    ERRORS_997,
     correlation_time,
     error_of_few,
     standard_error,
@@ -45,7 +46,7 @@ HELD = 0.01  # of a drive's largest speed: in parts that are slower it rests
 NOISE = 20.0  # standard deviations, by which means of the displacement do not differ
 FEWEST_PER_FALL = 6  # samples: the duration of a fall, or a slope, is not known by fewer
 ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
-SURE = 3.0  # standard errors by which a value differs for sure
+STARTS = 3.0  # times what noise alone may move by: a drive that rests between its motions
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
 AT_REST, ROUNDING = 0.02, 1e-12  # of the largest force: a reading at rest, and one of zero
 LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
@@ -93,7 +94,7 @@ class StatedQuantity(NamedTuple):
     def is_same(self) -> bool:
         """Whether the value found is the stated one, not only one that it allows."""
         apart = abs(self.found - self.stated)
-        return bool(apart <= max(ALIKE * abs(self.stated), SURE * self.error))
+        return bool(apart <= max(ALIKE * abs(self.stated), ERRORS_997 * self.error))
 
 
 def compare_metadata(
@@ -318,7 +319,7 @@ def _speeds_of_parts(
     speeds, net = np.abs(slopes), abs(middles[-1] - middles[0])
     still = NOISE * noise * parts / float(time[-1] - time[0])  # six errors of a slope
     moves = speeds > max(still, HELD * float(speeds.max()))
-    if moves.all() or not moves.any() or np.median(speeds[moves]) < SURE * still:
+    if moves.all() or not moves.any() or np.median(speeds[moves]) < STARTS * still:
         return speeds, net, reach, False
     return speeds[moves], net, reach, True
 

@@ -13,6 +13,7 @@ from stiction.analysis.creep.misalignment import REST_SPEED
 from stiction.analysis.motion.regime.kinds import STUCK
 from stiction.analysis.parts.wording import SLIGHT, number
 from stiction.analysis.rotation.findings import BOTH, TURNING
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import xr
 from stiction.friction import states
@@ -29,7 +30,6 @@ RESTING, UNKNOWN = "it rests", "its creep is not determined"
 # By `REST_SPEED`: a law with states never rests
 BARELY = "it creeps at less than a millionth of the drive's velocity"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
-SURE = 2.0  # standard errors that a fit must be away from nothing
 EXCLUDED = 9.0  # sum of squares, in standard errors, by which presliding alone fits worse
 
 
@@ -37,7 +37,7 @@ def _below_peak(found: Analysis, its: Misalignment) -> str:
     """Return a doubt on F_0 where the spring force exceeds it, which no rotation allows."""
     force = found.record.force / found.record.relative_load()
     peak = float(without_outliers(force[np.isfinite(force)]).max())
-    if peak <= its.F_0 + SURE * its.F_0_error:
+    if peak <= its.F_0 + ERRORS_95 * its.F_0_error:
         return ""
     return (
         f" That is too small: the force itself reaches {in_words(peak, 'N')}{_at_load(found)}. "
@@ -180,10 +180,10 @@ def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
     Creep over no measurable distance while the record lasts is none: then it `rests`, in words.
     """
     value, error = float(row["velocity"]), float(row["velocity_error"])
-    if abs(value) + SURE * np.nan_to_num(error) < REST_SPEED * V:
+    if abs(value) + ERRORS_95 * np.nan_to_num(error) < REST_SPEED * V:
         return rests
-    if value <= SURE * error:
-        most = max(value, 0.0) + SURE * error
+    if value <= ERRORS_95 * error:
+        most = max(value, 0.0) + ERRORS_95 * error
         if most * lasts < MEASURABLE:
             return rests
         if most > V > 0.0:  # the mass is faster than the drive in slips alone

@@ -10,11 +10,11 @@ from stiction.analysis.motion.metadata import (
     BY_RISE,
     BY_SLIPS,
     LOADING_RATE,
-    SURE,
     SWING,
     StatedQuantity,
 )
 from stiction.analysis.parts.wording import number
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.arrays import xr
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, times, with_error
@@ -58,7 +58,7 @@ def _is_rough(each: StatedQuantity) -> bool:
     if verdict(each) in ((ALLOWED,) if each.part else (ALLOWED, "")):
         return True
     apart = each.stated - each.found
-    return each.how == BY_RISE and each.agrees is True and apart > SURE * each.error
+    return each.how == BY_RISE and each.agrees is True and apart > ERRORS_997 * each.error
 
 
 def _agreement(known: Mapping[str, str]) -> str:

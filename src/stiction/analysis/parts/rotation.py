@@ -10,13 +10,13 @@ from stiction.analysis.parts.wording import number
 from stiction.analysis.rotation.findings import (
     BOTH,
     GROWING,
-    SURE,
     TURNING,
     UNDETERMINED,
     Rotation,
     rotation_of,
 )
 from stiction.analysis.rotation.loading import SEVERAL
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.errors import ResultError
 from stiction.text.sections import Section
 from stiction.text.units import in_words, with_error
@@ -109,7 +109,7 @@ def _conclusion(its: Rotation) -> str:
         )
     if its.kind == TURNING:
         said.append(f"Friction near rest is F_0 = {with_error(its.F_0, its.F_0_error, 'N')}.")
-        if its.change < -SURE * its.change_error:
+        if its.change < -ERRORS_95 * its.change_error:
             said.append("It is weaker towards slip, where the mass creeps faster.")
         if not its.stated:
             zero = with_error(its.zero, its.zero_error, "N")

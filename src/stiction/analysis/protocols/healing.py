@@ -18,6 +18,7 @@ from stiction.analysis.protocols.friction_test import (
 from stiction.analysis.protocols.peaks import Peak, peaks_of_run, peaks_of_samples
 from stiction.analysis.protocols.settling import ROUNDED
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.straight_line import StraightLine, line_of_few
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
@@ -26,8 +27,6 @@ from stiction.text.lists import in_list, number_text, say_left_out
 from stiction.text.sections import Section, SectionReport, Table
 from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
-
-SURE = 2.0  # standard errors: a slope that is less is none
 
 
 @dataclass(frozen=True)
@@ -106,7 +105,8 @@ class Healing(SectionReport):
             why = "fewer than two peaks are resolved" if len(poor) else "all holds are equally long"
             return [f"How friction heals per decade is not known: {why}.", *said]
         error = self.per_decade_error
-        least = max(SURE * error if error > 0.0 else 0.0, ROUNDED * float(np.abs(self.peak).max()))
+        rounded = ROUNDED * float(np.abs(self.peak).max())
+        least = max(ERRORS_95 * error if error > 0.0 else 0.0, rounded)
         if abs(self.per_decade) < least:
             zero = f"Healing is zero within its error, {least:.1g} per decade of hold time."
             return [zero, *said]

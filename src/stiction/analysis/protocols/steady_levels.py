@@ -10,12 +10,11 @@ import numpy as np
 from stiction.analysis.protocols.common_mean import common_mean
 from stiction.analysis.protocols.friction_test import ConstantStretch, FrictionTest
 from stiction.analysis.protocols.settling import SettledPart, settled_part
-from stiction.analysis.signals.correlated_noise import CorrelatedNoise, noise_about
+from stiction.analysis.signals.correlated_noise import ERRORS_997, CorrelatedNoise, noise_about
 from stiction.arrays import Floats, Indices
 
 SLOPE = 12.0**0.5  # error of a rise in a straight line, over that of its mean
 TAIL_MEAN = 0.5  # mean of what is left of an evolution in a part, over its first value, at most
-SURE = 3.0  # standard errors beyond which there is a trend
 SCATTERED = 3.0  # times the scatter by chance: slopes of stretches with more are not alike
 
 
@@ -28,7 +27,7 @@ class TravelTrend(NamedTuple):
     @property
     def stands_out(self) -> bool:
         """Whether there is a trend beyond its error."""
-        return abs(self.slope) > SURE * self.error
+        return abs(self.slope) > ERRORS_997 * self.error
 
     @property
     def known_slope(self) -> float:

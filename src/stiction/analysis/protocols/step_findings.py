@@ -12,6 +12,7 @@ import numpy as np
 from stiction.analysis.protocols.common_mean import common_mean
 from stiction.analysis.protocols.inversion.spring_slider import Law
 from stiction.analysis.protocols.steady_levels import TravelTrend
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import Floats
 from stiction.text.lists import in_list, number_text
 from stiction.text.sections import Section, SectionReport, Table
@@ -19,7 +20,6 @@ from stiction.text.units import in_words
 
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0
-SURE = 2.0  # standard errors beyond which a - b has a sign
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ class VelocitySteps(SectionReport):
             return "Friction has not settled after any step: a - b is not known."
         mean, error, alike = common_value(known)
         way = "depends on speed in an unknown way"
-        if abs(mean) > SURE * error:
+        if abs(mean) > ERRORS_95 * error:
             way = f"{'weakens' if mean < 0.0 else 'strengthens'} with speed"
         elif not alike:
             way = "depends on speed differently from step to step"

@@ -16,11 +16,11 @@ import numpy as np
 from stiction.analysis.record import Record
 from stiction.analysis.rotation.loading import BINS, SEVERAL, LoadingSeries, MeanLoading, loadings
 from stiction.analysis.rotation.path import best_arc, line_misfit, usual_arc
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import Floats, xr
 from stiction.recording.sensor import Sensor
 
 TURNING, GROWING, BOTH, UNDETERMINED = "turning", "growing", "both", "not determined"
-SURE = 2.0  # standard errors
 SOME, MOST = 0.2, 0.8  # of the rise of the force along: limits of turning and growing
 BETTER = 4.0  # times: so much better must an arc or a line fit than the other
 FREE = BINS - 2.0  # degrees of freedom of a line
@@ -137,7 +137,7 @@ def _by_path(its: MeanLoading) -> Rotation:
     """Return what the path of the force shows without a zero of the force across."""
     arc, line = best_arc(its), line_misfit(its)
     kind = UNDETERMINED
-    most = (arc.change + SURE * arc.change_error) * arc.F_0
+    most = (arc.change + ERRORS_95 * arc.change_error) * arc.F_0
     if line > BETTER * max(arc.misfit, FREE) and most < SOME * (its.x[-1] - its.x[0]):
         kind = TURNING
     elif arc.misfit > BETTER * max(line, FREE):
@@ -162,7 +162,7 @@ def _by_zero(its: MeanLoading, zero_error: float, gain_error: float = 0.0) -> Ro
         gain_error * ((y / r) ** 2 - (y_0 / r_0) ** 2),
     )  # fmt: skip
     change = r / r_0 - 1.0
-    low, high = ((change + sign * SURE * error) * r_0 / (x - x_0) for sign in (-1.0, 1.0))
+    low, high = ((change + sign * ERRORS_95 * error) * r_0 / (x - x_0) for sign in (-1.0, 1.0))
     kind = UNDETERMINED
     if high < SOME:
         kind = TURNING

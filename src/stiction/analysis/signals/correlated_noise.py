@@ -12,6 +12,7 @@ from stiction.arrays import Floats
 
 CORRELATED = 8  # values: of fewer no correlation is known
 BOUNDS_95 = (0.025, 0.975)  # quantiles, between which 95 % of all values lie
+ERRORS_95, ERRORS_997 = 2.0, 3.0  # standard errors to each side, which hold 95 % and 99.7 %
 FEWEST = 3  # samples that deviate from a straight line
 # Of the time that noise lasts, times its share of a series: what the series does not show of it;
 # found with noise of exponential correlation, where 4 to 11 are missing

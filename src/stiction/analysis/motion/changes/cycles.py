@@ -17,7 +17,7 @@ FEW_CYCLES = 4  # in each part
 CHANGED = 0.25  # logarithm of the ratio of two periods, or rates: a quarter more or less
 # Of a split of a constant period with noise, the gain in the sum of squares over the variance is
 # larger than that once in a thousand records of up to a thousand cycles
-SURE = 20.0
+LEAST_GAIN = 20.0
 # A cycle apart: times the median, and its distance from it over the span of the others, a tenth of
 # these left out at each end where there are many; of measured stick-slip the largest comes to 1.4
 FAR, BEYOND, FEWEST_CYCLES, MANY = 2.0, 5.0, 5, 10
@@ -51,7 +51,7 @@ def _splits(size: Floats) -> list[int]:
     A part whose values all lie within half a change is not split: no edge in it is a change.
     """
     found, waiting = [], [(0, len(size))]
-    least = SURE * white_noise(size, order=1) ** 2  # single steps do not move it
+    least = LEAST_GAIN * white_noise(size, order=1) ** 2  # single steps do not move it
     while waiting:
         first, last = waiting.pop()
         part, count = size[first:last], last - first

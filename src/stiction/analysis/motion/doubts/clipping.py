@@ -11,9 +11,9 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction, Measured
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.text.units import in_words
 
-SURE = 3.0  # errors of a break-away, by which it may be lower than the end of the range
 FEW = 0.05  # of the cycles: if fewer are cut off, means over all of them hardly change
 ENDS = {"largest": "peaks", "least": "troughs"}
 SHOWN = {
@@ -59,7 +59,7 @@ def without_cut_off(
 def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: float) -> bool:
     """Return whether the first break-away may be a value, which the force had until its trough."""
     until = cycles["start"][0] if len(cycles) else inf
-    near = broke.force + SURE * broke.error >= end
+    near = broke.force + ERRORS_997 * broke.error >= end
     return near and bool((record.force[record.time <= until] == end).any())
 
 

@@ -10,6 +10,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata import AT_REST, first_reading
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
@@ -22,7 +23,6 @@ SAME = 1e-9  # of the largest force: readings that differ by less are equal but 
 PARTS = (8, 16, 32, 64)
 FEWEST = 4  # samples in each of them
 CONSTANT = 0.5  # of the average rate of that loading: a spring that is loaded already has all of it
-SURE = 3.0  # standard errors of the difference of two parts
 
 
 def is_about_zero(friction: Friction, cycles: CycleTable) -> bool:
@@ -104,7 +104,7 @@ def _begins_at_rest(record: Record, read: float, peak: float) -> bool:
         if size < FEWEST:
             break
         before, after = float(force[:size].mean()), float(force[size : 2 * size].mean())
-        error = SURE * noise * (2.0 / size) ** 0.5
+        error = ERRORS_997 * noise * (2.0 / size) ** 0.5
         if abs(after - before) + error < CONSTANT * 0.5 * rise / parts:
             return True
     return False

@@ -10,10 +10,10 @@ import numpy as np
 from stiction.analysis.protocols.common_mean import CommonMean, common_mean
 from stiction.analysis.protocols.inversion.fit import Inversion
 from stiction.analysis.protocols.inversion.step import StepData, has_changed, onset
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.text.lists import in_list, number_text
 from stiction.text.units import in_words
 
-SURE = 3.0  # standard errors beyond which a stiffness is not as stated, a step not when stated
 ALIKE = log(1.02)  # stiffnesses that are so near to each other are not worth a sentence
 
 
@@ -65,7 +65,7 @@ def _say_clock(steps: Sequence[StepData], drive: str) -> list[str]:
 def _say_stiffness(found: CommonMean) -> list[str]:
     """Return that a rig is stiffer or softer than stated, if it surely is."""
     by, error = found.value, found.scaled_error
-    if abs(by) < max(SURE * error, ALIKE):
+    if abs(by) < max(ERRORS_997 * error, ALIKE):
         return []
     share, way = 100.0 * abs(expm1(by)), "stiffer" if by > 0.0 else "softer"
     off = number_text(100.0 * exp(by) * error, ".1g")
@@ -78,7 +78,7 @@ def _say_stiffness(found: CommonMean) -> list[str]:
 def _say_delay(late: CommonMean, interval: float, drive: str) -> list[str]:
     """Return that steps come earlier or later than stated, if they do by more than a sample."""
     mean, error = late.value, late.scaled_error
-    if abs(mean) < max(SURE * error, interval):
+    if abs(mean) < max(ERRORS_997 * error, interval):
         return []
     way, by = "later" if mean > 0.0 else "earlier", in_words(abs(mean), "s", 2)
     return [f"The steps come {by} {way} than {drive} has them, ± {in_words(error, 's', 1)}."]

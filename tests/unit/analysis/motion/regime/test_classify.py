@@ -33,6 +33,7 @@ import stiction as st
 from stiction.analysis.motion.course import dies_out, final_fall
 from stiction.analysis.motion.regime.band import highest_hump
 from stiction.analysis.motion.rest import rest_share
+from stiction.analysis.motion.vibration import is_irregular
 from stiction.plotting.analysis.overview import figures
 from stiction.study.variables.observed_run import observe_run
 
@@ -709,6 +710,18 @@ def test_faint_swings_in_steady_sliding_are_named() -> None:
     assert found.kind == "steady sliding"
     assert 0.6 < found.confidence < 0.8
     assert found.evidence["hidden"] == pytest.approx(1.3, rel=1e-3)
+
+
+@pytest.mark.parametrize(("period", "drop"), [(9.0, 1.0), (1.0, 9.0), (1.0, 1.0)])
+def test_a_few_swings_apart_from_all_others_do_not_make_a_vibration_irregular(
+    period: float, drop: float
+) -> None:
+    """A pause, or a knock: either alone would raise the spread beyond that of one size."""
+    sizes = 1.0 + 0.01 * np.random.default_rng(1).standard_normal((2, 14))
+    sizes[:, [4, 9]] *= [[period], [drop]]
+    assert not is_irregular(*sizes)
+    sizes[:, ::3] *= 9.0  # every third is one of them
+    assert is_irregular(*sizes)
 
 
 @pytest.mark.parametrize(("second", "height"), [(1.03, 1.0), (0.95, 0.6), (1.2, 0.9)])
