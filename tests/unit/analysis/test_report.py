@@ -9,7 +9,7 @@ from tests.drawn import inside
 from tests.parts import assess, creep_of
 
 import stiction as st
-from stiction.analysis.creep.findings import calibrate
+from stiction.analysis.creep.mean_curve import calibrate
 from stiction.analysis.export import write
 from stiction.analysis.parts import creep
 from stiction.analysis.parts.wording import SHOWN, rows_left_out

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import degrees, exp, inf, pi, tan
+from math import degrees, inf, tan
 from typing import NamedTuple, TypeVar
 
 import numpy as np
@@ -12,6 +12,13 @@ from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.force_curve import misalignment_from_force
+from stiction.analysis.creep.mean_curve import (
+    calibrate,
+    mean_curve,
+    with_base,
+    with_rounding,
+    with_slip_time,
+)
 from stiction.analysis.creep.misalignment import (
     REST_SPEED,
     SLIDING,
@@ -29,12 +36,10 @@ from stiction.analysis.creep.normal_load import (
 )
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
-from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, Indices, xr
 from stiction.errors import ResultError, StictionError
-from stiction.recording.noise import ROUNDING_SPREAD, rounding_error
 from stiction.text.quantity_text import percent
-from stiction.text.units import in_words, times
+from stiction.text.units import times
 from stiction.trajectory import Trajectory
 
 T = TypeVar("T")
@@ -49,9 +54,6 @@ SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by mo
 # angle comes out up to 10 % low; a jerk that is slow beside what friction weakens by does no harm
 JERKS, LOST = 0.2, 0.02
 AT_ONCE = 0.1  # of a stick phase: a longer rest is none between jerks
-TWO_CODES = 0.25  # steps^2: so much may peaks of one height vary, read as either of two codes
-COARSE = 0.01  # of the force's range: steps that hide creep
-BACKWARD, SOME = 0.02, 0.25  # of the drive velocity; of the bins: limits of backward creep
 
 
 class CreepFound(NamedTuple):
@@ -94,53 +96,69 @@ def find_creep(
     curves = attempt(missing, "creep", lambda: creep_curves(run or known, cycles, width))
     mean = None
     if curves is not None:
-        mean = attempt(missing, "creep", lambda: _mean(curves, known, record))
-    if mean is not None and by_force is None:
-        mean = _with_base(mean, known, record)
+        mean = attempt(missing, "creep", lambda: mean_curve(curves, known, record))
     if mean is not None:
-        mean = _with_rounding(mean, known, cycles)
-    if mean is not None and run is None:
-        mean = _with_slip_time(mean, known)
-    if run is not None and run.slider.misalignment == 0.0:
-        return CreepFound(curves, mean, None, None, missing)
+        mean = with_base(mean, known, record) if by_force is None else mean
+        mean = with_rounding(mean, known, cycles)
+        mean = with_slip_time(mean, known) if run is None else mean
+    found = CreepFound(curves, mean, None, by_force, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
-    if curves is None or mean is None or V is None or stiffness is None:
-        return CreepFound(curves, mean, None, by_force, missing)
+    if mean is None or V is None or stiffness is None:
+        return found
     if record.position is None:
-        divergence = None
-        if by_force is None:
-            missing["divergence"] = "not determined: without the misalignment, creep is not known"
-        else:
-            loading = by_force.F_0 / stiffness / V
-            divergence = attempt(missing, "divergence", lambda: _divergence(mean, loading))
-        return CreepFound(curves, mean, divergence, by_force, missing)
+        return _with_divergence(found, stiffness * V)
+    if run is not None and run.slider.misalignment == 0.0:
+        return found
+    return _with_fits(found, run, record, stiffness, V)
+
+
+def _with_divergence(found: CreepFound, rate: float) -> CreepFound:
+    """Return findings by the force alone with the divergence of creep, at a rate of loading, N/s.
+
+    The misalignment was fitted to the force, and the creep follows from it.
+    """
+    mean, missing, its = found.mean, {**found.missing}, found.misalignment
+    assert mean is not None
+    if its is None:
+        missing["divergence"] = "not determined: without the misalignment, creep is not known"
+        return found._replace(missing=missing)
+    divergence = attempt(missing, "divergence", lambda: _divergence(mean, its.F_0 / rate))
+    return found._replace(divergence=divergence, missing=missing)
+
+
+def _with_fits(
+    found: CreepFound, run: Trajectory | None, record: Record, stiffness: float, V: float
+) -> CreepFound:
+    """Return findings with what theory fits to the creep: its divergence, and the misalignment."""
+    curves, mean, missing = found.curves, found.mean, {**found.missing}
+    assert curves is not None
+    assert mean is not None
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
     ends = curves["slip_time"].values
     change = load_change(record, ends - np.fmax.reduce(curves["begin"].values, axis=1), ends)
+    ends_in_slip = run is None or slips(run)
 
     def diverging() -> Divergence:
-        if run is not None and not slips(run):
+        if not ends_in_slip:
             raise ResultError("not determined: no slip ends the creep")
         refuse_change(change, CHANGED, "and Eq. (8) supposes a constant one")
         return _divergence(mean, loading)
-
-    divergence = attempt(missing, "divergence", diverging)
 
     def implied() -> Misalignment:
         even = mean_creep(at_one_load(curves, record)) if record.load is not None else mean
         across = record.stiffness_across if run is None else run.slider.k_y
         if run is not None:
             _refuse_jerks(run, curves)
-        ends_in_slip = run is None or slips(run)
-        found = _misalignment(even, V, stiffness, across, record.mass, ends_in_slip)
-        turned = stiffness / (across or inf) / tan(found.phi) ** 2
+        its = _misalignment(even, V, stiffness, across, record.mass, ends_in_slip)
+        turned = stiffness / (across or inf) / tan(its.phi) ** 2
         refuse_change(change, FOLLOWED, "and Eq. (7) supposes a constant one")
         most = TURNED / turned if turned else inf
         refuse_change(change, most, "and the spring across turns the slip with it")
-        return found
+        return its
 
+    divergence = attempt(missing, "divergence", diverging)
     by_creep = attempt(missing, "misalignment", implied)
-    return CreepFound(curves, mean, divergence, by_creep, missing)
+    return found._replace(divergence=divergence, misalignment=by_creep, missing=missing)
 
 
 def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
@@ -151,105 +169,6 @@ def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
     if isinstance(source, Trajectory):
         return source.slider.drive_speed or None
     return record.drive_velocity
-
-
-def calibrate(record: Record, cycles: xr.Dataset, found: Misalignment | None = None) -> Record:
-    """Return a record with the stiffness seen in its own loading, unless it has a position.
-
-    It is the stiffness fitted with the misalignment, or that of the even loading in the first half
-    of each rise (the median over cycles). Creep is V minus the rate of force over stiffness: an
-    error of a few per cent in a stated stiffness would hide it.
-    """
-    if record.position is not None:
-        return record
-    if found is not None:
-        return record.model_copy(update={"stiffness": found.stiffness})
-    shown = cycles["stiffness"].values
-    shown = shown[np.isfinite(shown)]
-    if not len(shown) or not np.median(shown) > 0.0:
-        return record
-    return record.model_copy(update={"stiffness": float(np.median(shown))})
-
-
-def _mean(curves: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
-    """Return the mean creep curve, if it does not go backwards.
-
-    Counted from the loading (`calibrate`), creep that is slower there than on average is negative.
-    It is backward if it is negative with the stiffness as stated, too.
-    """
-    if not np.isfinite(curves["velocity"].values).any():
-        if not curves.sizes["phase"]:
-            raise ResultError("no whole stick phase ends in a slip")
-        raise ResultError("no stick phase has enough samples")
-    mean = mean_creep(curves)
-    velocity, error = (mean[name].values for name in ("velocity", "velocity_error"))
-    V = record.drive_velocity or 0.0
-    ratio = (record.stiffness or 1.0) / (stated.stiffness or record.stiffness or 1.0)
-    most = np.fmax(velocity, V - ratio * (V - velocity))
-    backward = np.mean(most < -ERRORS_95 * np.nan_to_num(error) - BACKWARD * V)
-    step = resolution(record.force)
-    if backward > SOME and step > COARSE * float(np.ptp(record.force)):
-        raise ResultError(
-            f"not determined: the force is recorded in steps of {in_words(step, 'N')}, too coarse "
-            "for creep"
-        )
-    if backward > SOME and record.position is None:
-        raise ResultError(
-            "not determined: the mass would creep against the drive; stiffness and drive velocity "
-            "contradict this force"
-        )
-    return mean
-
-
-def _with_base(mean: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
-    """Return mean creep whose error has that of the stiffness which was taken from the loading.
-
-    If the stated stiffness is right, the mass creeps while it is loaded, by the difference.
-    """
-    if record.position is not None or not stated.stiffness or not record.stiffness:
-        return mean
-    base = (record.drive_velocity or 0.0) * abs(1.0 - record.stiffness / stated.stiffness)
-    return _with_error(mean, base)
-
-
-def _with_rounding(mean: xr.Dataset, record: Record, cycles: xr.Dataset) -> xr.Dataset:
-    """Return mean creep whose error has the steps of a force from which it was read.
-
-    Where all slips begin within a step, every phase is rounded at the same times before slip: the
-    scatter of the phases does not show it. The rounding of a half of a bin is the less the more
-    steps the force passes there.
-    """
-    step = resolution(record.force) if record.position is None else 0.0
-    if not step or not record.stiffness or not record.drive_velocity:
-        return mean
-    spread = max((float(cycles["peak"].std()) / step) ** 2 - TWO_CODES, 0.0)
-    alike = exp(-2.0 * pi**2 * spread)  # of the first harmonic, as in `dither_remainder`
-    lasts = (mean["begin"] - mean["end"]).values
-    loading = record.drive_velocity - mean["velocity"].values
-    passed = 0.5 * np.abs(loading) * lasts * record.stiffness / step
-    place = rounding_error(record.force, step) * alike / record.stiffness
-    return _with_error(mean, 8.0**0.5 * place / lasts / np.maximum(passed, 1.0))
-
-
-def _with_slip_time(mean: xr.Dataset, record: Record) -> xr.Dataset:
-    """Return mean creep whose error next to the slip has that of when the mass slips.
-
-    That is known to a sample, for all phases alike. With a part of it more, or less, the last bin
-    has more or less of a motion that goes as fast as the drive. A bin before it has not.
-    """
-    V, velocity = record.drive_velocity, float(mean["velocity"][0])
-    if V is None or mean["end"][0] > 0.0:
-        return mean
-    lasts = float(mean["begin"][0] - mean["end"][0])
-    unsure = np.zeros(mean.sizes["bin"])
-    unsure[0] = ROUNDING_SPREAD * abs(V - velocity) / record.sample_rate / lasts
-    return _with_error(mean, unsure)
-
-
-def _with_error(mean: xr.Dataset, other: Floats | float) -> xr.Dataset:
-    """Return mean creep whose error has another one (m/s) beside its own."""
-    own = mean["velocity_error"]
-    return mean.assign(velocity_error=own.copy(data=np.hypot(np.nan_to_num(own), other)))
 
 
 def _divergence(mean: xr.Dataset, loading: float) -> Divergence:

@@ -17,8 +17,8 @@ from stiction.analysis.creep.findings import (
     MISSED,
     _held_angle,
     _misalignment,
-    _with_slip_time,
 )
+from stiction.analysis.creep.mean_curve import with_slip_time
 from stiction.analysis.creep.misalignment import (
     SLIDING,
     WEAKENINGS,
@@ -757,9 +757,9 @@ def test_when_the_mass_slips_is_unsure_only_in_the_bin_next_to_it(paper_run):
     """A bin that ends before slip has none of the motion that goes as fast as the drive."""
     mean, record = st.analyse(paper_run).creep, record_of(paper_run)
     assert mean["end"][0] == 0.0
-    unsure = _with_slip_time(mean, record)["velocity_error"].values
+    unsure = with_slip_time(mean, record)["velocity_error"].values
     own = mean["velocity_error"].values
     assert unsure[0] > 1.05 * own[0]
     np.testing.assert_array_equal(unsure[1:], own[1:])
     later = mean.isel(bin=slice(1, None))
-    assert _with_slip_time(later, record).equals(later)
+    assert with_slip_time(later, record).equals(later)
