@@ -209,28 +209,15 @@ class Study(Described):
         locate: Locate | None = None,
         known: Sequence[Fault] = (),
     ) -> Self:
-        """Read a study from nested tables, as in the TOML file; `known` faults are told too."""
-        found = [*known]
-        own, axes = raw.get("study", {}), raw.get("axes")
-        if not isinstance(own, Mapping):
-            found.append(Fault("study", f"must be a table [study], is {echo(own)}"))
-        elif strange := sorted({"base", "axes"} & own.keys()):
-            places = {"axes": "[axes.phi]", "base": "[slider], [friction], [drive] and [run]"}
-            found += [
-                Fault(f"study.{key}", f"is not a key of this table; write {places[key]}")
-                for key in strange
-            ]
-        elif axes is None:
-            found.append(Fault("axes", "missing; write for example a table [axes.phi]"))
-        else:
-            keys = cls.model_fields.keys() - {"base", "axes"}
-            strange = [key for key in own if key not in keys]
-            found += [Fault(f"study.{key}", unknown_name("key", key, keys)) for key in strange]
-            own = {key: own[key] for key in own if key in keys}
-            found += [each for each in cls._faults(own, axes, None) if each.path != "study.base"]
+        """Read a study from nested tables, as in the TOML file; `known` faults are told too.
+
+        First come the study's own tables, as a user's law is not run beside a fault, then the base,
+        and then the axes with it.
+        """
+        axes = raw.get("axes")
         rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
-        lost = [*unknown_axes(rest, axes)]
-        # no user's code beside a fault
+        own, found = cls._own_table(raw.get("study", {}), axes)
+        found, lost = [*known, *found], [*unknown_axes(rest, axes)]
         waits = [*found, *lost] if is_own(raw.get("friction")) else ()
         try:
             base = Description.from_dict(rest, find=find, locate=locate, known=waits)
@@ -243,13 +230,25 @@ class Study(Described):
         return cls._make(own, axes, base)
 
     @classmethod
-    def _faults(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Sequence[Fault]:
-        """Return the faults of a study's own tables, independent of its base."""
+    def _own_table(cls, own: Any, axes: Any) -> tuple[dict[str, Any], Sequence[Fault]]:
+        """Return the known keys of the table [study], and the faults that it and the axes have."""
+        if not isinstance(own, Mapping):
+            return {}, [Fault("study", f"must be a table [study], is {echo(own)}")]
+        places = {"axes": "[axes.phi]", "base": "[slider], [friction], [drive] and [run]"}
+        if strange := [key for key in places if key in own]:
+            said = "is not a key of this table; write"
+            return {}, [Fault(f"study.{key}", f"{said} {places[key]}") for key in strange]
+        if axes is None:
+            return {}, [Fault("axes", "missing; write for example a table [axes.phi]")]
+        keys = cls.model_fields.keys() - places
+        strange = [key for key in own if key not in keys]
+        found = [Fault(f"study.{key}", unknown_name("key", key, keys)) for key in strange]
+        own = {key: own[key] for key in own if key in keys}
         try:
-            cls._make(own, axes, base)
+            cls._make(own, axes, None)
         except DescriptionError as error:
-            return error.faults
-        return ()
+            found += [each for each in error.faults if each.path != "study.base"]
+        return own, found
 
     @classmethod
     def _make(cls, own: Mapping[str, Any], axes: Any, base: Any) -> Self:
