@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from benchmarks.explore.rigs import first_slip
+from tests.drawn import inside
 from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
@@ -14,13 +15,14 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
     shape,
 )
-from stiction.result.peak import largest_spring_force
+from stiction.result.peak import largest_spring_force, turning_points
 from stiction.study.variables.fast_regime import KINDS, SwingShapes, by_shape
-from stiction.study.variables.features import features, summit, zigzag
+from stiction.study.variables.features import bottom, features, summit, zigzag
 from stiction.study.variables.measures import MEASURES
 from stiction.study.variables.observed_run import observe_run
 
 PAPER = st.presets.nakano_popov_2020()
+TURN = 2.0 * np.pi
 SYSTEMS = 0, 1, 8, 25, 42, 115  # of benchmarks.explore.rigs.first_slip: k_y over k_x of 2 to 1/890
 
 
@@ -108,6 +110,63 @@ def test_a_turning_point_lies_between_two_samples():
         assert when == pytest.approx(0.25 - 0.25 / np.pi, abs=1e-4)
     assert summit(t, t, np.ones(33), 32, 1.0) == summit(t, t, -np.ones(33), 32, 1.0) == (1.0, 1.0)
     assert summit(t, -t, -np.ones(33), 0, 1.0) == (0.0, 0.0)
+
+
+def test_a_turning_point_is_that_of_the_cubic_that_any_run_s_peak_has():
+    """One formula for one interval, compiled, and one for arrays of them."""
+    by_chance = inside(3, (0.1, 3.0), (-3.0, -0.1), (-1.0, 1.0))
+    rates = [*by_chance, (1e-9, -1.0, 1.0), (1.0, -1.0, 0.0)]  # where digits could cancel
+    first, step = 0.3, 0.5
+    for before, after, rise in rates:
+        t, values = np.array([2.0, 2.0 + step]), np.array([first, first + rise])
+        when, most = summit(t, values, np.array([before, after]), 0, 1.0)
+        ends = (values[:1], values[1:], np.array([before]), np.array([after]))
+        share, height = turning_points(np.array([step]), *ends)
+        assert when == pytest.approx(2.0 + step * share[0], rel=1e-12)
+        assert most == pytest.approx(height[0], rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("sticks", [0.4, 0.7, 1.0])
+@pytest.mark.parametrize("place", [1, 2])
+def test_a_fall_ends_where_its_rate_is_zero_if_it_decelerates_evenly_and_may_stick(sticks, place):
+    """The rate is -3 N/s, and 2 N/s from a share of the step on: it is zero at 3/5 of that."""
+    t = np.arange(4.0)
+    rate = np.array([-6.0, -3.0, 2.0, 2.0])
+    rise = 2.0 - 0.5 * 5.0 * sticks
+    values = np.cumsum([9.0, -4.5, rise, 2.0])
+    when, least = bottom(t, values, rate, place)  # whichever of both samples is the lower
+    assert when == pytest.approx(1.0 + 0.6 * sticks, rel=1e-14)
+    assert least == pytest.approx(values[1] - 0.5 * 3.0 * 0.6 * sticks, rel=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("rate", "last", "when", "least"),
+    [
+        ((-1.0, -1.0), 3.0, 1.0, 3.0),  # it falls on
+        ((1.0, 1.0), 5.0, 0.0, 4.0),  # it has risen before
+        ((-1.0, 1.0), 9.0, 0.0, 4.0),  # it rises by more than at any of both rates
+        ((-1.0, 1.0), 1.0, 1.0, 3.5),  # it has fallen by more
+    ],
+)
+def test_a_fall_ends_at_a_sample_where_its_rates_do_not_tell(rate, last, when, least):
+    t, values, rates = np.arange(3.0), np.array([4.0, last, last]), np.array([*rate, rate[1]])
+    assert bottom(t, values, rates, int(np.argmin(values))) == (when, least)
+
+
+def test_a_trough_behind_the_last_sample_but_one_ends_a_cycle_if_the_force_rises_enough():
+    """By 1e-3 of the span, here 1e-3 (1 - cos(2 pi t)) = 2e-3 at 0.01007 s after a trough."""
+    for step in (
+        0.015,
+        0.03,
+    ):  # the last sample is nearer to the trough than the one before, or not
+        for after, count in ((0.0099, 4), (0.0102, 5), (0.02, 5)):
+            t = 2.5 + after - step * np.arange(160)[::-1]
+            turns = features(
+                t, np.cos(TURN * t), -TURN * np.sin(TURN * t), t, 1e-3, 0.0, len(t), 4
+            ).turn_time
+            late = turns[turns > 0.2]
+            assert len(late) == count
+            np.testing.assert_allclose(late, 0.5 * np.arange(1, count + 1), atol=1e-3)
 
 
 @pytest.mark.parametrize("law", [PAPER.friction, st.Coulomb(mu_0=0.2)])

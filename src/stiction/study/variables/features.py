@@ -135,8 +135,10 @@ def features(
         if turn_time[k] >= time[late]:
             late_low, late_high = min(late_low, turn_value[k]), max(late_high, turn_value[k])
     count = len(index)
-    if driven == n and count > 0 and trough == (count % 2 == 0):  # the last one is a peak
-        at, value = last_bottom(time, force, rate, index[count - 1])
+    if count > 0 and trough == (count % 2 == 0):  # the last one is a peak
+        # the lowest place after it may lie behind the last sample but one
+        i = index[count - 1] + int(np.argmin(force[index[count - 1] : n - 1]))
+        at, value = bottom(time, force, rate, i)
         if force[n - 1] - value > height:
             turn_time[count], turn_value[count] = at, value
             count += 1
@@ -148,23 +150,6 @@ def features(
 
 
 @compiled_with_arrays
-def last_bottom(
-    time: np.ndarray, values: np.ndarray, rate: np.ndarray, peak: int
-) -> tuple[float, float]:
-    """Return the time and value of the lowest place after the last peak, also between samples.
-
-    Samples may be so far apart that the last one, on the way up already, is the lowest.
-    """
-    last = len(values) - 1
-    lowest = peak + int(np.argmin(values[peak:]))
-    if lowest < last:
-        return bottom(time, values, rate, lowest)
-    if rate[last - 1] < 0.0 < rate[last]:
-        return bottom(time, values, rate, last - 1)
-    return time[last], values[last]
-
-
-@compiled_with_arrays
 def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tuple[float, float]:
     """Return the time and value at the end of a fall.
 
@@ -173,10 +158,10 @@ def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tu
     """
     a = i if rate[i] < 0.0 else i - 1
     before, after, step = rate[a], rate[a + 1], time[a + 1] - time[a]
+    if not before < 0.0 < after:
+        return time[i], values[i]
     short = after * step - (values[a + 1] - values[a])
-    if not (before < 0.0 < after and short > 0.0):
-        return summit(time, values, rate, i, -1.0)
-    passed = min(-2.0 * before * short / (after - before) ** 2, step)
+    passed = min(max(-2.0 * before * short / (after - before) ** 2, 0.0), step)
     return time[a] + passed, values[a] + 0.5 * before * passed
 
 
@@ -187,7 +172,7 @@ def summit(
     """Return time and value of a turning point beside a sample: a peak, or with -1 a trough.
 
     It is that of the cubic through two samples and their rates (Hermite's), or the sample itself
-    where the rates at both do not show it.
+    where the rates at both do not show it; `stiction.result.peak.turning_points` for one interval.
     """
     a = min(max(i if sign * rate[i] > 0.0 else i - 1, 0), len(time) - 2)
     before, after, step = sign * rate[a], sign * rate[a + 1], time[a + 1] - time[a]
