@@ -73,6 +73,19 @@ def test_a_fault_names_its_parameter(given, said):
     assert said in str(error.value)
 
 
+def test_a_law_s_file_is_not_run_beside_a_fault_of_a_prior_which_is_told_once(tmp_path):
+    text = PLAIN.replace('"1 deg"', '{low = "5 deg", high = "1 deg"}')
+    begin, end = text.index("[friction]"), text.index("[drive]")
+    own = '[friction]\nlaw = "mine.py:Mine"\n\n'
+    (tmp_path / "rig.toml").write_text(text[:begin] + own + text[end:])
+    (tmp_path / "mine.py").write_text("raise RuntimeError('it was run')\n")
+    with pytest.raises(DescriptionError) as error:
+        st.Rig.from_toml(tmp_path / "rig.toml")
+    (fault,) = error.value.faults
+    assert str(fault).startswith("phi: low must be below high")
+    assert "it lies between" not in str(fault)
+
+
 SURFACE = """
 [friction.anisotropy]
 ratio = {low = 0.6, high = 1.6}

@@ -8,7 +8,6 @@ from math import inf
 from typing import NamedTuple
 
 EPS = 2.2e-16
-HALVINGS = 60  # of an interval: down to two floats that are neighbours
 NEAR_REST = (1e-12, 1e-13, 1e-14, 1e-15)  # m/s, slower than a law can be resolved
 # shares of a fall that a tenth of the speed leaves: 0.1 if proportional to it, 1 of a step
 STEEP, STEP = 0.15, 0.97
@@ -79,10 +78,10 @@ def jump(
     def unexplained(a: float, b: float) -> float:
         return abs(function(b) - function(a) - 0.5 * (b - a) * (slope(a) + slope(b)))
 
-    for _ in range(HALVINGS):
-        if not unexplained(low, high) > least:
-            return None
+    while unexplained(low, high) > least:
         middle = 0.5 * (low + high)
+        if not low < middle < high:  # floats that are neighbours
+            return Jump(high, function(low), function(high))
         first, second = unexplained(low, middle), unexplained(middle, high)
         low, high = (low, middle) if first > second else (middle, high)
-    return Jump(high, function(low), function(high))
+    return None
