@@ -786,6 +786,18 @@ def test_a_slow_fall_lasts_as_long_in_noise() -> None:
         assert found == pytest.approx(24.0, abs=3.0)  # a sample at each end, and one seems more
 
 
+def test_a_fall_of_which_noise_hides_more_than_half_lasts_as_long() -> None:
+    """Half a cosine of 60 samples: a quarter of its height at each end is beyond any noise."""
+    rise, fall = np.linspace(0.0, 1.0, 380, False), 0.5 + 0.5 * np.cos(np.pi * np.arange(60) / 60.0)
+    force = 2.0 + np.tile(np.r_[rise, fall], 24)
+    time, lasts = 1e-3 * np.arange(len(force)), []
+    for seed in range(8):
+        its = force + 0.12 * np.random.default_rng(seed).normal(size=len(force))
+        record = st.Record(time=time, force=its)
+        lasts.append(_usual_fall(record, swings(record).lasting))
+    assert np.median(lasts) == pytest.approx(60e-3, abs=5e-3)
+
+
 @pytest.mark.parametrize("per_cycle", [8, 1000])
 def test_friction_is_not_given_of_peaks_that_are_cut_off(per_cycle) -> None:
     """Peaks of 2 N were 1.7 N, with an error of nearly nothing; few samples stay at the end."""
