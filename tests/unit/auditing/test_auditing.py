@@ -7,7 +7,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from benchmarks.explore.audits import RULES, rig
+from benchmarks.explore.audits.drawing import rig
+from benchmarks.explore.audits.rules import RULES
 from scipy.integrate import quad, solve_ivp
 from tests.rigs import NEARLY_ISOTROPIC, SOFT_TESTER, STIFF_PRESS, TURNED_A_LOT
 

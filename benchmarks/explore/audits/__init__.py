@@ -1,0 +1,1 @@
+"""Audits of random rigs: contradictions within them, and their tolerance budgets."""
