@@ -107,6 +107,62 @@ def test_the_tutorial_on_a_study_tells_what_its_runs_do(slider):
         assert (kind == "settling") == settles, (phi, i, kind)
 
 
+@pytest.fixture
+def rock():
+    """The rig of the page on tests."""
+    return st.Slider(
+        mass="1 g",
+        k_x="1 MN/m",
+        k_y="100 MN/m",
+        phi="0 deg",
+        normal_load="10 N",
+        friction=st.laws.RateStateAgeing(0.010, 0.015, "10 um", 0.6, "1 um/s"),
+        drive=st.ConstantVelocity("10 um/s"),
+    )
+
+
+def after_holds(rig, holds, slide, phi):
+    test = st.protocols.slide_hold_slide("10 um/s", holds, slide=slide)
+    return st.simulate(rig.replace(phi=phi, drive=test), sample_rate="20 Hz")
+
+
+def test_the_page_on_tests_tells_how_much_healing_a_misalignment_hides(rock):
+    def healing(rig, phi):
+        holds = ["3 s", "10 s", "30 s", "100 s", "300 s", "1000 s"]
+        return st.analysis.healing(after_holds(rig, holds, "20 s", phi)).per_decade
+
+    text, soft = page_in_words("how-to/protocols"), rock.replace(k_x="20 kN/m", k_y="2 MN/m")
+    found = [healing(soft, phi) for phi in ("0 deg", "1 deg", "2 deg", "5 deg")]
+    assert "# {:.4f}, {:.4f}, {:.4f} and {:.4f}".format(*found) in text
+    missing = 1.0 - healing(rock, "5 deg") / healing(rock, "0 deg")
+    assert f"{100.0 * missing:.1f} % of the healing are missing" in text
+    assert f"stretched by 30 D_c, {100.0 * (1.0 - found[-1] / found[0]):.0f} % are" in text
+    per_degree = 100.0 * (1.0 - found[1] / found[0])
+    assert f"less healing, by {per_degree:.0f} % a degree" in page_in_words("for/geophysicists")
+
+
+def test_friction_turns_in_a_hold_and_back_as_the_page_on_tests_says(rock):
+    text, soft = page_in_words("how-to/protocols"), rock.replace(k_x="20 kN/m", k_y="2 MN/m")
+
+    def course(phi):
+        """Return the angle of friction before a hold, after it, and at the peak; the slip in D_c.
+
+        The slip is that from the end of the hold to the peak.
+        """
+        data = after_holds(soft, ["1000 s"], "60 s", phi).data
+        before, end = np.searchsorted(data["time"], [59.0, 1060.0])
+        force = data["spring_x"].values
+        at = [before, end, end + np.argmax(force[end:])]
+        angles = np.degrees(np.arctan2(data["spring_y"].values, force))[at]
+        path = float(data["X"][at[2]] - data["X"][end])  # across it slips far less
+        return (*angles, path / soft.law.D_c)
+
+    before, end, peak, slip = course("5 deg")
+    assert f"friction stands at {before:.0f} degrees before a hold of 1000 s, at {end:.1f}" in text
+    assert f"after it, and at {peak:.0f} degrees when the force is largest" in text
+    assert f"slips by {slip:.1f} D_c, by {course('0 deg')[3]:.1f} D_c where" in text
+
+
 def test_times_in_the_readme_are_those_of_the_page_on_speed():
     page = (ROOT / "docs" / "explanation" / "how-fast.md").read_text("utf-8")
     rows = re.findall(r"^\| .* ms \| .*$", README, re.M)
