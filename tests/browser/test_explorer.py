@@ -531,6 +531,28 @@ def test_all_is_reached_by_the_keyboard_and_named(page):
     assert page.value(ring) == "solid"  # one sees where one is
 
 
+def test_each_view_is_told_in_words(page):
+    """A canvas named "Stability" was all that a screen reader had of it."""
+    said = {}
+    label = "document.querySelector('#panel-a canvas[role=img]').ariaLabel"
+    for name in ("stability", "phase", "damping", "spectrogram"):
+        page.tab.click(f"#panel-a [data-view={name}]")
+        page.until(f"{label}.includes(': ') && !{label}.endsWith('computing')")
+        said[name] = page.value(label)
+    place = "at φ = 1 deg, V = 1 mm/s; arrow keys move the point"
+    assert said["stability"] == f"Stability: steady sliding is unstable {place}"
+    assert re.fullmatch(
+        r"Phase: velocity X′, \S+ .?m/s to \S+ .?m/s, over spring force k_x u_x, 0 N to \d+ mN",
+        said["phase"],
+    )
+    path = "A = 3624; friction turns from 90 deg to 1 deg; ζ falls below 1 at 3.73 deg"
+    assert said["damping"] == f"Damping: {path}"
+    assert re.fullmatch(
+        r"Spectrum: transverse rate v_y, .* to .*Hz, strongest at (1 k|9\d0 )Hz",
+        said["spectrogram"],
+    )
+
+
 def test_it_fits_a_small_projector(page):
     """Nothing is cut off at 1280 x 720, and no text is smaller than 11 px."""
     assert page.value("document.documentElement.scrollWidth") <= 1280

@@ -35,8 +35,20 @@ function note(context, width, height, words) {
   parts.forEach((each, i) => text(context, each, width / 2, height / 2 + 18 * (i - (parts.length - 1) / 2), { align: "center", color: SOFT }));
 }
 
+// Two ends in words, for whoever does not see the view.
+function span([low, high], unit) {
+  const least = 1e-6 * Math.max(Math.abs(low), Math.abs(high)); // less is rounding
+  return [low, high].map((each) => quantity(Math.abs(each) < least ? 0 : each, unit, 3)).join(" to ");
+}
+
 class PhasePortrait {
   static title = "Phase";
+
+  describe() {
+    if (!this.ends) return "computing";
+    const [forces, speeds] = this.ends;
+    return `velocity X′, ${span(speeds, "m/s")}, over spring force k_x u_x, ${span(forces, "N")}`;
+  }
 
   still(context, width, height, data) {
     if (!data.track) return;
@@ -44,6 +56,7 @@ class PhasePortrait {
     const parts = [[data.pinned, "#444b53", 0.5], [data, GREEN, 1]].filter(([each]) => each?.track);
     const ends = parts.flatMap(([each]) => [extent(each.track.columns.u_x).map((u) => u * each.scene.k[0]), extent(each.track.columns.V_X)]);
     const xs = [0, 2].flatMap((i) => ends[i] ?? []), ys = [1, 3].flatMap((i) => ends[i] ?? []);
+    this.ends = ends.slice(-2); // of this run, which is drawn over a pinned one
     const around = (ends) => padded(Math.min(...ends), Math.max(...ends), 0.05);
     this.axes = { xs: linearAxis(...around(xs), 5, "N"), ys: linearAxis(...around(ys), 5, "m/s") };
     this.to = frame(context, box, this.axes.xs, this.axes.ys);
@@ -69,6 +82,14 @@ class PhasePortrait {
 
 class Damping {
   static title = "Damping";
+
+  describe(data) {
+    if (!this.to) return "damping number A is not finite";
+    const degrees = (angle) => (angle * 180) / Math.PI, last = degrees(Math.abs(data.scene.phi));
+    const edge = this.A > 1 ? degrees(Math.asin(this.A ** (-1 / 3))) : 90;
+    const turns = edge > last ? `ζ falls below 1 at ${plain(edge, 3)} deg` : "ζ stays above 1";
+    return `A = ${plain(this.A, 4)}; friction turns from 90 deg to ${plain(last, 3)} deg; ${turns}`;
+  }
 
   still(context, width, height, data) {
     if (!data.scene) return;
@@ -133,6 +154,14 @@ class Spectrogram {
   static title = "Spectrum";
   static asks = "spectrogram";
 
+  describe({ spectrogramError: error, spectrogram: found }) {
+    if (!found || error) return error ?? "computing";
+    const { amplitude } = found.arrays, [rows, columns] = amplitude.shape, [low, high] = found.frequency;
+    const row = Math.floor(amplitude.reduce((most, value, i) => (value > amplitude[most] ? i : most), 0) / columns);
+    const strongest = quantity(low + ((row + 0.5) / rows) * (high - low), "Hz", 2);
+    return `transverse rate v_y, ${span(found.frequency, "Hz")}, strongest at ${strongest}`;
+  }
+
   still(context, width, height, data) {
     const found = data.spectrogram;
     this.to = null;
@@ -158,6 +187,15 @@ class Spectrogram {
 class StabilityMap {
   static title = "Stability";
   static asks = "stability";
+
+  describe({ stabilityError: error, stability: found, own }) {
+    if (!this.axes || !own) return error ?? "computing";
+    const { growth } = found.arrays, [rows, columns] = growth.shape, { x, y } = this.place(own);
+    const at = (share, count) => Math.min(Math.max(Math.floor(share * count), 0), count - 1);
+    const j = at((x - this.box.left) / this.box.width, columns), i = at(1 - (y - this.box.top) / this.box.height, rows);
+    const kind = growth[i * columns + j] > 0 ? "unstable" : "stable";
+    return `steady sliding is ${kind} at φ = ${quantity(own.phi, "rad", 3)}, V = ${quantity(own.V, "m/s", 3)}; arrow keys move the point`;
+  }
 
   still(context, width, height, data) {
     const found = data.stability, box = BOX(width, height);
@@ -224,6 +262,12 @@ class StabilityMap {
 
 class StudyMap {
   static title = "Study";
+
+  describe({ study }) {
+    if (!study) return "none";
+    const sides = study.axes.map(({ dim, values }) => `${values.length} values of ${dim}`).join(" by ");
+    return `${sides}: ${study.bar ? study.measure : study.kinds.map(([name]) => name).join(", ")}`;
+  }
 
   still(context, width, height, data) {
     const study = data.study, box = BOX(width, height);
@@ -339,7 +383,7 @@ export class Panel {
     this.numbers = element("div", { className: "numbers" });
     this.room = element("div", {}, this.canvas, this.numbers);
     place.append(list, this.room);
-    this.layers = new Layers(this.canvas, (c, w, h) => this.view?.still(c, w, h, this.data), (c, w, h, now) => this.view?.moving(c, w, h, now));
+    this.layers = new Layers(this.canvas, (c, w, h) => this.draw(c, w, h), (c, w, h, now) => this.view?.moving(c, w, h, now));
     this.canvas.onpointerdown = this.canvas.onpointermove = this.canvas.onpointerup = (event) => this.point(event);
     this.canvas.onkeydown = (event) => this.steer(event);
     this.choose(first);
@@ -351,7 +395,7 @@ export class Panel {
     this.view = VIEWS[name] ? new VIEWS[name]() : null;
     this.numbers.hidden = Boolean(this.view);
     this.layers.place.hidden = !this.view;
-    this.canvas.setAttribute("aria-label", VIEWS[name]?.title ?? "Numbers");
+    this.canvas.ariaLabel = VIEWS[name]?.title ?? "Numbers"; // until it is drawn
     for (const [each, tab] of Object.entries(this.tabs)) {
       tab.setAttribute("aria-selected", String(each === name));
       tab.tabIndex = each === name ? 0 : -1;
@@ -359,6 +403,12 @@ export class Panel {
     this.layers.resize();
     this.refresh();
     this.hooks.needs();
+  }
+
+  draw(context, width, height) {
+    if (!this.view) return;
+    this.view.still(context, width, height, this.data);
+    this.canvas.ariaLabel = `${VIEWS[this.name].title}: ${this.view.describe(this.data)}`;
   }
 
   key(event) {
