@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from stiction.cli.tables import table
-from stiction.text.sections import Table
+from stiction.cli.tables import print_sections, table
+from stiction.text.sections import Section, Table
 
 HEADINGS = (
     "law",
@@ -35,6 +35,21 @@ def test_no_number_is_broken_and_no_line_longer_than_the_terminal(width):
         assert max(map(len, said.splitlines())) <= width
         for row in rows:
             assert all(cell in said.split() for cell in row)
+
+
+@pytest.mark.parametrize("width", range(40, 90))
+def test_a_line_ends_between_a_number_and_its_unit_nowhere(width, capsys, monkeypatch):
+    """An audit had "above 35.28 N" and "s/m" below it, and "in 6.564" before "ms."."""
+    quantities = ("35.28 N s/m", "320 mN/m", "320 kN/m", "139.7 mN", "6.564 ms")
+    damping, low, high, drop, time = quantities
+    row = ("damping c_x", f"above {damping}", f"{low} to {high}", f"no remedy: force drop {drop}")
+    headings = ("change", "stable", "tried", "simulated from rest")
+    sentence = f"Steady sliding is unstable: small disturbances grow by a factor of e in {time}."
+    monkeypatch.setenv("COLUMNS", str(width))
+    print_sections("an audit", [Section("Verdict", [sentence], Table(headings, [row]))])
+    said = capsys.readouterr().out
+    assert [each for each in quantities if each not in said] == []
+    assert max(map(len, said.splitlines())) <= width
 
 
 def test_a_table_is_turned_only_where_words_would_be_broken():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from textwrap import wrap
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -12,7 +13,7 @@ from rich.table import Table as Grid
 from rich.text import Text
 
 from stiction.errors import visible
-from stiction.text.sections import Section, Table
+from stiction.text.sections import Section, Table, join_units
 
 LONGEST_WORD = 24  # letters of the longest unbroken word
 
@@ -25,7 +26,7 @@ def print_sections(title: str, parts: Iterable[Section]) -> None:
         console.print()
         console.print(plain(part.title, style="bold"))
         for sentence in part.sentences:
-            console.print(Padding(plain(sentence), (0, 0, 0, 2)))
+            console.print(Padding(in_lines(sentence, console.width - 2), (0, 0, 0, 2)))
         if part.table is not None:
             console.print(table(part.table, console.width))
 
@@ -35,6 +36,18 @@ def plain(text: str, style: str = "") -> Text:
     return Text(visible(text), style=style)
 
 
+def in_lines(text: str, width: int | None) -> Text:
+    """Return a text in lines that do not part a number from its unit; as it is without a width.
+
+    >>> in_lines("It takes 20 mN s/m and 15 ms.", 19).plain.splitlines()
+    ['It takes 20 mN s/m', 'and 15 ms.']
+    """
+    if width is None:
+        return plain(text)
+    broken = wrap(join_units(visible(text)), width, break_on_hyphens=False)
+    return Text("\n".join(broken).replace("\N{NO-BREAK SPACE}", " "))
+
+
 def table(found: Table, room: int = 80) -> Grid:
     """Return a table for the terminal, as wide as its text or the available `room`."""
     shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1, 0, 0), pad_edge=False)
@@ -42,22 +55,24 @@ def table(found: Table, room: int = 80) -> Grid:
     inside = room - 1 - 2 * len(columns)  # rules and padding take the rest
     wide = widths(columns, inside)
     if None in wide and len(columns) > 2:
-        return cells_in_lines(found)
+        return cells_in_lines(found, room)
     for heading, side, width in zip(found.headings, found.sides(), wide, strict=True):
         shown.add_column(plain(heading), justify=side, overflow="fold", width=width)
     for row in found.rows:
-        shown.add_row(*(plain(cell) for cell in row))
+        shown.add_row(*map(in_lines, row, wide))
     return shown
 
 
-def cells_in_lines(found: Table) -> Grid:
+def cells_in_lines(found: Table, room: int) -> Grid:
     """Return a table too wide for the terminal with one cell a line, a rule after each row."""
     shown = Grid(box=SIMPLE_HEAD, show_header=False, padding=(0, 1, 0, 0), pad_edge=False)
     shown.add_column(style="bold")
     shown.add_column(overflow="fold")
+    beside = room - 5 - max(map(len, found.headings))  # rules, padding and a heading
     for row in found.rows:
+        width = beside if narrowest(row) <= beside else None
         for heading, cell in zip(found.headings, row, strict=True):
-            shown.add_row(plain(heading), plain(cell))
+            shown.add_row(plain(heading), in_lines(cell, width))
         shown.add_section()
     return shown
 
