@@ -274,6 +274,8 @@ def test_a_column_without_a_unit_is_refused(write):
         st.read_record(path)
     with pytest.raises(st.ResultError, match="column 1 'time' states no unit of time; say time"):
         st.read_record(path, force="mN")
+    with pytest.raises(st.ResultError, match=r"(?s)force=.2=mN.\n.*\nthese are arguments"):
+        st.analyse(path)
     record = st.read_record(path, time="ms", force="mN")
     assert record.time[1] == 0.5e-3
     assert record.force[0] == 1e-3

@@ -20,11 +20,6 @@ from stiction.storage.kinds import use_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
 
-WORDS = ("point", "comma", "clock", "intervals")  # values of options, which are not in quotes
-OPTION = re.compile(
-    rf"(?<![^\s(])--([a-z]+(?:-[a-z]+)*)(?: ('[^']*'|\d+|{'|'.join(WORDS)})(?!\w))?"
-)
-
 
 class ReadArguments(TypedDict, total=False):
     """What the user says about a file; see `read_record`."""
@@ -52,6 +47,11 @@ class ReadArguments(TypedDict, total=False):
     mass: Quantity | None
     zero: Quantity | None
     turned: Quantity | None
+
+
+WORDS = ("point", "comma", "clock", "intervals")  # values of options, which are not in quotes
+NAMES = "|".join(ReadArguments.__annotations__).replace("_", "-")
+OPTION = re.compile(rf"(?<![^\s(])--({NAMES})\b(?!-)(?: ('[^']*'|\d+|{'|'.join(WORDS)})(?!\w))?")
 
 
 def read_record(
@@ -209,13 +209,20 @@ def read_source(
     return load(path, trust=trust)
 
 
+def source_of_file(path: str | Path, *, trust: bool = False) -> Trajectory | Record:
+    """Do as `read_source`, with remedies for a function of which `read_record` takes more."""
+    with remedies_in_python("\nthese are arguments of st.read_record"):
+        return read_source(path, trust=trust)
+
+
 @contextmanager
-def remedies_in_python() -> Iterator[None]:
+def remedies_in_python(whose: str = "") -> Iterator[None]:
     """Turn options of a command, which errors give as remedies, into arguments of a function."""
     try:
         yield
     except ResultError as error:
-        error.args = (OPTION.sub(as_argument, str(error)),)
+        text, count = OPTION.subn(as_argument, str(error))
+        error.args = (text + whose if count else text,)
         raise
 
 
