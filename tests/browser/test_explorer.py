@@ -688,6 +688,18 @@ def test_letters_have_contrast(modules, scheme):
     assert modules.value(ring) == f"rgb({', '.join(map(str, letters[2]))})"
 
 
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+def test_curves_keep_their_contrast_where_the_mass_rests(modules, scheme):
+    """That of k_y u_y fell from 2.3 to 1.6 : 1, and in a dark page from 3.5 to 2.3 : 1."""
+    paper = modules.value(f"({CHANNELS})({[white_in(scheme, modules)]})")[0]
+    drawn = "({ ORANGE, rest, shade }) => [ORANGE, rest()].map(shade)"
+    orange, veil = modules.value(module("drawing.js", drawn))
+    *grey, alpha = map(float, re.findall(r"[\d.]+", veil))
+    shaded = [x + alpha * (y - x) for x, y in zip(paper, grey, strict=True)]
+    orange = modules.value(f"({CHANNELS})({[orange]})")[0]
+    assert contrast(orange, shaded) > 0.8 * contrast(orange, paper)
+
+
 # Red, green and blue of colours, or of variables of the page's style
 CHANNELS = """(colors) => {
   const style = getComputedStyle(document.body);

@@ -4,6 +4,8 @@
 export const INK = "#16191d", SOFT = "#5a6068", PALE = "#e9e9e9", BLUE = "#0072b2", RED = "#d55e00",
   GREEN = "#009e73", ORANGE = "#e69f00", SKY = "#56b4e9", PURPLE = "#b05a8a", GREY = "#6e6e6e",
   FLOOR = "#f5f4f0", UNSTABLE = "#f9e3c5";
+// The shade of a share of the time at rest: curves over it keep their contrast.
+export const rest = (share = 1) => `rgba(110,110,110,${(0.15 * Math.sqrt(share)).toFixed(3)})`;
 // Letters need more contrast than curves: 4.5 : 1 on the floor (WCAG 2.2, 1.4.3).
 export const LETTERS = { [RED]: "#b34d00", [GREEN]: "#00714f", [ORANGE]: "#8f5f00", [PURPLE]: "#99487a" };
 export const FONT = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';

@@ -1,7 +1,7 @@
 // A few periods of the fast oscillation about the present time: slip speed and direction of friction.
 
 import { linearAxis, padded } from "./axis.js";
-import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, offsets, text, textWidth } from "./drawing.js";
+import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, offsets, rest, text, textWidth } from "./drawing.js";
 import { quantity } from "./quantity.js";
 
 const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
@@ -57,12 +57,12 @@ export class Microscope {
   rests(context, box) {
     const { time, columns } = this.track, span = this.track.end - this.track.start;
     const x = (t) => box.left + (box.width * (t - this.track.start)) / span;
-    context.fillStyle = "rgba(110,110,110,.25)";
+    context.fillStyle = rest();
     let from = -1;
     for (let k = 0; k <= time.length; k++) {
-      const rest = k < time.length && columns.sticking[k] > 0;
-      if (rest && from < 0) from = k;
-      if (!rest && from >= 0) {
+      const still = k < time.length && columns.sticking[k] > 0;
+      if (still && from < 0) from = k;
+      if (!still && from >= 0) {
         context.fillRect(x(time[from]), box.top, Math.max(x(time[k - 1]) - x(time[from]), 1), box.height);
         from = -1;
       }

@@ -1,7 +1,7 @@
 // The time series of Fig. 3: strips over a common time, each curve as what a column of pixels holds.
 
 import { linearAxis, logAxis, padded } from "./axis.js";
-import { BLUE, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SKY, SOFT, curve, frame, line, offsets, symbols, text } from "./drawing.js";
+import { BLUE, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SKY, SOFT, curve, frame, line, offsets, rest, symbols, text } from "./drawing.js";
 import { quantity } from "./quantity.js";
 
 const LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34, GAP = 5;
@@ -93,7 +93,7 @@ export class Series {
     const step = box.width / share.length;
     for (let i = 0; i < share.length; i++) {
       if (!(share[i] > 0.002)) continue;
-      context.fillStyle = `rgba(110,110,110,${(0.28 * Math.sqrt(share[i])).toFixed(3)})`;
+      context.fillStyle = rest(share[i]);
       context.fillRect(box.left + i * step, box.top, step + 0.5, box.height);
     }
   }
@@ -138,9 +138,9 @@ export class Series {
       left += 23 + symbols(context, words, left + 23, 11, { color: INK }) + 16;
     };
     for (const [, color, label] of [...STRIPS[0].curves].reverse()) add(label, color);
-    const rest = "at rest (paler: for a part of the time)";
-    const narrow = left + 23 + 7 * rest.length > width - RIGHT; // of letters some 6.5 px wide
-    add(narrow ? "at rest" : rest, "rgba(110,110,110,.3)", { band: true });
+    const words = "at rest (paler: for a part of the time)";
+    const narrow = left + 23 + 7 * words.length > width - RIGHT; // of letters some 6.5 px wide
+    add(narrow ? "at rest" : words, rest(), { band: true });
     if (this.a) add("A", "#444b53", { dash: [5, 3] });
     if (this.measured) add(this.measured.origin, SKY);
   }
