@@ -154,3 +154,20 @@ def test_records_are_equal_if_all_their_values_are():
     assert one != st.Record(time=time, force=time + 1.0)
     assert one != st.Record(time=time, force=time, position=time)
     assert one != st.Record(time=time, force=time, stiffness=1.0)
+
+
+@pytest.mark.parametrize(("noise", "width"), [(1e-4, 1), (0.0308, 9), (1.0, 50)])
+def test_the_error_of_a_load_is_that_of_a_mean_over_as_many_samples_as_it_stays_for(noise, width):
+    """Of all that do not vary; else of so many that it is 1e-3 of the load, or a 400th of all."""
+    draw = np.random.default_rng(1).standard_normal(20_000)
+    time = 1e-3 * np.arange(len(draw))
+    steady = 10.0 + noise * draw
+    known = {"time": time, "force": 0.3 * steady, "normal_load": 10.0}
+    found = Record(**known, load=steady).load_noise()
+    assert found == pytest.approx(noise / 10.0 / len(draw) ** 0.5, rel=0.05)
+    ramp = steady + np.linspace(-3.0, 3.0, len(draw))
+    found = Record(**known, load=ramp).load_noise()
+    assert found == pytest.approx(noise / 10.0 / width**0.5, rel=0.05)
+    assert (
+        Record(**known).load_noise() == Record(**known, load=0.0 * ramp + 9.0).load_noise() == 0.0
+    )

@@ -44,6 +44,84 @@ def test_each_slip_is_found(slips):
     assert found.begin.value == pytest.approx([0.4], abs=0.05)
 
 
+def through(*corners, step=5e-4):
+    """Return times (s) and a force (N) on straight lines, each so long and so high."""
+    lasts, rises = np.transpose([(0.0, 1.0), *corners])
+    at = np.cumsum(lasts)
+    time = np.arange(0.0, at[-1] + 0.5 * step, step)
+    return time, np.interp(time, at, np.cumsum(rises))
+
+
+def slip(before=1.0, lasts=0.01, after=0.5, ratio=1.0, **more):
+    """Return a slip between two rises so high (N), the second with a ratio of the first's rate."""
+    return through((before, before), (lasts, -DROP), (after / ratio, after), **more)
+
+
+def loading_with_a_bend(by):
+    """Return a slip whose first loading swings by so much (N) about a line, twice."""
+    time, force = slip()
+    return time, force + by * np.sin(5.0 * np.pi * time) * np.clip(10.0 * (1.0 - time), 0.0, 1.0)
+
+
+def loading_with_creep(share):
+    """Return a slip before which the mass creeps, for the last share of the rise of its drop."""
+    top = share * DROP
+    return through((1.0 - top, 1.0 - top), (20.0 * top, top), (0.01, -DROP), (0.5, 0.5))
+
+
+def levels_after_steps(rate):
+    """Return a level after a step, at which the force rises slowly, and a step back."""
+    rise = 0.5 * rate
+    return through((0.5, 0.0), (1e-3, DROP - rise), (0.5, rise), (0.01, -DROP), (0.5, rise))
+
+
+def loading_with_a_dip(height):
+    """Return a slip whose loading turns back before it, slowly, by a share of the range."""
+    by = 2.0 * height
+    return through((0.5, 0.5), (by, -by), (1.5 + by, 1.5 + by), (0.01, -DROP), (0.5, 0.5))
+
+
+def slip_of(samples):
+    """Return a slip of so many samples in all."""
+    time = np.linspace(0.0, 1.51, samples)
+    return time, np.interp(time, [0.0, 1.0, 1.01, 1.51], [0.0, 1.0, 0.4, 0.9])
+
+
+@pytest.mark.parametrize(
+    ("make", "is_slip", "is_none"),
+    [
+        (lambda rise: slip(before=rise), 0.31 * DROP, 0.29 * DROP),  # it is loaded by a third
+        (lambda rise: slip(after=rise), 0.16 * DROP, 0.14 * DROP),  # and again by half of that
+        (lambda ratio: slip(ratio=ratio), 1.55, 1.65),
+        (lambda ratio: slip(ratio=ratio), 1.0 / 1.55, 1.0 / 1.65),
+        (lambda lasts: slip(lasts=lasts), 0.28 * DROP, 0.3 * DROP),  # three quarters of it at rest
+        (lambda step: slip(before=3.0, step=0.48 / step), 9, 7),  # samples
+        (loading_with_a_bend, 0.04, 0.06),
+        (loading_with_creep, 0.19, 0.25),
+        (loading_with_a_dip, 0.048, 0.055),
+        (slip_of, 33, 31),
+        (sawtooth, 8, 9),
+    ],
+)
+def test_a_slip_is_known_by_its_shape_up_to_a_limit(make, is_slip, is_none):
+    assert few_slips(*make(is_slip)) is not None
+    assert few_slips(*make(is_none)) is None
+
+
+def test_a_step_before_a_level_is_no_loading():
+    assert [few_slips(*levels_after_steps(rate)) for rate in (0.3, 0.6)] == [None, None]
+
+
+def test_means_are_as_long_as_noise_asks_for():
+    """Of 64 samples here: noise is an eighth of the least fall then, and reaches twice as far."""
+    for seed in range(8):
+        time, force = sawtooth(1)
+        found = few_slips(time, noisy(force, 0.05, seed))
+        assert found is not None
+        assert found.points.width == pytest.approx(64, rel=0.2)
+        assert found.points.noise == pytest.approx(2.0 * 0.05 / 8.0, rel=0.1)
+
+
 @pytest.mark.parametrize("force", [LEVELS, VIBRATION, BREAK_AWAY, TIME, 0.0 * TIME])
 def test_no_other_force_slips(force):
     assert few_slips(TIME, noisy(force)) is None
