@@ -5,6 +5,7 @@ import pytest
 
 import stiction as st
 from stiction.analysis.motion.changes.cycles import parts_of
+from stiction.analysis.motion.changes.strokes import strokes
 
 RIG = {"normal_load": 10.0, "stiffness": 1e3, "drive_velocity": 1e-3}
 
@@ -222,3 +223,55 @@ def test_a_dwell_of_the_drive_is_no_sliding():
     force += 1e-3 * np.random.default_rng(1).standard_normal(len(time))
     found = st.analyse(st.Record(time=time, force=force, drive_position=at))
     assert found.friction.kinetic.force == pytest.approx(1.0, abs=3e-4)
+
+
+BACK_AND_FORTH = np.arange(0.0, 60.0, 1e-3)
+
+
+def strokes_of(corners, **known):
+    """Return the strokes of a force (N) through corners at some times (s), again and again."""
+    at, force = np.transpose(corners)
+    force = np.interp(BACK_AND_FORTH % at[-1], at, force)
+    return strokes(st.Record(time=BACK_AND_FORTH, force=force, **known))
+
+
+def triangle(ratio=1.0):
+    """Return the corners of a force that rises for so many times as long as it falls, at 1 N/s."""
+    rises = 4.0 * ratio / (1.0 + ratio)
+    return (0.0, -1.0), (rises, 1.0), (4.0, -1.0)
+
+
+def square(share=0.5, low=-1.0):
+    """Return the corners of a force that is 1 N for a share of a second, and lower else."""
+    return (0.0, 1.0), (share, 1.0), (share + 1e-3, low), (1.0 - 1e-3, low), (1.0, 1.0)
+
+
+def trapezium(up, down):
+    """Return the corners of a force of 1 N and -1 N that passes between half of them in these s."""
+    return (0.0, -1.0), (2.0 * up, 1.0), (6.0, 1.0), (6.0 + 2.0 * down, -1.0), (12.0, -1.0)
+
+
+SOFT = {"stiffness": 1.0, "mass": 1e-4}
+
+
+@pytest.mark.parametrize(
+    ("make", "turns", "does_not"),
+    [
+        (lambda ratio: strokes_of(triangle(ratio), **SOFT), 1.22, 1.28),  # up as slowly as down
+        (lambda ratio: strokes_of(triangle(ratio), **SOFT), 1.0 / 1.22, 1.0 / 1.28),
+        (lambda period: strokes_of(
+            triangle(), stiffness=1.0, mass=(period / (2.0 * np.pi)) ** 2
+        ), 0.49, 0.51),  # a mass on its spring passes in less
+        (lambda rate: strokes_of(triangle(), stiffness=1.0, drive_velocity=rate), 0.88, 0.86),
+        (lambda rate: strokes_of(triangle(), stiffness=1.0, drive_velocity=rate), 1.32, 1.35),
+        (lambda share: strokes_of(square(share)), 0.11, 0.09),
+        (lambda share: strokes_of(square(share)), 0.89, 0.91),
+        (lambda low: strokes_of(square(low=low)), -0.31, -0.29),
+        (lambda low: strokes_of(square(low=low)), -3.2, -3.5),
+        (lambda lasts: strokes_of(trapezium(lasts, lasts)), 0.85, 0.95),  # of 6 s between both
+        (lambda down: strokes_of(trapezium(0.9, down)), 0.31, 0.29),  # quicker, it is a slip
+    ],
+)  # fmt: skip
+def test_a_force_is_of_a_drive_that_turns_up_to_a_limit(make, turns, does_not):
+    assert make(turns) is not None
+    assert make(does_not) is None

@@ -6,6 +6,7 @@ import pytest
 import stiction as st
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.doubts.warnings import _drift
 from stiction.analysis.motion.drift import Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, Measured
 from stiction.analysis.motion.regime.kinds import (
@@ -120,6 +121,24 @@ def test_a_steady_motion_shows_whether_its_force_drifts(kind):
     assert is_shown(KNOWN, kind)
     assert not is_shown(KNOWN._replace(error=np.nan), kind)
     assert not is_shown(KNOWN, SETTLING)
+
+
+@pytest.mark.parametrize(("kind", "told"), [(STEADY, True), (SETTLING, False)])
+def test_a_drift_is_told_of_a_motion_that_shows_it(kind, told):
+    for start, where in ((BEGIN, "in all"), (BEGIN + 20.0, "from 120 s on")):
+        drift = KNOWN._replace(stands_out=True, change=-0.5, start=start)
+        said = [*_drift(LOADED, drift, kind, table([], []))]
+        first = ["The force drifts by -10 mN/s", f" -500 mN {where}"]
+        assert [each.split(",")[:2] for each in said] == [first] * told
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.95, False), (1.05, True)])
+def test_a_drift_that_may_be_by_chance_is_told_from_2_percent_of_the_peaks_on(share, told):
+    lasts = TIME[-1] - TIME[0]
+    drift = KNOWN._replace(sure=False, likely=-share * 0.02 * 6.0 / lasts)
+    cycles = table([5.9, 6.1], [4.0, 4.0])
+    assert bool([*_drift(LOADED, drift, STICK_SLIP, cycles)]) == told
+    assert not [*_drift(LOADED, drift, STICK_SLIP, table([], []))]
 
 
 def test_a_force_at_several_levels_shows_no_drift():
