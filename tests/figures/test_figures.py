@@ -39,16 +39,19 @@ from stiction.plotting.page.style import (
     BLACK,
     BLUE,
     GREY,
+    ORANGE,
     PAGE,
     PURPLE,
+    RED,
     lay_out,
     new_figure,
     style,
 )
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
+from stiction.plotting.run.law import plot_law
 from stiction.plotting.run.lines import draw_line, envelope, oscillations
-from stiction.plotting.run.overview import plot_run
+from stiction.plotting.run.overview import GAP, LINE, SERIES, plot_glance, plot_run
 from stiction.plotting.run.time_series import cut_open, draw_slip_speed
 from stiction.plotting.shades import COLORS
 from stiction.plotting.stability.damping import draw_damping_map
@@ -365,6 +368,70 @@ def test_overview_of_a_run_that_broke_off_says_why(slider: st.Slider) -> None:
     run = st.simulate(slider, 1.0, sample_rate=1e3, max_steps=50)
     assert not run.status.ok
     assert "max_steps" in words(draw(figure_of(plot_run, run)).axes[1])
+
+
+def overview_axes(run: st.Trajectory) -> dict[str, Axes]:
+    """Return the axes of the overview of a run by their names, unknown to pyplot."""
+    found: dict[str, Axes] = {}
+    figure_of(lambda: found.update(plot_run(run)) or found)
+    return found
+
+
+@pytest.mark.parametrize(("most_steps", "color"), [(100_000, BLUE), (5, RED)])
+def test_overview_writes_lines_below_headings(
+    slider: st.Slider, most_steps: int, color: str
+) -> None:
+    run = st.simulate(slider, 0.02, sample_rate=1e4, max_steps=most_steps)
+    panel = overview_axes(run)["words"]
+    bold = [text.get_fontweight() == "bold" for text in panel.texts]
+    headings = [text for text, its in zip(panel.texts, bold, strict=True) if its]
+    assert [text.get_text() for text in headings] == ["System", "Friction", "Scales", "Run"]
+    assert [text.xyann[0] for text in panel.texts] == [0 if its else 6 for its in bold]
+    steps = [before.xyann[1] - after.xyann[1] for before, after in pairwise(panel.texts)]
+    assert steps == pytest.approx([LINE + GAP * its for its in bold[1:]])
+    end = bold.index(True, len(bold) - 1 - bold[::-1].index(True))
+    colors = [text.get_color() for text in panel.texts]
+    assert colors == [BLACK] * (end + 1) + [color] * (len(bold) - end - 1)
+    assert not any(text.get_in_layout() for text in panel.texts)
+
+
+def test_overview_has_one_axis_of_time(fine: st.Trajectory) -> None:
+    panels = overview_axes(fine)
+    series = [panels[name] for name in SERIES]
+    assert [ax.get_xlabel() for ax in series] == [""] * 5 + ["time $t$ (s)"]
+    assert {ax.get_xlim() for ax in series} == {(0.5, 0.504)}
+    alone = figure_of(plot_glance, fine).axes  # which do not share it
+    assert {ax.get_xlim() for ax in alone} == {(0.5, 0.504)}
+    room = [ax.margins()[1] for ax in series]
+    assert room == [0.12] * 4 + [mpl.rcParams["axes.ymargin"]] * 2
+
+
+def test_overview_shows_both_spring_forces(slider: st.Slider, paper_run: st.Trajectory) -> None:
+    begins = st.simulate(slider, 1e-4, sample_rate=1e6)
+    ax = overview_axes(begins)["force"]
+    along, across = ax.get_lines()
+    assert [line.get_label() for line in (along, across)] == ["$k_x u_x$", "$k_y u_y$"]
+    assert [line.get_color() for line in (along, across)] == [RED, ORANGE]
+    assert along.get_zorder() > across.get_zorder()
+    forces = [begins.samples[f"spring_{axis}"] for axis in "xy"]
+    factor, prefix = metric_prefix(np.concatenate(forces))
+    assert (factor, prefix) != (1.0, "")
+    for line, force in zip((along, across), forces, strict=True):
+        np.testing.assert_allclose(line.get_ydata(), factor * force)
+    names = [
+        [text.get_text() for text in overview_axes(run)["force"].get_legend().get_texts()]
+        for run in (begins, paper_run)
+    ]
+    assert [len(each) for each in names] == [2, 3]
+    assert names[1][2] == "fast oscillation"
+
+
+def test_overview_has_the_law_up_to_the_largest_slip_speed(slider: st.Slider) -> None:
+    run = st.simulate(slider, 3.0, sample_rate=1e3)
+    fastest = float(run.samples["slip_speed"].max())
+    assert fastest > 10.0 * slider.drive_speed
+    (other,) = figure_of(plot_law, slider, fastest).axes
+    assert overview_axes(run)["law"].get_xlim() == pytest.approx(other.get_xlim())
 
 
 # --- what they are made of ---
