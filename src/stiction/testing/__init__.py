@@ -15,7 +15,7 @@ from typing import Any, ClassVar
 
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import has_state
-from stiction.friction.user.validation import ENDING, endless, is_law
+from stiction.friction.user.validation import ENDING, check_numbers, endless, is_law
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED
 from stiction.testing.with_state import WITH_STATE
@@ -65,6 +65,7 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     kind = type(law).__name__
     if said := endless(law):
         raise DescriptionError.of(kind, f"{said}; {ENDING}")
+    check_numbers(law, kind)
     found = [
         Fault(f"{kind}.{name}", message)
         for name, check in checks_of(law).items()

@@ -416,6 +416,57 @@ def test_a_law_that_does_not_end_is_told(config, old, new, words):
         st.Description.from_toml(config)
 
 
+class Text(NamedTuple):
+    mu_0: float
+
+    def coefficient(law, v):
+        return "0.3"
+
+    def slope(law, v):
+        return 0.0
+
+
+class Pair(Text):
+    def coefficient(law, v):
+        return (0.3, v)
+
+
+class Nothing(Text):
+    def coefficient(law, v):
+        return 0.3
+
+    def slope(law, v):
+        pass
+
+
+RETURNS = [
+    (Text, "coefficient(law, 0) of 'Text' is '0.3'; it must be one number"),
+    (Pair, "coefficient(law, 0) of 'Pair' is (0.3, 0.0); it must be one number"),
+    (Nothing, "slope(law, 0) of 'Nothing' is None; it must be one number"),
+]
+
+
+@pytest.mark.parametrize(("kind", "words"), RETURNS)
+def test_a_law_that_returns_no_number_is_told(slider, kind, words):
+    """A text in digits, or two numbers, ended in a traceback."""
+    law = kind(0.3)
+    with pytest.raises(st.DescriptionError) as error:
+        slider.replace(friction=law)
+    assert error.value.faults[0].message == words
+    with pytest.raises(st.DescriptionError) as error:
+        st.testing.check_law(law)
+    assert words in str(error.value)
+
+
+@pytest.mark.parametrize("where", ["return law.mu_0 / ratio", "return 1.0 + v"])
+def test_a_law_that_prints_is_told(config, where):
+    """Compiled, such a run did not end: neither when it prints, nor when what it calls does."""
+    (config.parent / "mylaw.py").write_text(LAW.replace(where, f"print(v); {where}"))
+    name = {"return 1.0 + v": "ratio"}.get(where, "coefficient")
+    with pytest.raises(st.DescriptionError, match=f"{name} prints.*take print out"):
+        st.Description.from_toml(config)
+
+
 class Looping(NamedTuple):
     mu_0: float
 

@@ -109,16 +109,39 @@ def limit_lines(kind: type) -> Iterator[None]:
 @contextmanager
 def _in_python(kind: type) -> Iterator[set[str]]:
     """Run a class's functions as plain Python, not compiled; yield the files they are in."""
-    own = [each for each in vars(kind).values() if isfunction(each)]
-    methods = [each for each in own if each.__module__ == kind.__module__]  # not tuple's
+    methods = _methods(kind)
     names: dict[str, Any] = methods[0].__globals__ if methods else {}
-    compiled = {name: value for name, value in names.items() if hasattr(value, "py_func")}
+    compiled = _compiled_in(names)
     plain = {name: value.py_func for name, value in compiled.items()}
     names.update(plain)
     try:
         yield {each.__code__.co_filename for each in (*methods, *plain.values())}
     finally:
         names.update(compiled)
+
+
+def _methods(kind: type) -> list[Any]:
+    """Return the functions of a class that its own file defines, not those of tuple."""
+    own = [each for each in vars(kind).values() if isfunction(each)]
+    return [each for each in own if each.__module__ == kind.__module__]
+
+
+def _compiled_in(names: dict[str, Any]) -> dict[str, Any]:
+    """Return the functions of a file that a user has compiled."""
+    return {name: value for name, value in names.items() if hasattr(value, "py_func")}
+
+
+@lru_cache(maxsize=256)
+def printing(kind: type) -> str:
+    """Return the method of a law, or the function that one calls, that prints; '' for none."""
+    found = _methods(kind)
+    for each in found:  # and each that it calls
+        if "print" in each.__code__.co_names:
+            return str(each.__name__)
+        compiled = _compiled_in(each.__globals__)
+        called = (compiled[name].py_func for name in each.__code__.co_names if name in compiled)
+        found += [function for function in called if function not in found]
+    return ""
 
 
 def fault(message: str, key: str = "law") -> DescriptionError:
@@ -151,6 +174,11 @@ def is_law(found: Any, name: str) -> type[Any]:
         raise fault(f"{echo(name)} is not a friction law, it lacks {', '.join(lacking)}; {write}")
     if hasattr(found, "states") and not _is_free(found.states):
         raise fault(f"{echo(name)}.states() takes no argument; write @staticmethod above it")
+    if printer := printing(found):  # compiled, it would not end
+        raise fault(
+            f"{echo(name)}: {printer} prints, and a run calls it many thousands of times; take "
+            "print out, and call the method in Python to see what it returns"
+        )
     law: type[Any] = found
     return law
 
@@ -169,8 +197,8 @@ def _is_free(method: Callable[..., object]) -> bool:
 def try_law(law: Any, name: str) -> Any:
     """Return the law, if its methods return numbers at a few speeds, and it is `sound`."""
     check_end(law, name)
-    probes = [("coefficient", v) for v in PROBED] + [("slope", v) for v in PROBED]
-    for method, v in [("coefficient", PROBED[1])] if has_state(law) else probes:
+    check_numbers(law, name)
+    for method, v in _probes(law):
         try:
             value = float(getattr(law, method)(v))
         except KeyboardInterrupt:
@@ -183,6 +211,28 @@ def try_law(law: Any, name: str) -> Any:
         if not isfinite(value):
             raise fault(f"{method}(law, {v:g}) of {echo(name)} is {echo(value)}; it must be finite")
     return sound(law, name)
+
+
+def _probes(law: Any) -> list[tuple[str, float]]:
+    """Return methods of a law and the slip speeds at which they are tried."""
+    if has_state(law):
+        return [("coefficient", PROBED[1])]
+    return [(method, v) for method in SET_VALUED for v in PROBED]
+
+
+def check_numbers(law: Any, name: str) -> None:
+    """Raise an error if a method of a law returns something else than a number."""
+    for method, v in _probes(law):
+        try:
+            value = getattr(law, method)(v)
+        except KeyboardInterrupt:
+            raise
+        except BaseException:  # other checks report it
+            continue
+        if not _is_number(value):
+            raise fault(
+                f"{method}(law, {v:g}) of {echo(name)} is {echo(value)}; it must be one number"
+            )
 
 
 def check_end(law: Any, name: str) -> None:
@@ -202,6 +252,7 @@ def check_end(law: Any, name: str) -> None:
 def sound(law: Any, name: str) -> Any:
     """Return the law, if its methods end, and friction and slope can be right."""
     check_end(law, name)
+    check_numbers(law, name)
     if not has_state(law) and (said := _wrong(law)):
         method, rest = said
         raise fault(f"{method} of {echo(name)} {rest}")
@@ -255,6 +306,15 @@ def _value(method: Callable[[float], Any], v: float) -> float:
         raise
     except BaseException:  # the run says what a law raises
         return nan
+
+
+def _is_number(value: Any) -> bool:
+    """Return whether compiled code may take a value as a number; a text in digits is none."""
+    try:
+        float(value)
+    except (TypeError, ValueError):
+        return False
+    return not isinstance(value, str | bytes)
 
 
 def _is_its_own(value: Any, module: ModuleType) -> bool:
