@@ -339,6 +339,8 @@ def limit(found: Alignment) -> str:
             f"Alignment to {in_words(found.until, 'rad')} is not enough to keep the error of "
             f"mu_static below {share}: it is {percent(found.least, 3)} there."
         )
+    if isnan(found.least):
+        return f"Where the error of mu_static is {share} is not known: no test reaches its end."
     said = f"An error of mu_static of {share} is not reached up to {in_words(found.until, 'rad')}"
     if isnan(found.first):
         return f"{said}."

@@ -238,6 +238,14 @@ def test_tests_that_end_early_beside_the_limit_are_left_out(monkeypatch):
     assert degrees(found.angle) == pytest.approx(1.0, rel=1e-9)
 
 
+def test_where_no_test_reaches_its_end_nothing_is_said_of_the_limit(monkeypatch):
+    """It was "not reached up to 0 deg"."""
+    found, _ = aligned_with(lambda phi: nan, monkeypatch)
+    assert limit(found) == (
+        "Where the error of mu_static is 2 % is not known: no test reaches its end."
+    )
+
+
 def test_a_mean_weighs_each_test_by_the_angles_about_it():
     """In the logarithm: here log(2) and log(100)/2 of the first two, which fall."""
     angles, errors = np.array([1.0, 2.0, 100.0]), np.array([3.0, 1.0, 5.0])
