@@ -753,6 +753,46 @@ def test_the_fitted_line_knows_the_spring_across():
     assert line(middle.values[at]) == pytest.approx(expected, rel=1e-9)
 
 
+@pytest.fixture(scope="module")
+def only_loading():
+    return st.analyse(st.simulate(st.presets.nakano_popov_2020(), "2.5 s", sample_rate="4 kHz"))
+
+
+def test_a_misalignment_within_its_error_has_no_line(only_loading):
+    fit = only_loading.misalignment
+    for error, lines in ((0.45, 2), (0.55, 0)):
+        unsure = fit._replace(phi_error=error * abs(fit.phi))
+        assert len(_creep_lines(only_loading._replace(misalignment=unsure), V)) == lines
+
+
+def test_the_fitted_line_begins_where_the_fit_does_and_has_its_stiffness(only_loading):
+    fit = only_loading.misalignment._replace(stiffness=2.0 * K)
+    found = only_loading._replace(misalignment=fit)
+    begins = 0.05 * fit.F_0 / (2.0 * K) / V
+    at = begins * np.array([0.98, 1.02])
+    drawn = _creep_lines(found, V)["Eq. (7), fitted"](at)
+    assert np.isnan(drawn).tolist() == [True, False]
+    middle = 0.5 * (found.creep["begin"] + found.creep["end"]).values
+    force = np.interp(at[1], middle, found.creep["force"].values)
+    softer = 2.0 * K / found.source.slider.k_y
+    assert drawn[1] == pytest.approx(V * implied_velocity(fit, force, softer), rel=1e-9)
+
+
+def test_the_line_of_eq_8_is_of_the_loading_from_its_begin_and_at_the_load(only_loading):
+    its, time = only_loading.record, only_loading.record.time
+    load = its.normal_load * np.where(time < 1.0, 1.0, 2.0)
+    other = its.model_copy(update={"time": time + 0.5, "load": load})
+    (near,) = (
+        line
+        for name, line in _creep_lines(only_loading._replace(record=other), V).items()
+        if "Eq. (8)" in name
+    )
+    fit, lasts = only_loading.misalignment, float(only_loading.curves["slip_time"][0]) - 0.5
+    theory_of = creep_theory(V, fit.phi, 2.0 * fit.F_0 / K, lasts)["Eq. (8), corrected"]
+    at = np.geomspace(1e-3, 1.0, 9)
+    np.testing.assert_allclose(near(at), theory_of(at), rtol=1e-12)
+
+
 def test_when_the_mass_slips_is_unsure_only_in_the_bin_next_to_it(paper_run):
     """A bin that ends before slip has none of the motion that goes as fast as the drive."""
     mean, record = st.analyse(paper_run).creep, record_of(paper_run)
