@@ -11,12 +11,14 @@ from stiction.errors import ResultError, argument
 from stiction.recording.stored import read_stored, root_attributes
 from stiction.result.attributes import intact_description
 from stiction.result.file import (
+    FIT_KIND,
     RECORD_KIND,
     TEXTS,
     DamageError,
     is_netcdf,
     read_tables,
 )
+from stiction.result.fit_file import refuse_damaged_fit
 from stiction.simulation import run
 from stiction.storage.isolation import apart
 from stiction.storage.kinds import RESULT, use_of
@@ -81,14 +83,15 @@ class Check(NamedTuple):
 
 
 def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Check:
-    """Check a result, a stored record or the store of a study for damage.
+    """Check a result, a stored record, the file of a fit or the store of a study for damage.
 
     Versions before 0.5 wrote no checksums: in their files, only missing and truncated parts show.
 
     Parameters
     ----------
     path : str or Path
-        A result of `stiction.run`, a record of `stiction import` or a store of `stiction.sweep`.
+        A result of `stiction.run`, a record of `stiction import`, the file of a `stiction.fit` or
+        a store of `stiction.sweep`.
     repair : bool, optional
         Whether to compute damaged parts again: a result from the description in it, a study
         block by block.
@@ -104,8 +107,8 @@ def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Che
     Raises
     ------
     ResultError
-        If `path` is none of these, a repair needs a description that is damaged too, or a record
-        is damaged, which must be imported again.
+        If `path` is none of these, or a repair needs a description that is damaged too; or if a
+        record is damaged, which must be imported again, or a fit, which must be made again.
 
     Examples
     --------
@@ -127,6 +130,9 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     attributes = root_attributes(path) if os.path.isfile(path) else None
     if attributes is not None and RECORD_KIND in attributes:
         read_stored(path)  # or it says what is damaged
+        return Check(path, [])
+    if attributes is not None and FIT_KIND in attributes:
+        refuse_damaged_fit(path)
         return Check(path, [])
     try:
         read_tables(path)

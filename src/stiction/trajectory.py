@@ -311,7 +311,7 @@ def load(path: str | Path, *, trust: bool = False) -> Trajectory:
             data[state.name]
     except (DescriptionError, KeyError, ValueError, AttributeError) as error:
         told = f"its attributes cannot be read: {error}"
-        raise ResultError(f"{path}: {told}{age(data)}") from None
+        raise ResultError(f"{path}: {told}{age(data.attributes)}") from None
     intervals = np.column_stack([sticks[name] for name in ENDS])
     arrays = partial(_with_mu, data, description.slider)
     return Trajectory(description, arrays, intervals, status, statistics)

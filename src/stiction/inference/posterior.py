@@ -17,12 +17,13 @@ from stiction.inference.learning.calibration import Learned
 from stiction.inference.learning.regression_abc import Sample, quantiles
 from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import TREND, Observation, Trend, sign_seen, steadiness
+from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import Plan
+from stiction.inference.simulated.synthetic import NOT_OF_THE_SLIDER
 from stiction.inference.suitability import explain_unlike
 from stiction.names import draw
-from stiction.result.file import new_netcdf
-from stiction.storage.files import NETCDF, placeable, whole
+from stiction.result.fit_file import write_fit
 from stiction.system.parameter import unit
 from stiction.text.paths import last_part, short_names
 from stiction.text.quantity_text import percent
@@ -203,6 +204,12 @@ class Fit(Report):
         return [Section("Fit", sentences, Table(headings, rows))]
 
     @property
+    def rig(self) -> Rig:
+        """The rig as it is described, with the priors of its own parameters."""
+        own = {name: its for name, its in self.plan.priors.items() if name not in NOT_OF_THE_SLIDER}
+        return Rig(self.plan.slider, own)
+
+    @property
     def known(self) -> list[Estimate]:
         """The parameters of which the records say clearly more than the prior, and within it."""
         return [x for x in self.estimates if x.identified and x.name not in self.beyond]
@@ -310,17 +317,17 @@ class Fit(Report):
     def save(self, path: str | Path, **groups: xr.Dataset) -> Path:
         """Write the posterior as NetCDF, the prior in its group ``prior``; return the path.
 
+        Attributes hold the description of the rig with its priors, what speaks against the
+        estimates, and the version of this package.
+
         Further datasets become groups of their name: ``fit.save("fit.nc", mechanism=odds.data)``.
         """
-        from xarray.backends import H5NetCDFStore
-
-        target, further = placeable(path, NETCDF), {"prior": self.prior, **groups}
-        size = sum(each.nbytes for each in (self.data, *further.values()))
-        with whole(target) as part, new_netcdf(part, size) as file:
-            self.data.dump_to_store(H5NetCDFStore(file))
-            for name, data in further.items():
-                data.dump_to_store(H5NetCDFStore(file.create_group(name)))
-        return target
+        about = {
+            "rig": self.rig.to_toml(),
+            "doubts": "\n".join(self.doubts),
+            "simulations": self.simulations,
+        }
+        return write_fit(path, self.data, {"prior": self.prior, **groups}, about)
 
 
 def possible(plan: Plan, sample: Sample) -> Sample:

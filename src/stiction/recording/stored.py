@@ -24,6 +24,7 @@ from stiction.result.file import (
     damaged_parts,
     is_netcdf,
     new_netcdf,
+    refuse_layout,
     seal_tables,
     sign,
     size_of,
@@ -34,6 +35,8 @@ from stiction.storage.files import NETCDF, placeable, whole
 from stiction.storage.foreign import UNREADABLE, opening, read_through, refuse_other_files
 from stiction.storage.isolation import apart
 from stiction.storage.version import own_version
+
+LAYOUT = 1  # of a stored record
 
 
 def write_stored(
@@ -55,7 +58,7 @@ def write_stored(
         name: Column(("time",), values, cf_attributes(CHANNELS[name].unit, CHANNELS[name].meaning))
         for name, values in channels.items()
     }
-    attributes: dict[str, Any] = {RECORD_KIND: 1, "stiction_version": own_version()}
+    attributes: dict[str, Any] = {RECORD_KIND: LAYOUT, "stiction_version": own_version()}
     attributes |= {name: float(value) for name, value in known.items()}
     attributes["units_of_attributes"] = ", ".join(f"{name}: {KNOWN[name]}" for name in known)
     attributes["sensors"] = json.dumps({name: _fields(each) for name, each in sensors.items()})
@@ -67,11 +70,6 @@ def write_stored(
             write_table(file, table)
         sign(part)
     return target
-
-
-def is_stored(path: Path) -> bool:
-    """Return whether a file is a record that `write_stored` wrote."""
-    return RECORD_KIND in (root_attributes(path) or ())
 
 
 def root_attributes(path: Path) -> list[str] | None:
@@ -101,6 +99,7 @@ def read_stored(path: Path) -> Measurement:
     with opening(path, UNREADABLE):
         refuse_other_files(path)
         data = xr.load_dataset(path, engine="h5netcdf", decode_times=False)
+        refuse_layout(path, data.attrs, RECORD_KIND, LAYOUT)
         lost = damaged_parts(data.attrs.get(SEAL), {"record": as_table(data)})
     if lost:
         raise ResultError(f"{path}: is damaged: {', '.join(lost[:3])}; import the record again")

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.errors import ResultError, argument
+from stiction.errors import ResultError, argument, echo
 from stiction.machine import shortage
 from stiction.result.attributes import DESCRIPTION, SEAL
 from stiction.result.table import STICKS, VARIABLES, Column, ColumnTable
@@ -38,6 +38,13 @@ TEXTS = ("description", "status", "stiction_version")
 SHORTEST = 1e-100  # s, between two samples
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
 RECORD_KIND = "stiction_record"  # attribute of a stored record; its value: the layout
+FIT_KIND = "stiction_fit"  # the same of the file of a fit
+OTHER_KINDS = {
+    RECORD_KIND: "is a record, not the result of a run; stiction analyse {path} and "
+    "st.read_record read it",
+    FIT_KIND: "is the file of a fit; xarray.open_dataset reads it, and stiction check {path} "
+    "looks for damage",
+}
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 
@@ -124,9 +131,7 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
     with opening(path, UNREADABLE):
         refuse_other_files(path)
         data, sticks, checked = open_tables(path)
-        if RECORD_KIND in data.attributes:
-            use = f"stiction analyse {argument(path)} and st.read_record read it"
-            raise ResultError(f"{path}: is a record, not the result of a run; {use}")
+        refuse_kinds(path, data.attributes, OTHER_KINDS)
         sealed = data.attributes.get(SEAL)
         lost = damaged_parts(sealed, {"samples": data, "sticks": sticks}) if checked else []
     if lost:
@@ -139,11 +144,11 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
         what = f"it lacks {', '.join(lacking)}"
         if lacking == [*ENDS]:
             what += ", as what run.data.to_netcdf(...) writes; run.save(...) writes a whole result"
-        raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(data)}")
+        raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(about)}")
     wrong = [*_wrong(data, "time", ["time", *VARIABLES]), *_wrong(sticks, "stick", STICKS)]
     wrong += [f"{name} is not text" for name in TEXTS if not isinstance(about.get(name), str)]
     if wrong:
-        raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(data)}")
+        raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(about)}")
     return data, sticks
 
 
@@ -161,9 +166,24 @@ def is_netcdf(path: str | Path) -> bool:
         return file.read(len(HDF5)) == HDF5
 
 
-def age(data: ColumnTable) -> str:
+def refuse_kinds(path: str | Path, attributes: Iterable[str], kinds: Iterable[str]) -> None:
+    """Refuse a file with such attributes (their names suffice) that is of one of these kinds."""
+    for kind in kinds:
+        if kind in attributes:
+            raise ResultError(f"{path}: {OTHER_KINDS[kind].format(path=argument(path))}")
+
+
+def refuse_layout(path: str | Path, attributes: Mapping[str, Any], kind: str, layout: int) -> None:
+    """Refuse a file of a kind whose layout is not the one that is known."""
+    stated = np.asarray(attributes[kind]).tolist()
+    if stated not in (layout, [layout]):
+        told = f"has layout {echo(stated)}, and layout {layout} is read here{age(attributes)}"
+        raise ResultError(f"{path}: {told}; read it with the version that wrote it")
+
+
+def age(attributes: Mapping[str, Any]) -> str:
     """Return a note on the version that wrote a file, '' if it is this one."""
-    wrote, this = data.attributes.get("stiction_version"), own_version()
+    wrote, this = attributes.get("stiction_version"), own_version()
     if wrote is None or str(wrote) == this:
         return ""
     return f"; stiction {wrote!s:.20} wrote it, this is {this}"

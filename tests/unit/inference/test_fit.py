@@ -27,7 +27,9 @@ from stiction.inference.priors import Normal, Uniform
 from stiction.inference.simulated.jitter import Jitter, move, stretch
 from stiction.inference.simulated.library import build
 from stiction.inference.simulated.synthetic import draw, synthesise
+from stiction.recording import stored
 from stiction.recording.sensor import LowPass, low_pass
+from stiction.result import fit_file
 
 
 @pytest.fixture(scope="module")
@@ -57,6 +59,65 @@ def test_the_file_opens_with_xarray(found, tmp_path):
     median = np.degrees(found["phi"].median)
     assert float(after["phi"].median()) == pytest.approx(median, rel=0.05)
     assert set(after) == set(before) == {"phi", "k_x", "k_y", "mu_0", "mu_inf", "jitter"}
+
+
+def test_the_file_tells_what_was_fitted_and_what_speaks_against_it(found, tmp_path):
+    path = found.save(tmp_path / "fit.nc")
+    about = xr.open_dataset(path).attrs
+    assert about["stiction_version"] == st.__version__
+    assert about["simulations"] == found.simulations
+    assert about["doubts"] == "\n".join(found.doubts)
+    again = st.Rig.from_toml(about["rig"])
+    assert again.priors.keys() == found.rig.priors.keys()  # the jitter is no value of the rig
+    assert again.slider.mass == found.plan.slider.mass
+    assert st.check(path).ok
+
+
+@pytest.mark.parametrize("place", [0.2, 0.5, 0.8, 1.0])
+def test_a_damaged_file_of_a_fit_is_found(found, tmp_path, place):
+    """Nothing showed it: changed numbers were read as they stood."""
+    path = found.save(tmp_path / "fit.nc")
+    content = bytearray(path.read_bytes())
+    content[int(place * (len(content) - 1))] ^= 1
+    path.write_bytes(content)
+    with pytest.raises(ResultError, match="fit the records again"):
+        st.check(path)
+    path.write_bytes(content[: len(content) // 2])
+    with pytest.raises(ResultError, match=r"fit\.nc"):
+        st.check(path)
+
+
+def test_other_programs_notice_a_changed_number_of_a_fit(found, tmp_path):
+    import h5py
+
+    path = found.save(tmp_path / "fit.nc")
+    with h5py.File(path) as file:
+        chunk = file["phi"].id.get_chunk_info(0)
+    content = bytearray(path.read_bytes())
+    content[chunk.byte_offset + 3] ^= 1
+    path.write_bytes(content)
+    with pytest.raises(OSError, match="filter returned failure"):
+        xr.load_dataset(path)
+
+
+def test_the_file_of_a_fit_is_named_where_a_run_or_a_record_is_read(found, tmp_path):
+    path = found.save(tmp_path / "fit.nc")
+    for read in (st.load, st.read_record, st.analyse):
+        with pytest.raises(ResultError, match=r"is the file of a fit; xarray\.open_dataset reads"):
+            read(path)
+
+
+@pytest.mark.parametrize("kind", ["stiction_fit", "stiction_record"])
+def test_a_file_of_another_layout_is_refused(found, record, tmp_path, kind, monkeypatch):
+    """A stored record of a newer layout was read as if it had this one."""
+    module = {"stiction_fit": fit_file, "stiction_record": stored}[kind]
+    with monkeypatch.context() as newer:
+        newer.setattr(module, "LAYOUT", 2)
+        newer.setattr(module, "own_version", lambda: "99.1")
+        path = (found if kind == "stiction_fit" else record).save(tmp_path / "newer.nc")
+    words = "has layout 2, and layout 1 is read here; stiction 99.1 wrote it"
+    with pytest.raises(ResultError, match=words):
+        st.check(path)
 
 
 def test_a_fit_on_a_full_disk_is_one_error(found, tmp_path, monkeypatch):

@@ -14,8 +14,9 @@ from stiction.formats.table import natural_key
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.part import part_between
 from stiction.recording.request import AskedPart, ReadingOptions
-from stiction.recording.stored import is_stored, read_stored, root_attributes
+from stiction.recording.stored import read_stored, root_attributes
 from stiction.recording.strokes import stroke_of
+from stiction.result.file import FIT_KIND, RECORD_KIND, refuse_kinds
 from stiction.storage.kinds import use_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
@@ -264,7 +265,9 @@ def _measurements(
 ) -> list[Measurement]:
     """Return the measurements of one file; a stored record is one, whose numbers may be changed."""
     file = Path(path)
-    if not is_stored(file):
+    names = root_attributes(file) or ()
+    refuse_kinds(path, names, [FIT_KIND])
+    if RECORD_KIND not in names:
         return read_measurements(file, said, None if sidecar is None else Path(sidecar))
     stored = read_stored(file)
     changed = {name: value for name, value in said.items() if value is not None}

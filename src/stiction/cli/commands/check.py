@@ -18,7 +18,7 @@ def check(
     repair: Annotated[bool, Parameter(negative=())] = False,
     trust: Trust = False,
 ) -> int:
-    """Check a result, a stored record or the store of a study for damage.
+    """Check a result, a stored record, the file of a fit or the store of a study for damage.
 
     For example:
 
@@ -27,12 +27,13 @@ def check(
         stiction check yaw.zarr --repair
 
     Exit status: 0 if nothing is damaged, or all was repaired; 1 if something is damaged; 2 if PATH
-    is none of these, or cannot be repaired, as a record, which is imported again.
+    is none of these, or cannot be repaired, as a record, which is imported again, or a fit.
 
     Parameters
     ----------
     path
-        A result of `stiction run`, a record of `stiction import` or a store of `stiction sweep`.
+        A result of `stiction run`, a record of `stiction import`, the file of a `stiction fit` or
+        a store of `stiction sweep`.
     repair
         Compute damaged parts again: a result from the description in it, a study block by block.
     """
