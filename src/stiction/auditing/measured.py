@@ -422,7 +422,8 @@ def changes(found: RecordComparison, fit: Fit) -> list[str]:
             "force, and the stated stiffness, mass, load and velocity (stiction analyse); at the "
             f"law of friction; and whether the priors are too narrow. {fit.narrow_priors}".rstrip()
         )
-        lines += contradictions(found.predictive)
+        if not fit.explanation:  # else the means of cycles that differ would be those of none
+            lines += contradictions(found.predictive)
     if found.absent:
         listed = " and ".join(NAMES.get(name, name) for name in found.absent)
         lines.append(f"Measuring the {listed} too would tell more of the misalignment.")

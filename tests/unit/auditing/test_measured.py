@@ -14,6 +14,7 @@ from stiction.auditing.measured import (
     GROUNDS,
     WITHDRAWN,
     alternatives,
+    changes,
     compare,
     contradictions,
     sections,
@@ -202,6 +203,16 @@ def test_what_looks_unlike_the_library_is_no_ground_for_a_verdict(found):
     assert seen.like
     assert not far.like
     assert not replace(seen, predictive=None).like
+
+
+def test_where_cycles_differ_neither_stiffness_nor_mass_is_said_to_be_wrong(found):
+    """Holds made a stiffness of 0.55 times, and a mass of 130 times, that were as stated."""
+    seen = found.measured
+    slow = seen.predictive._replace(slip=10.0 * seen.predictive.slip)
+    far = replace(seen, fit=replace(seen.fit, farther=0.01), predictive=slow)
+    assert "The slips last " in " ".join(changes(far, far.fit))
+    paused = replace(far.fit, explanation="Cycles differ within the record.")
+    assert "The slips last" not in " ".join(changes(far, paused))
 
 
 def test_a_force_that_rises_or_falls_as_no_simulation_does_names_stiffness_and_mass():
