@@ -13,9 +13,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, ClassVar
 
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import has_state
-from stiction.friction.user.validation import ENDING, check_numbers, endless, is_law
+from stiction.friction.user.validation import ENDING, endless, fault, is_law, no_number
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED
 from stiction.testing.with_state import WITH_STATE
@@ -65,7 +65,9 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     kind = type(law).__name__
     if said := endless(law):
         raise DescriptionError.of(kind, f"{said}; {ENDING}")
-    check_numbers(law, kind)
+    if wrong := no_number(law):
+        method, rest = wrong
+        raise fault(f"{method} of {echo(kind)} {rest}")
     found = [
         Fault(f"{kind}.{name}", message)
         for name, check in checks_of(law).items()

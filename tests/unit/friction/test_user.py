@@ -17,6 +17,7 @@ from tests.waiting import PATIENCE
 
 import stiction as st
 from stiction.cli import main
+from stiction.errors import echo
 from stiction.friction import has_state
 from stiction.friction.user.source import excerpt
 
@@ -439,7 +440,13 @@ class Nothing(Text):
         pass
 
 
+class Long(Text):
+    def coefficient(law, v):
+        return 10**400
+
+
 RETURNS = [
+    (Long, f"coefficient(law, 0) of 'Long' is {echo(10**400)}; it must be one number"),
     (Text, "coefficient(law, 0) of 'Text' is '0.3'; it must be one number"),
     (Pair, "coefficient(law, 0) of 'Pair' is (0.3, 0.0); it must be one number"),
     (Nothing, "slope(law, 0) of 'Nothing' is None; it must be one number"),

@@ -195,12 +195,11 @@ def _is_free(method: Callable[..., object]) -> bool:
 
 
 def try_law(law: Any, name: str) -> Any:
-    """Return the law, if its methods return numbers at a few speeds, and it is `sound`."""
+    """Return the law, if its methods return finite values at a few speeds, and it is `sound`."""
     check_end(law, name)
-    check_numbers(law, name)
     for method, v in _probes(law):
         try:
-            value = float(getattr(law, method)(v))
+            value = getattr(law, method)(v)
         except KeyboardInterrupt:
             raise
         except BaseException as error:  # whatever the user's law raises
@@ -208,7 +207,7 @@ def try_law(law: Any, name: str) -> Any:
                 f"{method}(law, {v:g}) of {echo(name)} raises {one_line(error)}; correct it there"
             )
             raise fault(what) from None
-        if not isfinite(value):
+        if _is_number(value) and not isfinite(float(value)):
             raise fault(f"{method}(law, {v:g}) of {echo(name)} is {echo(value)}; it must be finite")
     return sound(law, name)
 
@@ -220,8 +219,8 @@ def _probes(law: Any) -> list[tuple[str, float]]:
     return [(method, v) for method in SET_VALUED for v in PROBED]
 
 
-def check_numbers(law: Any, name: str) -> None:
-    """Raise an error if a method of a law returns something else than a number."""
+def no_number(law: Any) -> tuple[str, str] | None:
+    """Return which method of a law returns something else than a number, and what is wrong."""
     for method, v in _probes(law):
         try:
             value = getattr(law, method)(v)
@@ -230,9 +229,11 @@ def check_numbers(law: Any, name: str) -> None:
         except BaseException:  # other checks report it
             continue
         if not _is_number(value):
-            raise fault(
-                f"{method}(law, {v:g}) of {echo(name)} is {echo(value)}; it must be one number"
-            )
+            return f"{method}(law, {v:g})", f"is {echo(value)}; it must be one number"
+    return None
+
+
+_no_number = lru_cache(maxsize=256, typed=True)(no_number)  # once for each law, as `_endless`
 
 
 def check_end(law: Any, name: str) -> None:
@@ -252,8 +253,7 @@ def check_end(law: Any, name: str) -> None:
 def sound(law: Any, name: str) -> Any:
     """Return the law, if its methods end, and friction and slope can be right."""
     check_end(law, name)
-    check_numbers(law, name)
-    if not has_state(law) and (said := _wrong(law)):
+    if said := _no_number(law) or (None if has_state(law) else _wrong(law)):
         method, rest = said
         raise fault(f"{method} of {echo(name)} {rest}")
     return law
@@ -312,7 +312,7 @@ def _is_number(value: Any) -> bool:
     """Return whether compiled code may take a value as a number; a text in digits is none."""
     try:
         float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):  # the last: an integer beyond floats
         return False
     return not isinstance(value, str | bytes)
 
