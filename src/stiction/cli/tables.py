@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Sequence
 from textwrap import wrap
 
@@ -96,5 +95,5 @@ def narrowest(cells: Iterable[str]) -> int:
 
     A number and its unit are one word.
     """
-    words = (word for text in cells for word in re.split(r"(?<!\d)\s+(?!s/m)", text))
+    words = (word for text in cells for word in join_units(text).split(" "))
     return min(max(map(len, words), default=0), LONGEST_WORD)
