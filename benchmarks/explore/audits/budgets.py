@@ -21,7 +21,7 @@ import stiction as st
 from benchmarks.explore.audits.drawing import rig
 from benchmarks.explore.draw import Draw
 from stiction.auditing.prediction import predict
-from stiction.auditing.simulated_test import coarse_rate, creep_before_slip, simulate_test
+from stiction.auditing.simulated_test import coarse_rate, simulate_test
 from stiction.auditing.tolerance import (
     ALLOWED,
     ENOUGH,
@@ -29,9 +29,9 @@ from stiction.auditing.tolerance import (
     Reading,
     budget,
     change,
+    reading,
     turn_to,
 )
-from stiction.auditing.words.numbers import kinetic, peak
 from stiction.inference.priors import Normal, Prior, Uniform
 from stiction.inference.progress import silent
 from stiction.inference.simulated.restriction import is_allowed
@@ -81,20 +81,16 @@ def priors_of(slider: st.Slider, draw: Draw) -> dict[str, Prior]:
 def read_finely(slider: st.Slider) -> Reading:
     """Return what a test reads that is solved step by step."""
     prediction = predict(slider)
-    try:
-        seen = simulate_test(
-            slider,
-            prediction,
-            growth_rate(slider),
-            sample_rate=FINER * coarse_rate(prediction),
-            multiscale=False,
-            most_steps=MOST_STEPS,
-        )
-    except st.StictionError:
-        return Reading(nan, nan, nan, nan)
-    if not seen.run.status.ok:
-        return Reading(nan, nan, nan, nan)
-    return Reading(peak(seen), kinetic(seen), creep_before_slip(seen), prediction.amplitude)
+    test = partial(
+        simulate_test,
+        slider,
+        prediction,
+        growth_rate(slider),
+        sample_rate=FINER * coarse_rate(prediction),
+        multiscale=False,
+        most_steps=MOST_STEPS,
+    )
+    return reading(prediction, test)
 
 
 def further(of: st.Rig, seed: int, number: int, count: int) -> np.ndarray:

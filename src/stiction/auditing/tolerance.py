@@ -13,8 +13,12 @@ import numpy as np
 
 from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.arrays import Floats
-from stiction.auditing.prediction import predict
-from stiction.auditing.simulated_test import creep_before_slip, simulate_coarsely
+from stiction.auditing.prediction import Prediction, predict
+from stiction.auditing.simulated_test import (
+    SimulatedTest,
+    creep_before_slip,
+    simulate_coarsely,
+)
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.progress import Progress, silent
@@ -139,12 +143,18 @@ class Budget:
 def read(slider: Slider) -> Reading:
     """Return what a test from rest reads; NaN if it cannot be simulated to its end."""
     prediction = predict(slider)
+    return reading(prediction, partial(simulate_coarsely, slider, prediction, MOST_STEPS))
+
+
+def reading(prediction: Prediction, simulate: Callable[[], SimulatedTest]) -> Reading:
+    """Return what a test reads that is predicted, and is to be simulated."""
+    unknown = Reading(nan, nan, nan, prediction.amplitude)
     try:
-        seen = simulate_coarsely(slider, prediction, MOST_STEPS)
+        seen = simulate()
     except StictionError:
-        return Reading(nan, nan, nan, prediction.amplitude)
+        return unknown
     if not seen.run.status.ok:
-        return Reading(nan, nan, nan, prediction.amplitude)
+        return unknown
     return Reading(peak(seen), kinetic(seen), creep_before_slip(seen), prediction.amplitude)
 
 
