@@ -86,3 +86,19 @@ def test_studies_take_quantities() -> None:
     assert number(30.0 * unit.degree, "deg") == pytest.approx(number("30 deg", "deg")) == 30.0
     found = linear_stability.critical(SLIDER, "phi", (1.0 * unit.degree, "60 deg"))
     assert found == linear_stability.critical(SLIDER, "phi", ("1 deg", "60 deg"))
+
+
+def test_a_misspelt_argument_is_marked_before_it_runs() -> None:
+    """Mypy marks each of these lines, or refuses the comment by which it is told to let it pass."""
+    with pytest.raises(st.DescriptionError, match="stifness"):
+        st.Spring("cell", stifness="1 kN/m")  # type: ignore[call-arg]
+    with pytest.raises(st.DescriptionError, match="normal_laod"):
+        st.Slider(mass=1, phi="1 deg", normal_laod=1, friction=SLIDER.law)  # type: ignore[call-arg]
+    with pytest.raises(st.DescriptionError, match="rtoll"):
+        st.Settings(duration="1 s", rtoll=1e-6)  # type: ignore[call-arg]
+    with pytest.raises(st.DescriptionError, match="gian"):
+        st.Sensor(noise="1 mN", gian=1.02)  # type: ignore[call-arg]
+    with pytest.raises(st.DescriptionError, match="nubmer"):
+        st.Grid("1 deg", "3 deg", nubmer=3)  # type: ignore[call-arg]
+    with pytest.raises(st.DescriptionError, match="v_g"):
+        laws.ExponentialWeakening(0.3, 0.2, v_g="1 mm/s")  # type: ignore[call-arg]

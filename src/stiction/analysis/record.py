@@ -505,7 +505,7 @@ def _along_cell(x: float, y: float, f_x: Floats, f_y: Floats) -> Floats:
     return force if np.abs(force).max() > ROUND * whole else np.zeros_like(force)
 
 
-def apparatus(slider: Slider) -> dict[str, float | None]:
+def apparatus(slider: Slider) -> dict[str, Any]:
     """Return what a record states of its apparatus, as a slider has it, by the record's fields."""
     return {
         "normal_load": slider.normal_load,

@@ -22,7 +22,7 @@ from stiction.drive.steady import ConstantLoad, ConstantVelocity, VaryingLoad, V
 from stiction.errors import DescriptionError
 from stiction.machine import shortage
 from stiction.text.samples import FrozenColumn
-from stiction.text.units import FORCE, VELOCITY, Velocity, Whole
+from stiction.text.units import FORCE, VELOCITY, Read, Velocity, Whole
 from stiction.text.validation import Described
 
 Times = Any  # a float or an array
@@ -62,7 +62,7 @@ class DriveProgram(Described):
     """
 
     velocity: Velocity = 0.0
-    program: Annotated[tuple[Any, ...], as_pieces(DRIVE_PIECES, VELOCITY), PIECES] = ()
+    program: Annotated[Read[tuple[Any, ...]], as_pieces(DRIVE_PIECES, VELOCITY), PIECES] = ()
     repeat: Repeat = 1
     along: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
     across: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
@@ -149,7 +149,7 @@ class LoadProgram(Described):
     True
     """
 
-    program: Annotated[tuple[Any, ...], as_pieces(LOAD_PIECES, FORCE), PIECES] = ()
+    program: Annotated[Read[tuple[Any, ...]], as_pieces(LOAD_PIECES, FORCE), PIECES] = ()
     repeat: Repeat = 1
     modulation: Annotated[Any, as_modulation(FORCE), "Modulation | None"] = None
 

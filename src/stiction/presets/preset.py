@@ -192,5 +192,5 @@ def find(name: str) -> Preset:
 
 def on_a_line(**changes: Any) -> Slider:
     """Return a slider that moves along x only, m = k = W = 1, with some parameters changed."""
-    values = {"mass": 1.0, "k_x": 1.0, "phi": "0 deg", "normal_load": 1.0} | changes
+    values: dict[str, Any] = {"mass": 1.0, "k_x": 1.0, "phi": "0 deg", "normal_load": 1.0} | changes
     return Slider(**({"k_y": values["k_x"], "c_y": values.get("c_x", 0.0)} | values))

@@ -51,7 +51,7 @@ UNEVEN = 0.01  # relative: intervals that differ by more are reported
 class Measurement(NamedTuple):
     """The channels of one block in SI, by name, and what else the file and the user say."""
 
-    channels: dict[str, Floats]
+    channels: dict[str, Any]  # of arrays
     known: dict[str, Any]
     sensors: dict[str, Sensor]
     origin: Origin

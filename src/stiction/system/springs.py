@@ -209,7 +209,7 @@ def spring_table(spring: Spring) -> dict[str, Any]:
 
 
 Springs = Annotated[
-    tuple[Any, ...],
+    Read[tuple[Any, ...]],
     BeforeValidator(read_springs),
     PlainSerializer(lambda springs: [spring_table(each) for each in springs]),
     "sequence of Spring",

@@ -8,10 +8,28 @@ from functools import cache, partial
 from inspect import Parameter, Signature, signature
 from math import isinf
 from numbers import Real
-from typing import TYPE_CHECKING, Annotated, Any, Self, TypeVar, cast, get_args, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    ClassVar,
+    Self,
+    TypeVar,
+    cast,
+    dataclass_transform,
+    get_args,
+    get_type_hints,
+)
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationError, create_model
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    ValidationError,
+    create_model,
+)
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
@@ -39,6 +57,7 @@ LEAST, MOST = 3, 6  # letters that begin a name; names that are listed
 READS = "reads_parameters"  # marks constructors made by `validate`
 
 
+@dataclass_transform(kw_only_default=True, field_specifiers=(Field,))
 class _Presented(ModelMetaclass):
     """Hides inherited library members of a class from `dir` and `help`."""
 
@@ -49,7 +68,9 @@ class _Presented(ModelMetaclass):
 class Described(BaseModel, metaclass=_Presented):
     """A frozen part of a description; invalid values raise one `DescriptionError`."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", arbitrary_types_allowed=True)
+    model_config: ClassVar[ConfigDict] = ConfigDict(
+        frozen=True, extra="forbid", arbitrary_types_allowed=True
+    )
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -65,7 +86,7 @@ class Described(BaseModel, metaclass=_Presented):
             for name, field in cls.model_fields.items()
         ]
         required = sorted(parameters, key=lambda p: p.default is not Parameter.empty)
-        cls.__signature__ = Signature(required)
+        setattr(cls, "__signature__", Signature(required))  # noqa: B010
 
     def __init__(self, *unnamed: Any, **values: Any) -> None:
         """Validate, or raise every fault at once."""

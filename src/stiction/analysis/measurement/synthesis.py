@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -81,7 +82,7 @@ def measure(
     count = int(np.floor(plain.duration * rate * (1.0 + 1e-12))) + 1
     time = plain.time[0] + np.arange(count) / rate
     streams = np.random.SeedSequence(seed).spawn(len(values))
-    found = {}
+    found: dict[str, Any] = {}
     for name, stream in zip(values, streams, strict=True):
         if name not in sensors:
             continue

@@ -42,7 +42,7 @@ class Wanted(Described):
     """The arguments of `stiction.design`, in SI."""
 
     channels: Annotated[tuple[str, ...], AfterValidator(_with_force)] = ("force",)
-    angles: tuple[Angle, ...] = Field(ANGLES, validate_default=True)
+    angles: tuple[Angle, ...] = Field(default=ANGLES, validate_default=True)
     velocities: tuple[PositiveSpeed, ...] | None = None
     loads: tuple[Force, ...] | None = None
     noise: Force | None = None

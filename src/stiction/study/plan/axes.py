@@ -37,13 +37,16 @@ Spacing = Literal["linear", "log"]
 class Positional(Described):
     """Base of axes, which take their fields by position or by name."""
 
+    def __init_subclass__(cls, *, kw_only: bool = True) -> None:
+        """Take what a type checker must be told: that the fields of a class have places."""
+
     def __init__(self, *given: Any, **values: Any) -> None:
         """Read the fields."""
         named = dict(zip(type(self).model_fields, given, strict=False))
         super().__init__(*given[len(named) :], **named, **values)
 
 
-class Values(Positional):
+class Values(Positional, kw_only=False):
     """A list of values.
 
     Parameters
@@ -64,15 +67,13 @@ class Values(Positional):
     values: Quantities
     along: str | None = None
 
-    __init__ = Positional.__init__  # repeated for type checkers, here and below
-
     @property
     def count(self) -> int:
         """Number of values."""
         return len(self.values)
 
 
-class Range(Positional):
+class Range(Positional, kw_only=False):
     """Base of `Grid`, `Random` and `Sobol`: values between two ends."""
 
     start: Quantity
@@ -110,14 +111,12 @@ class Grid(Range):
     10
     """
 
-    __init__ = Positional.__init__
-
     def places(self, place: int, seed: int) -> Floats:
         """Return evenly spaced positions."""
         return np.linspace(0.0, 1.0, self.count)
 
 
-class Random(Range):
+class Random(Range, kw_only=False):
     """Random values, uniform between the ends or between their logarithms.
 
     Parameters
@@ -136,14 +135,12 @@ class Random(Range):
 
     along: str | None = "sample"
 
-    __init__ = Positional.__init__
-
     def places(self, place: int, seed: int) -> Floats:
         """Return random positions; a longer axis begins with the same ones."""
         return np.random.Generator(np.random.Philox([seed, place])).random(self.count)
 
 
-class Sobol(Range):
+class Sobol(Range, kw_only=False):
     """Values of a Sobol sequence with a random digital shift, which fill a space evenly.
 
     Parameters
@@ -165,8 +162,6 @@ class Sobol(Range):
     """
 
     along: str | None = "sample"
-
-    __init__ = Positional.__init__
 
     def places(self, place: int, seed: int) -> Floats:
         """Return the coordinate number `place` of the sequence."""

@@ -41,7 +41,7 @@ from stiction.system.description import Description
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import folder_of, read_changed, read_json
-from stiction.text.units import Whole
+from stiction.text.units import Read, Whole
 from stiction.text.validation import Described, faulty, unknown_name
 
 
@@ -82,8 +82,8 @@ class Study(Described):
 
     base: Annotated[Any, AfterValidator(is_description)]
     axes: Annotated[Any, BeforeValidator(axes_of)]
-    measures: Annotated[tuple[str, ...], BeforeValidator(measures_of)] = DEFAULT
-    traces: Annotated[tuple[str, ...], BeforeValidator(traces_of)] = ()
+    measures: Annotated[Read[tuple[str, ...]], BeforeValidator(measures_of)] = DEFAULT
+    traces: Annotated[Read[tuple[str, ...]], BeforeValidator(traces_of)] = ()
     trace_samples: Annotated[Whole, Field(ge=2, le=100_000)] = 256
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 0
 
