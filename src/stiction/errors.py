@@ -139,7 +139,7 @@ class DescriptionError(StictionError, ValueError):
 
     def __init__(self, faults: Sequence[Fault]) -> None:
         """Join the faults into one message, a line each."""
-        self.faults = tuple(faults)
+        self.faults: tuple[Fault, ...] = tuple(faults)
         lines = [str(fault) for fault in self.faults[:MOST]]
         if len(self.faults) > MOST:
             lines.append(f"and {len(self.faults) - MOST} more faults")
