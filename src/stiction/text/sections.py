@@ -103,8 +103,12 @@ def as_text(parts: Iterable[Section]) -> str:
 
 
 def join_units(text: str) -> str:
-    """Return a text whose numbers are not parted from their units at the end of a line."""
-    return re.sub(r"(?<=\d) (?=\S)| (?=s/m\b)", "\N{NO-BREAK SPACE}", text)
+    """Return a text whose numbers keep their unit, and a "~" before them, on the same line.
+
+    >>> join_units("about ~ 2 N")
+    'about ~\xa02\xa0N'
+    """
+    return re.sub(r"(?<=\d) (?=\S)| (?=s/m\b)|(?<=~) (?=\d)", "\N{NO-BREAK SPACE}", text)
 
 
 def html(text: str) -> str:
