@@ -2,9 +2,7 @@
 
 import json
 import math
-import os
 import re
-import shutil
 
 import pytest
 from tests.explored import an_opened, serving
@@ -17,17 +15,6 @@ from stiction.explorer.form import form
 from stiction.explorer.source import open_sources
 from stiction.result.peak import largest_spring_force
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser")
-if CHROMIUM is None:
-    pytest.skip("there is no Chromium: apt-get install chromium", allow_module_level=True)
-sync_api = pytest.importorskip("playwright.sync_api", reason="Playwright is not installed")
-
-QUIET = ["background-networking", "component-update", "sync", "gpu", "dev-shm-usage"]
-ARGUMENTS = ["--no-sandbox", "--no-first-run", "--mute-audio"]
-ARGUMENTS += [
-    "--autoplay-policy=no-user-gesture-required",
-    *(f"--disable-{each}" for each in QUIET),
-]
 SIZE = {"width": 1280, "height": 720}
 SHOWN = "Boolean(window.stictionPage?.shown) && !stictionPage.shown.quick"
 
@@ -95,15 +82,6 @@ class Page:
 
     def row(self, path):
         return self.tab.locator(f'[data-path="{path}"]')
-
-
-@pytest.fixture(scope="module")
-def browser():
-    os.environ.setdefault("PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD", "1")
-    with sync_api.sync_playwright() as driver:
-        made = driver.chromium.launch(executable_path=CHROMIUM, headless=True, args=ARGUMENTS)
-        yield made
-        made.close()
 
 
 @pytest.fixture(scope="module")
@@ -487,7 +465,7 @@ def test_everything_is_exported(page):
         with page.tab.expect_download() as kept:
             page.tab.select_option("#export", kind)
         assert kept.value.suggested_filename == name
-        assert os.path.getsize(kept.value.path()) > 1000
+        assert kept.value.path().stat().st_size > 1000
 
 
 def test_what_cannot_be_asked_says_why(page):
