@@ -3,6 +3,7 @@
 import json
 import math
 import re
+from itertools import pairwise
 
 import pytest
 from tests.explored import an_opened, serving
@@ -204,6 +205,25 @@ def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(modules):
             assert low <= first < last <= high * (1 + 1e-9), field
             assert field.get("low_allowed", True) or first > low, field
             assert math.isfinite(place), field
+
+
+def test_numbers_at_neighbouring_ticks_do_not_overlap(modules):
+    """One at the edge of a frame is moved into it, where that of the next tick may stand."""
+    levels = modules.value(
+        module(
+            "drawing.js",
+            """({ frame, contextOf }) => {
+          const context = contextOf(document.createElement("canvas")), found = [];
+          context.fillText = (words, x, y) => found.push(y);
+          const ticks = [0, 1, 2, 3, 4, 5, 6].map((value) => [value, `${value}`]);
+          const axis = { place: (value) => value / 6, ticks };
+          frame(context, { left: 40, top: 0, width: 50, height: 60 }, { ...axis, ticks: [] }, axis);
+          return found;
+        }""",
+        )
+    )
+    assert len(levels) == 5  # of seven: those at both edges give way to their neighbours
+    assert all(one - two >= 9 for one, two in pairwise(levels))
 
 
 def test_the_form_stays_under_the_hand(page):

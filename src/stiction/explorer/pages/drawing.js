@@ -9,6 +9,7 @@ export const rest = (share = 1) => `rgba(110,110,110,${(0.15 * Math.sqrt(share))
 // Letters need more contrast than curves: 4.5 : 1 on the floor (WCAG 2.2, 1.4.3).
 export const LETTERS = { [RED]: "#b34d00", [GREEN]: "#00714f", [ORANGE]: "#8f5f00", [PURPLE]: "#99487a" };
 export const FONT = '12px system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
+const DIGIT = 9; // px, the height of its digits
 export const SERIF = 'italic 14px "STIX Two Text", "DejaVu Serif", Georgia, serif';
 
 // In a dark page a colour is as light as its negative on a ground of 8 %, and keeps its hue.
@@ -197,11 +198,13 @@ export function frame(context, box, xs, ys) {
     const half = context.measureText(label).width / 2; // the last one may end before the frame does
     text(context, label, Math.min(x(value), widthOf(context) - half - 1), top + height + 9, { align: "center", color: SOFT });
   }
-  for (const [value, label] of ys.ticks) {
-    line(context, [[left, y(value)], [left + 4, y(value)]], GREY);
-    const beside = Math.min(Math.max(y(value), top + 6), top + height - 6); // not over another frame's
-    text(context, label, left - 4, beside, { align: "right", color: SOFT });
-  }
+  const levels = ys.ticks.map(([value]) => y(value));
+  ys.ticks.forEach(([, label], i) => {
+    line(context, [[left, levels[i]], [left + 4, levels[i]]], GREY);
+    const beside = Math.min(Math.max(levels[i], top + 6), top + height - 6); // not over another frame's
+    const over = levels.some((level, j) => j !== i && Math.abs(level - beside) < DIGIT); // its neighbour
+    if (!over) text(context, label, left - 4, beside, { align: "right", color: SOFT });
+  });
   return { x, y };
 }
 
