@@ -17,6 +17,7 @@ from stiction.friction import ellipse
 from stiction.friction.law import limit_coefficient
 from stiction.linear_stability.linear import growth_rate
 from stiction.result.peak import LARGER, LARGEST, largest_spring_force
+from stiction.result.rest import rest_in_words
 from stiction.result.table import (
     FASTER,
     FASTEST,
@@ -233,6 +234,7 @@ def about(description: Description, solution: Solution, table: ColumnTable) -> d
     return {
         "ok": status.ok,
         "status": status.value,
+        "rested": rest_in_words(slider, table, solution.counts.steps) if status.ok else "",
         "scene": {
             "phi": slider.misalignment,
             "limit": limit_coefficient(slider.law, table["friction"], table["normal_load"]),

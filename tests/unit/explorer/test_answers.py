@@ -163,6 +163,17 @@ def test_a_run_whose_slips_are_sampled_well_is_drawn_once(description):
     assert [head["quick"] for head, _ in parts].count(False) == 1
 
 
+def test_a_run_that_ends_before_any_slip_says_so(description):
+    """A law with internal state was "0 s at rest" all the time, and nothing said what to do."""
+    ageing = st.laws.RateStateAgeing(a=0.008, b=0.014, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    resting = description.slider.replace(friction=ageing)
+    for slider in (resting, description.slider):
+        short = description._replace(slider=slider, run=Settings(duration=5e-3))
+        for head, _ in motion.run(short, 400, free):
+            assert "set a longer duration" in head["rested"]
+    assert [head["rested"] for head, _ in motion.run(description, 400, free)][-1] == ""
+
+
 def test_columns_without_samples_are_left_out():
     places, starts = columns_of(np.array([0.05, 0.95]), (0.0, 1.0), 10)
     assert places.tolist() == [0, 9]

@@ -18,8 +18,6 @@ from stiction.cli.terminal import say
 from stiction.errors import Faults, argument
 from stiction.text.quantity_text import percent
 
-REST = 1e-9  # of the drive velocity: slower slip counts as rest
-
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
 
@@ -94,6 +92,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     """Return the lines of text about a written run."""
     from stiction.friction.law import implausible
     from stiction.result.peak import largest_spring_force
+    from stiction.result.rest import rest_in_words
     from stiction.text.units import in_words
 
     statistics = result.statistics
@@ -119,10 +118,9 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
         f"next: stiction plot {name} --output {argument(output.with_suffix('.png'))}{trust}, "
         f"stiction analyse {name}{trust}",
     ]
-    if statistics.steps == 0 or (result.status.ok and rests_throughout(result)):
-        still = not any(result.samples[name].any() for name in ("drive_X", "drive_Y"))
-        remedy = "the drive is at rest; give it a velocity" if still else longer(result)
-        lines.append(f"it never slipped: friction held all the time; {remedy}")
+    if result.status.ok or statistics.steps == 0:
+        rested = rest_in_words(result.slider, result.samples, statistics.steps)
+        lines += [rested] if rested else []
     return lines + implausible(result.slider.law)
 
 
@@ -132,26 +130,4 @@ def share(result: Trajectory) -> str:
     lasted = float(times[-1] - times[0])
     return (
         f", {percent(result.statistics.time_stuck / lasted, 3)} of the time" if lasted > 0.0 else ""
-    )
-
-
-def rests_throughout(result: Trajectory) -> bool:
-    """Return whether the mass did not move, although its law does not allow true rest."""
-
-    V, slip = result.slider.drive_speed, result.samples["slip_speed"]
-    return V > 0.0 and bool((slip[1:] < REST * V).all())
-
-
-def longer(result: Trajectory) -> str:
-    """Return the remedy for a run that is too short for slip."""
-    from stiction.text.units import in_words
-
-    slider = result.slider
-    V = slider.drive_speed
-    if not V > 0.0:
-        return "run it longer"
-    most, load = in_words(slider.F_0, "N"), in_words(slider.loading_time, "s")
-    return (
-        f"a spring is loaded to the {most} that friction can hold after some {load}; "
-        "set a longer duration"
     )

@@ -166,7 +166,8 @@ function show(answer, asked) {
   if (!view) series.show("b", answer);
   for (const panel of panels) panel.refresh();
   const sticks = answer.facts.find((each) => each.name === "stick intervals"), rest = answer.facts.find((each) => each.name === "time at rest");
-  data.summary = [answer.ok ? `${sticks.text} stick interval${sticks.text === "1" ? "" : "s"}, ${rest.text} at rest` : `ended early: ${answer.status}`, !answer.ok];
+  const counted = `${sticks.text} stick interval${sticks.text === "1" ? "" : "s"}, ${rest.text} at rest`;
+  data.summary = [answer.ok ? answer.rested || counted : `ended early: ${answer.status}`, !answer.ok];
   tellRun();
   page.shown = { asked, quick: answer.quick, arrived: performance.now() };
   page.redraw = asked;

@@ -1,0 +1,45 @@
+"""A run in which the mass never slips, and what would make it slip."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from stiction.result.table import ColumnTable
+    from stiction.system.slider import Slider
+
+REST = 1e-9  # of the drive velocity: slower slip counts as rest
+
+
+def rest_in_words(slider: Slider, samples: ColumnTable, steps: int) -> str:
+    """Return that a run never slipped, and the remedy; nothing where it slipped.
+
+    A law with internal state does not allow true rest: there the samples tell, in which the first
+    has the slip of the start.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "5 ms")
+    >>> rest_in_words(run.slider, run.samples, run.statistics.steps).split(";")[0]
+    'it never slipped: friction held all the time'
+    """
+    V, slip = slider.drive_speed, samples["slip_speed"]
+    if steps and not (V > 0.0 and (slip[1:] < REST * V).all()):
+        return ""
+    still = not any(samples[name].any() for name in ("drive_X", "drive_Y"))
+    remedy = "the drive is at rest; give it a velocity" if still else longer(slider)
+    return f"it never slipped: friction held all the time; {remedy}"
+
+
+def longer(slider: Slider) -> str:
+    """Return the remedy for a run that is too short for slip."""
+    if not slider.drive_speed > 0.0:
+        return "run it longer"
+    most, load = in_words(slider.F_0, "N"), in_words(slider.loading_time, "s")
+    return (
+        f"a spring is loaded to the {most} that friction can hold after some {load}; "
+        "set a longer duration"
+    )
