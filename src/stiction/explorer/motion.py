@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction import theory
+from stiction.arrays import Floats
 from stiction.drive.program import nominal_velocity
 from stiction.errors import STATUSES, StictionError
 from stiction.explorer.decimation import columns_of, extremes, share_stuck
@@ -161,12 +162,27 @@ def slip_times(sticks: np.ndarray, times: np.ndarray) -> np.ndarray:
     starts, ends = sticks[:-1, 1], sticks[1:, 0]
     held = np.searchsorted(times, ends) - np.searchsorted(times, starts)
     short = (held < IN_SLIP) & (ends > starts)
-    count = min(MOST_SAMPLES // max(int(short.sum()), 1), IN_SLIP)
+    starts, ends = starts[short], ends[short]
+    longest = np.argsort(starts - ends, kind="stable")
+    full = MOST_SAMPLES // IN_SLIP
+    if len(longest) > full:  # half of the samples for rapid slips, among thousands in creep
+        full //= 2
+    rest = longest[full:]
+    few = min(MOST_SAMPLES // (2 * max(len(rest), 1)), IN_SLIP)
+    parts = ((longest[:full], IN_SLIP), (rest, few))
+    return np.unique(np.concatenate([within(starts[p], ends[p], count) for p, count in parts]))
+
+
+def within(starts: np.ndarray, ends: np.ndarray, count: int) -> np.ndarray:
+    """Return `count` times in each slip, s; none if these are too few to show it.
+
+    They are closer at both ends: a slip that begins with a step of the drive is fastest there.
+    """
     if count < 3:
         return np.zeros(0)
-    # closer at both ends: a slip that begins with a step of the drive is fastest there
     share = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, count))[:, None]
-    return np.unique(starts[short] + share * (ends[short] - starts[short]))
+    times: Floats = starts + share * (ends - starts)
+    return times.ravel()
 
 
 def fine(description: Description, time: float, width: float, check: Check) -> Iterator[Reply]:

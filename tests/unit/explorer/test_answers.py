@@ -113,6 +113,23 @@ def test_the_phase_portrait_holds_slips_that_are_short_beside_the_run():
     assert speeds[inside].max() == pytest.approx(top, rel=0.01)
 
 
+def test_the_phase_portrait_holds_a_rapid_slip_among_very_many_short_ones():
+    """Of 135 000 slips none was sampled, the four rapid ones neither: chords to any height."""
+    law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f="1 mm/s")
+    slow = st.presets.nakano_popov_2020().replace(friction=law, drive=st.ConstantVelocity(2e-5))
+    description = st.Description(slow, st.Initial(), st.Settings(duration=120.0))
+    *_, (_, drawn) = motion.run(description, 400, free)
+    solution, _ = motion.simulate(description, np.array([0.0]), free)
+    gaps = solution.sticks[1:, 0] - solution.sticks[:-1, 1]
+    assert len(gaps) > motion.MOST_SAMPLES
+    longest = int(np.argmax(gaps))
+    start, end = solution.sticks[longest, 1], solution.sticks[longest + 1, 0]
+    _, wanted = motion.simulate(description, np.linspace(start, end, 2001), free)
+    times, speeds = drawn["track_time"], drawn["track_V_X"]
+    inside = (times >= start) & (times <= end)
+    assert speeds[inside].max() == pytest.approx(wanted["V_X"].max(), rel=0.01)
+
+
 @pytest.mark.parametrize("window", [(0.0, 2.0), (1.0, 1.9), (1.395, 1.43)])
 def test_a_part_of_a_run_shows_the_slips_of_the_whole(window):
     """A zoomed view, and a pinned run, had no spike where a slip of 6 us lay."""
