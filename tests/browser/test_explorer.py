@@ -2,6 +2,7 @@
 
 import json
 import math
+import random
 import re
 from itertools import pairwise
 
@@ -205,6 +206,21 @@ def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(modules):
             assert low <= first < last <= high * (1 + 1e-9), field
             assert field.get("low_allowed", True) or first > low, field
             assert math.isfinite(place), field
+
+
+def test_an_axis_has_two_numbers_at_least(modules):
+    """Of 56 to 64.4 degrees a low frame showed 60 alone, which tells no scale."""
+    rng = random.Random(5)
+    ranges = [(rng.uniform(-99, 99), 10 ** rng.uniform(-3, 3)) for _ in range(500)]
+    shown = modules.value(
+        module(
+            "quantity.js",
+            f"({{ ticks }}) => {json.dumps([[56.0, 8.4], *ranges])}"
+            ".map(([low, span]) => ticks(low, low + span, 2.6).length)",
+        )
+    )
+    assert min(shown) >= 2
+    assert max(shown) <= 6
 
 
 def test_numbers_at_neighbouring_ticks_do_not_overlap(modules):

@@ -57,7 +57,12 @@ export function ticks(low, high, count) {
   if (!(rough > 0) || !isFinite(rough)) return [];
   const unit = 10 ** Math.floor(Math.log10(rough));
   const far = (each) => Math.abs(Math.log(each / rough));
-  const step = [1, 2, 5, 10].map((each) => each * unit).reduce((a, b) => (far(b) < far(a) ? b : a));
+  const steps = [1, 2, 5, 10].map((each) => each * unit).sort((a, b) => far(a) - far(b));
+  const all = steps.map((step) => multiples(low, high, step));
+  return all.find((each) => each.length > 1) ?? all[0]; // a single number tells no scale
+}
+
+function multiples(low, high, step) {
   const found = [];
   for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push([i * step, tickText(i * step, step)]);
   return found;
