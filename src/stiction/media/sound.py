@@ -197,10 +197,12 @@ def make_sound(heard: Passage, progress: Callable[[float], None] | None = None) 
     loudest = float(np.max(np.abs(values), initial=0.0))
     if loudest == 0.0:
         other = "x" if axis == "y" else "y"
-        raise ResultError(
-            f"nothing oscillates along {axis} from {start:g} s to {end:g} s; choose the axis "
-            f"{other}, or another window"
-        )
+        window = f"from {start:g} s to {end:g} s; choose"
+        if rate_at(description, times, other).any():
+            raise ResultError(
+                f"nothing oscillates along {axis} {window} the axis {other}, or another window"
+            )
+        raise ResultError(f"nothing oscillates {window} another window, or run it longer")
     return Sound((values * (LOUD / loudest)).astype(np.float32), chosen)
 
 
