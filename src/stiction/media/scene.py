@@ -78,14 +78,18 @@ class Scene:
         pixel = INCH * ax.get_window_extent().width / ax.figure.get_dpi() / ROOM[0]
         factors = [float(f"{each * pixel:.2g}") for each in self.scale]
         words = rf"$u_x \times$ {factors[0]:,.15g},  $u_y \times$ {factors[1]:,.15g}"
-        ax.text(half_x - 0.1, -half_y + 0.14, words, ha="right", fontsize=9, color=GREY)
+        drive = ("$X$, drive", BLUE, -half_x + 1.0, "left")
+        legend = (drive, (words, GREY, half_x - 0.1, "right"))
+        self.legend = [  # over the plate, whose marks would part its numbers
+            ax.text(x, -half_y + 0.14, text, ha=side, fontsize=9, color=color, bbox=BEHIND)
+            for text, color, x, side in legend
+        ]
         ax.annotate(
             "",
             (-half_x + 0.9, -half_y + 0.2),
             (-half_x + 0.2, -half_y + 0.2),
             arrowprops={"arrowstyle": "-|>", "color": BLUE},
         )
-        ax.text(-half_x + 1.0, -half_y + 0.14, "$X$, drive", fontsize=9, color=BLUE)
 
     def _draw_walls(self, ax: Axes) -> None:
         for axis, across in ((0, 1), (1, 0)):
@@ -127,7 +131,8 @@ class Scene:
             for i, color in enumerate((BLACK, GREEN, PURPLE, RED))
         ]
         dampers = (line for parts in self.pistons for line in parts)
-        moving = (self.marks, self.circle, self.spring_x, self.spring_y, *dampers, self.block)
+        springs = (self.spring_x, self.spring_y)
+        moving = (self.marks, *self.legend, self.circle, *springs, *dampers, self.block)
         return [*moving, self.force, self.slip, *self.words]
 
     def show(self, state: dict[str, float], words: str) -> None:

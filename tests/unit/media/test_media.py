@@ -113,6 +113,18 @@ def test_the_scene_shows_the_state(run):
     assert np.hypot(*away) == pytest.approx(np.hypot(*u), rel=1e-6)
 
 
+def test_marks_of_the_plate_pass_below_the_words(run):
+    """Among the factors of elongations they read as points: 28 was 28; and 2,800 was 2,·800."""
+    ax = Figure().add_subplot()
+    scene = Scene(ax, PAPER, run.samples)
+    below = scene.artists[: scene.artists.index(scene.marks) + 1]
+    words = [each for each in ax.texts if each.get_text()]
+    assert len(words) >= 2  # the drive's arrow has none
+    assert not {*words} & {*below}
+    assert {*words} <= {*scene.artists}
+    assert all(each.get_bbox_patch() is not None for each in words)
+
+
 @pytest.mark.parametrize("seed", range(8))
 def test_on_a_grain_the_force_ends_on_the_limit_while_the_mass_slides(seed):
     rng = np.random.default_rng(seed)
