@@ -61,7 +61,7 @@ def content(name: str, write: Callable[[Path], list[Path]]) -> bytes:
 
 
 def python_lines(description: Description) -> str:
-    """Return the lines of Python that make this run.
+    """Return the lines of Python that make this run and, as a script too, show it.
 
     Examples
     --------
@@ -69,20 +69,22 @@ def python_lines(description: Description) -> str:
     >>> slider, settings = st.presets.nakano_popov_2020(), st.Settings(duration=5)
     >>> print(python_lines(st.Description(slider, st.Initial(), settings)))  # doctest: +ELLIPSIS
     import stiction as st
+    from matplotlib import pyplot
     <BLANKLINE>
     slider = st.Slider(mass=0.25, ...)
     initial = st.Initial()
     settings = st.Settings(duration=5.0)
     run = st.run(st.Description(slider, initial, settings))
     run.plot()
+    pyplot.show()
     <BLANKLINE>
     """
     slider, initial, settings = description
     with with_all_values():
         calls = f"slider = {slider!r}\ninitial = {initial!r}\nsettings = {settings!r}\n"
     return (
-        f"{own_law(slider.law)}import stiction as st\n\n{calls}"
-        "run = st.run(st.Description(slider, initial, settings))\nrun.plot()\n"
+        f"{own_law(slider.law)}import stiction as st\nfrom matplotlib import pyplot\n\n{calls}"
+        "run = st.run(st.Description(slider, initial, settings))\nrun.plot()\npyplot.show()\n"
     )
 
 

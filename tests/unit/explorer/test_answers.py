@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib import colormaps
+from matplotlib import colormaps, pyplot
 from matplotlib.collections import QuadMesh
 from tests.explored import an_opened
 
@@ -178,6 +178,15 @@ def test_a_run_whose_slips_are_sampled_well_is_drawn_once(description):
         motion.run(description._replace(slider=plain, run=Settings(duration=2.5)), 400, free)
     )
     assert [head["quick"] for head, _ in parts].count(False) == 1
+
+
+def test_the_lines_of_python_are_a_script_that_shows_its_figure(monkeypatch):
+    """`python run.py` simulated, drew and ended, and nothing was seen."""
+    seen = []
+    monkeypatch.setattr(pyplot, "show", lambda: seen.extend(pyplot.get_fignums()))
+    exec(python_lines(an_opened().description), {})
+    assert len(seen) == 1
+    pyplot.close(seen[0])
 
 
 def test_a_run_that_ends_before_any_slip_says_so(description):
