@@ -208,6 +208,17 @@ def test_scales_of_sliders_keep_to_the_bounds_of_the_schema(modules):
             assert math.isfinite(place), field
 
 
+def test_on_paper_pictures_keep_their_proportions(modules):
+    """Circles were ellipses, and what is pressed was white on white."""
+    modules.tab.emulate_media(media="print")
+    style = modules.value(
+        "(({ objectFit, printColorAdjust }) => [objectFit, printColorAdjust])"
+        "(getComputedStyle(document.querySelector('#scene')))"
+    )
+    modules.tab.emulate_media(media="screen")
+    assert style == ["contain", "exact"]
+
+
 def test_an_axis_has_two_numbers_at_least(modules):
     """Of 56 to 64.4 degrees a low frame showed 60 alone, which tells no scale."""
     rng = random.Random(5)
