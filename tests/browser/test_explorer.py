@@ -219,6 +219,22 @@ def test_on_paper_pictures_keep_their_proportions(modules):
     assert style == ["contain", "exact"]
 
 
+def test_on_a_phone_the_far_end_of_the_transverse_spring_is_seen(page):
+    """It lay behind the words, which hid half of the spring and its name."""
+    page.tab.set_viewport_size({"width": 390, "height": 844})
+    page.settle()
+    grey = page.value(
+        """(() => {
+        const canvas = document.querySelector("#scene"), upper = Math.round(0.4 * canvas.height);
+        const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, upper);
+        let found = 0;
+        for (let i = 0; i < data.length; i += 4)
+          found += data.slice(i, i + 3).every((each) => each === 110);
+        return found; })()"""
+    )
+    assert grey > 4 * 60  # px: 5 wide, and as long as the mass at least, less its edges
+
+
 def test_an_axis_has_two_numbers_at_least(modules):
     """Of 56 to 64.4 degrees a low frame showed 60 alone, which tells no scale."""
     rng = random.Random(5)

@@ -10,6 +10,8 @@ import { plain, quantity } from "./quantity.js";
 const BLOCK = 27; // half side of the mass, px
 const PIXEL = 0.0254 / 96; // m, of CSS
 const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
+const NARROW = 600; // px: in a narrower scene the spring across lies below the words, not behind them
+const WORDS = 50; // px, what they take from the height then
 const BESIDE = 500; // px: in a narrower scene two texts of the lowest line would overlap
 
 export class Scene {
@@ -36,16 +38,17 @@ export class Scene {
 
   moving(context, width, height, now) {
     if (!this.scene || !now.state) return;
-    const s = now.state, { scene } = this, M = this.magnification(width, height);
+    const top = width < NARROW ? WORDS : 0, tall = height - top;
+    const s = now.state, { scene } = this, M = this.magnification(width, tall);
     const c = Math.cos(scene.phi), n = Math.sin(scene.phi);
     const turn = (x, y) => [x * c + y * n, -(-x * n + y * c)]; // to the screen, y downwards
-    const home = [0.43 * width, 0.56 * height];
+    const home = [0.43 * width, top + 0.56 * tall];
     const [dx, dy] = turn(-M.x * s.u_x, -M.y * s.u_y);
     const mass = [home[0] + dx, home[1] + dy];
     this.floor(context, width, height, s, M);
-    this.springs(context, width, height, home, mass, turn, M);
-    this.dampers(context, height, home, mass, turn);
-    this.forces(context, height, mass, s, turn);
+    this.springs(context, width, height, top, home, mass, turn, M);
+    this.dampers(context, tall, home, mass, turn);
+    this.forces(context, height, tall, mass, s, turn);
     this.block(context, mass, turn, s);
     this.words(context, width, height, s, M);
   }
@@ -71,13 +74,13 @@ export class Scene {
     return s.X + s.u_x * c + s.u_y * n;
   }
 
-  springs(context, width, height, home, mass, turn, M) {
+  springs(context, width, height, top, home, mass, turn, M) {
     // as long as the picture has room, however far the springs are turned
     const far = {};
     for (const axis of ["x", "y"]) {
       const [dx, dy] = axis === "x" ? turn(1, 0) : turn(0, 1);
       const right = dx > 0 ? width * 0.94 - home[0] : home[0] - width * 0.06;
-      const up = dy < 0 ? home[1] - 16 : height - 26 - home[1];
+      const up = dy < 0 ? home[1] - top - 16 : height - 26 - home[1];
       far[axis] = Math.min(right / Math.max(Math.abs(dx), 1e-9), up / Math.max(Math.abs(dy), 1e-9));
     }
     const ends = { x: add(home, turn(far.x, 0)), y: add(home, turn(0, far.y)) };
@@ -102,9 +105,9 @@ export class Scene {
   }
 
   // Dampers with axes of their own, away from the springs; the far end moves with theirs.
-  dampers(context, height, home, mass, turn) {
+  dampers(context, tall, home, mass, turn) {
     for (const [name, angle] of this.scene.dampers) {
-      const away = Math.cos(angle) + Math.sin(angle) > 0 ? -1 : 1, far = 0.36 * height;
+      const away = Math.cos(angle) + Math.sin(angle) > 0 ? -1 : 1, far = 0.36 * tall;
       const way = turn(away * Math.cos(angle), away * Math.sin(angle)), across = [-way[1], way[0]];
       const wall = add(home, [far * way[0], far * way[1]]);
       line(context, [-14, 14].map((side) => add(wall, [side * across[0], side * across[1]])), GREY, 5);
@@ -126,9 +129,9 @@ export class Scene {
   }
 
   // The limit of friction about the mass, the force in it, the slip velocity.
-  forces(context, height, mass, s, turn) {
+  forces(context, height, tall, mass, s, turn) {
     const { limit, ellipse: [ratio, angle] } = this.scene;
-    const load = s.normal_load, radius = 0.3 * height;
+    const load = s.normal_load, radius = 0.3 * tall;
     const largest = limit * this.track.largest("normal_load") * Math.max(ratio, 1) || 1;
     const scale = radius / largest;
     context.beginPath();
@@ -156,7 +159,7 @@ export class Scene {
     }
     const speed = Math.hypot(s.slip_x, s.slip_y);
     if (speed > SLOWEST && !s.sticking) {
-      const long = BLOCK + (0.24 * height) * Math.min(1, 0.25 * Math.max(0, Math.log10(speed / (this.largestSlip || speed)) + 4));
+      const long = BLOCK + (0.24 * tall) * Math.min(1, 0.25 * Math.max(0, Math.log10(speed / (this.largestSlip || speed)) + 4));
       const way = turn(s.slip_x / speed, s.slip_y / speed), end = add(mass, [long * way[0], long * way[1]]);
       arrow(context, mass, end, GREEN, 3);
       text(context, "slip", ...add(end, [14 * way[0], 14 * way[1] - 3]), { color: GREEN, align: "center", halo: true });
