@@ -329,6 +329,12 @@ def test_the_page_needs_nothing_from_outside(found):
     assert "<script" not in text
 
 
+def test_readers_of_screens_find_all_of_the_page_in_its_main_part(found):
+    body = page(found, "rig").partition("<body>")[2].partition("</body>")[0].strip()
+    assert body.startswith("<main>")
+    assert body.endswith("</main>")
+
+
 def test_letters_in_all_figures_of_the_page_have_one_size(found):
     figures = re.findall(r'width: ([0-9.]+)rem.*?base64,([^"]+)"', page(found, "rig"))
     dots = [int.from_bytes(b64decode(image)[16:20]) for _, image in figures]  # wide, by its header
