@@ -15,6 +15,7 @@ from stiction.result.file import (
     RECORD_KIND,
     TEXTS,
     DamageError,
+    LayoutError,
     is_netcdf,
     read_tables,
 )
@@ -137,6 +138,8 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     try:
         read_tables(path)
         return Check(path, [])
+    except LayoutError:  # no damage, and not to be written anew by this version
+        raise
     except DamageError as damage:
         told = damage.lost
     except ResultError as error:

@@ -13,6 +13,7 @@ from benchmarks.explore.draw import Draw
 
 import stiction as st
 from stiction import cli
+from stiction.result import file as result_file
 from stiction.result.file import DamageError
 
 SEED, DAMAGES = 1, 32  # of a result, and as many of a store
@@ -236,6 +237,20 @@ def test_results_without_checksums_load(result, tmp_path):
     run.data.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
     run.sticks.to_netcdf(tmp_path / "a.nc", mode="a", group="sticks", engine="h5netcdf")
     assert same(st.load(tmp_path / "a.nc"), run)
+
+
+def test_a_result_of_another_layout_is_refused_and_not_repaired(tmp_path, monkeypatch):
+    """One of a later version with the same columns was read as if they meant what they do here."""
+    run = st.simulate(BASE.slider, "1 ms")
+    with monkeypatch.context() as later:
+        later.setattr(result_file, "LAYOUT", 2)
+        path = run.save(tmp_path / "later.nc")
+        assert same(st.load(path), run)  # the layout is the file's, not the run's
+    content = path.read_bytes()
+    for read in (st.load, st.check, lambda path: st.check(path, repair=True)):
+        with pytest.raises(st.ResultError, match="has layout 2, and layout 1 is read here; read"):
+            read(path)
+    assert path.read_bytes() == content
 
 
 def test_the_command_says_what_is_damaged(result, store, tmp_path, capsys):

@@ -37,8 +37,10 @@ ENDS = ("stick_start", "stick_end")
 TEXTS = ("description", "status", "stiction_version")
 SHORTEST = 1e-100  # s, between two samples
 LATER = {"mu", "stick_duration"}  # columns that older versions did not write
-RECORD_KIND = "stiction_record"  # attribute of a stored record; its value: the layout
-FIT_KIND = "stiction_fit"  # the same of the file of a fit
+RESULT_KIND = "stiction_result"  # attribute of the file of a run; its value: the layout
+RECORD_KIND = "stiction_record"  # the same of a stored record
+FIT_KIND = "stiction_fit"  # and of the file of a fit
+LAYOUT = 1  # of the file of a run; up to version 0.4 it states none
 OTHER_KINDS = {
     RECORD_KIND: "is a record, not the result of a run; stiction analyse {path} and "
     "st.read_record read it",
@@ -50,9 +52,10 @@ MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 def write_result(samples: ColumnTable, sticks: ColumnTable, path: Path) -> None:
     """Write samples and sticks with checksums."""
-    seal = seal_tables({"samples": samples, "sticks": sticks})
+    about = {RESULT_KIND: LAYOUT, **samples.attributes}
+    seal = seal_tables({"samples": ColumnTable(samples.columns, about), "sticks": sticks})
     with new_netcdf(path, size_of(samples, sticks)) as file:
-        write_table(file, ColumnTable(samples.columns, {**samples.attributes, SEAL: seal}))
+        write_table(file, ColumnTable(samples.columns, {**about, SEAL: seal}))
         write_table(file.create_group(STICK_GROUP), sticks)
     sign(path)
 
@@ -107,6 +110,10 @@ class DamageError(ResultError):
         return type(self), self._made_of
 
 
+class LayoutError(ResultError):
+    """A file has another layout than the one that is read here."""
+
+
 def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
     """Return samples and sticks of a result file.
 
@@ -132,11 +139,13 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
         refuse_other_files(path)
         data, sticks, checked = open_tables(path)
         refuse_kinds(path, data.attributes, OTHER_KINDS)
+        if RESULT_KIND in data.attributes:
+            refuse_layout(path, data.attributes, RESULT_KIND, LAYOUT)
         sealed = data.attributes.get(SEAL)
         lost = damaged_parts(sealed, {"samples": data, "sticks": sticks}) if checked else []
     if lost:
         raise DamageError(path, lost)
-    about = {name: value for name, value in data.attributes.items() if name != SEAL}
+    about = {n: value for n, value in data.attributes.items() if n not in (SEAL, RESULT_KIND)}
     data = ColumnTable(data.columns, about)
     lacking = [*_lacking(data, VARIABLES), *_lacking(sticks, ENDS)]
     lacking += ["its description"] if "description" not in about else []
@@ -178,7 +187,7 @@ def refuse_layout(path: str | Path, attributes: Mapping[str, Any], kind: str, la
     stated = np.asarray(attributes[kind]).tolist()
     if stated not in (layout, [layout]):
         told = f"has layout {echo(stated)}, and layout {layout} is read here{age(attributes)}"
-        raise ResultError(f"{path}: {told}; read it with the version that wrote it")
+        raise LayoutError(f"{path}: {told}; read it with the version that wrote it")
 
 
 def age(attributes: Mapping[str, Any]) -> str:
