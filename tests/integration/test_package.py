@@ -4,6 +4,7 @@ import ast
 import os
 import re
 import runpy
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -242,6 +243,20 @@ def test_old_names_go_on_working_with_a_warning():
         assert find("older") is st.Status
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         find("nonsense")
+
+
+def test_a_law_that_imports_units_from_their_place_in_0_4_is_read(tmp_path):
+    """So is a result with its text: neither could be read."""
+    text = (ROOT / "examples" / "mylaw.py").read_text("utf-8")
+    law = text.replace("stiction.text.units", "stiction.units")
+    assert law != text
+    (tmp_path / "mylaw.py").write_text(law, encoding="utf-8")
+    shutil.copy(ROOT / "examples" / "own_law.toml", tmp_path)
+    renamed = r"stiction\.units\.(\w+) is now called stiction\.text\.units\.\1;"
+    with pytest.warns(DeprecationWarning, match=renamed) as warned:
+        found = st.Description.from_toml(tmp_path / "own_law.toml").slider.law
+    assert {Path(each.filename).name for each in warned} == {"mylaw.py"}
+    assert found.v_c == 1e-4
 
 
 SLIDER = st.presets.nakano_popov_2020()
