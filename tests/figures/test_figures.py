@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from io import BytesIO
 from itertools import pairwise
 from math import degrees, pi, radians
@@ -27,6 +28,7 @@ from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.spectrum import rate_spectrogram, spectrogram
 from stiction.arrays import Floats
 from stiction.plotting.analysis.cycles import plot_cycles
+from stiction.plotting.analysis.energy import plot_energy
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
@@ -81,6 +83,31 @@ def fine(paper_run: st.Trajectory) -> st.Trajectory:
     return st.simulate(
         paper_run.slider, 0.004, sample_rate=2e5, initial=paper_run.state(0.5), rtol=1e-5
     )
+
+
+def places_of_labels(panels: Sequence[Axes]) -> set[float]:
+    """Return where the labels of vertical axes end, in dots."""
+    draw(panels[0].get_figure(root=True))
+    return {round(ax.yaxis.label.get_window_extent().x1, 3) for ax in panels}
+
+
+def test_labels_of_panels_above_each_other_are_aligned(
+    paper_run: st.Trajectory, fine: st.Trajectory
+) -> None:
+    """Beside numbers of more digits a label would stand farther away."""
+    budget = st.analysis.energy_budget(paper_run)
+    overview, compared = overview_axes(paper_run), dict[str, Axes]()
+    figure_of(lambda: compared.update(plot_comparison({"a run": paper_run})) or compared)
+    named = {ax.get_ylabel(): ax for ax in zero_slip(fine, (0.5, 0.504)).axes}
+    for panels in (
+        figure3(paper_run).axes,
+        figure4(paper_run).axes[:4],
+        [named[r"$v_\mathrm{slip}$ (µm/s)"], named["$F$ (N)"]],
+        [overview[name] for name in SERIES],
+        [compared[name] for name in ("force", "X", "speed", "rest")],
+        figure_of(plot_energy, budget).axes,
+    ):
+        assert len(places_of_labels(panels)) == 1
 
 
 # --- figures of the paper ---
