@@ -742,3 +742,14 @@ def test_what_is_left_of_a_line_is_no_further_line() -> None:
     record, *_ = hum_over_loading(np.random.default_rng([12, 3]))
     (line,) = swings(record).lines
     assert line.frequency == pytest.approx(50.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("apart", [0.02, 0.05])
+def test_a_second_line_beside_a_first_is_subtracted_too(apart: float) -> None:
+    """A pump beside the mains: as what is left of the hum, it would be a thousand cycles."""
+    record, *_ = hum_over_loading(np.random.default_rng([12, 3]))
+    other = 50.0 * (1.0 + apart)
+    pump = 0.01 * np.ptp(record.force) * np.sin(2.0 * pi * other * record.time)
+    found = swings(record.model_copy(update={"force": record.force + pump}))
+    assert [line.frequency for line in found.lines] == pytest.approx([50.0, other], rel=1e-3)
+    assert len(found.table) == 0
