@@ -20,6 +20,7 @@ from stiction.cli import main
 from stiction.errors import echo
 from stiction.friction import has_state
 from stiction.friction.user.source import excerpt
+from stiction.friction.user.validation import printing
 
 LAW = """
 from typing import NamedTuple
@@ -472,6 +473,58 @@ def test_a_law_that_prints_is_told(config, where):
     name = {"return 1.0 + v": "ratio"}.get(where, "coefficient")
     with pytest.raises(st.DescriptionError, match=f"{name} prints.*take print out"):
         st.Description.from_toml(config)
+
+
+class Printing(Text):
+    def coefficient(law, v):
+        print(v)
+        return 0.3
+
+
+class PrintingToo(Printing):
+    """It inherits the method that prints."""
+
+
+class Silent(Printing):
+    """It has one of its own in its place."""
+
+    def coefficient(law, v):
+        return 0.3
+
+
+class Endless(Silent):
+    def slope(law, v):
+        while True:
+            v += 1.0
+
+
+class EndlessToo(Endless):
+    """It inherits the method that does not end."""
+
+
+@pytest.mark.parametrize(
+    ("kind", "words"),
+    [(PrintingToo, "coefficient prints"), (EndlessToo, "slope at 0 m/s ran 100,000 lines")],
+)
+def test_inherited_methods_are_checked_like_own_ones(slider, kind, words):
+    """Of a law that inherits them, no method was looked at: the check itself did not end."""
+    with pytest.raises(st.DescriptionError, match=words):
+        slider.replace(friction=kind(0.3))
+    assert slider.replace(friction=Silent(0.3)).law == Silent(0.3)
+
+
+RECURSIVE = """
+@njit
+def ratio(v, v_h):
+    return 1.0 + v / v_h if v < 100.0 else ratio(50.0, v_h)
+"""
+
+
+def test_a_function_that_calls_itself_does_not_print(config):
+    law = config.parent / "mylaw.py"
+    begin, end = (LAW.index(mark) for mark in ("@njit", "class "))
+    law.write_text(LAW[:begin] + RECURSIVE.lstrip() + "\n\n" + LAW[end:])
+    assert printing(type(st.Description.from_toml(config).slider.law)) == ""
 
 
 class Looping(NamedTuple):

@@ -109,21 +109,29 @@ def limit_lines(kind: type) -> Iterator[None]:
 @contextmanager
 def _in_python(kind: type) -> Iterator[set[str]]:
     """Run a class's functions as plain Python, not compiled; yield the files they are in."""
-    methods = _methods(kind)
-    names: dict[str, Any] = methods[0].__globals__ if methods else {}
-    compiled = _compiled_in(names)
-    plain = {name: value.py_func for name, value in compiled.items()}
-    names.update(plain)
+    methods, files = _methods(kind), set[str]()
+    rooms = {id(each.__globals__): each.__globals__ for each in methods}.values()
+    compiled = [(names, _compiled_in(names)) for names in rooms]
+    for names, found in compiled:
+        plain = {name: value.py_func for name, value in found.items()}
+        files.update(each.__code__.co_filename for each in plain.values())
+        names.update(plain)
     try:
-        yield {each.__code__.co_filename for each in (*methods, *plain.values())}
+        yield files.union(each.__code__.co_filename for each in methods)
     finally:
-        names.update(compiled)
+        for names, found in compiled:
+            names.update(found)
 
 
 def _methods(kind: type) -> list[Any]:
-    """Return the functions of a class that its own file defines, not those of tuple."""
-    own = [each for each in vars(kind).values() if isfunction(each)]
-    return [each for each in own if each.__module__ == kind.__module__]
+    """Return the methods of a class, also inherited ones, but not those of tuple."""
+    found = {
+        name: each
+        for base in reversed(kind.__mro__)
+        for name, each in vars(base).items()
+        if isfunction(each) and each.__module__ == base.__module__
+    }
+    return [*found.values()]
 
 
 def _compiled_in(names: dict[str, Any]) -> dict[str, Any]:
