@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numba.core.errors import NumbaError
 
 from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status, echo
 from stiction.friction import has_state, states
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
 from stiction.solver.accuracy import tolerance
-from stiction.solver.compilation.refusal import reasons
+from stiction.solver.compilation.refusal import REFUSED, reasons
 from stiction.solver.integrate import Room, Solution, integrate
 from stiction.storage.version import own_version
 from stiction.system.description import Description, Settings, description_of
@@ -233,7 +232,7 @@ def solve(
         raise DescriptionError.of("run.duration", message)
     try:
         return integrate(description, times, max_steps, progress, inside=inside, room=room)
-    except NumbaError:
+    except REFUSED:
         found = [Fault("friction", reason) for reason in reasons(description.slider.law)]
         if not found:
             raise

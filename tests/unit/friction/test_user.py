@@ -627,6 +627,14 @@ def test_what_cannot_be_compiled_is_told_in_a_line(config):
     assert "numba.njit" in first
 
 
+def test_an_import_in_a_method_is_told_in_a_line(config):
+    """It ended in a traceback: this error of numba is no NumbaError."""
+    line = "return law.mu_0 / ratio"
+    (config.parent / "mylaw.py").write_text(LAW.replace(line, f"import math; {line}"))
+    with pytest.raises(st.DescriptionError, match="coefficient cannot be compiled: Use of unsupp"):
+        simulate_file(config)
+
+
 # --- kept and read back -------------------------------------------------------------------------
 
 

@@ -8,8 +8,9 @@ from collections.abc import Iterator
 from typing import Any
 
 import numba
-from numba.core.errors import NumbaError
+from numba.core.errors import NumbaError, UnsupportedBytecodeError
 
+REFUSED = NumbaError, UnsupportedBytecodeError  # of numba; the latter derives from Exception alone
 METHODS = {  # with arguments for a trial
     "coefficient": (1e-3,),
     "slope": (1e-3,),
@@ -32,11 +33,11 @@ def reasons(law: Any) -> Iterator[str]:
         state = (law.settled(1e-3),) if name in ("force", "change") else ()
         try:
             numba.njit(error_model="numpy")(method)(law, *arguments, *state)
-        except NumbaError as error:
+        except REFUSED as error:
             yield f"{name} cannot be compiled: {reason(error)}; {REMEDY}"
 
 
-def reason(error: NumbaError) -> str:
+def reason(error: Exception) -> str:
     """Return the first informative line of numba's message, and the place in the file."""
     text = re.sub(r"\x1b\[[0-9;]*m", "", str(error))
     lines = [line.strip() for line in text.splitlines() if line.strip()]
