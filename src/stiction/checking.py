@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from stiction.errors import ResultError, argument
 from stiction.recording.stored import read_stored, root_attributes
-from stiction.result.attributes import intact_description
+from stiction.result.attributes import SEAL, intact_description
 from stiction.result.file import (
     FIT_KIND,
     RECORD_KIND,
@@ -24,6 +24,7 @@ from stiction.simulation import run
 from stiction.storage.isolation import apart
 from stiction.storage.kinds import RESULT, use_of
 from stiction.study.execution.repair import damage_of, restore, stores_in
+from stiction.study.store.store import CHECKED, group_at
 from stiction.study.view.view import broken_changes
 from stiction.system.description import Description
 from stiction.text.sections import Section, as_text
@@ -42,6 +43,8 @@ class Check(NamedTuple):
         Whether the damaged parts were computed again.
     pending : int
         Number of blocks of a study that are not computed yet.
+    checked : bool
+        Whether there are checksums, as from version 0.5 on.
 
     Examples
     --------
@@ -56,6 +59,7 @@ class Check(NamedTuple):
     damaged: Sequence[str]
     repaired: bool = False
     pending: int = 0
+    checked: bool = True
 
     @property
     def ok(self) -> bool:
@@ -78,6 +82,8 @@ class Check(NamedTuple):
             lines.append("It was computed again.")
         elif self.damaged:
             lines.append(f"Compute it again with: stiction check {argument(self.path)} --repair")
+        elif not self.checked:
+            lines.append("There are no checksums: only what is missing or cut off would show.")
         if self.pending:
             lines.append(f"{self.pending} blocks of runs are still to be done.")
         return [Section(str(self.path), lines)]
@@ -137,7 +143,7 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
         return Check(path, [])
     try:
         read_tables(path)
-        return Check(path, [])
+        return Check(path, [], checked=SEAL in (attributes or ()))
     except LayoutError:  # no damage, and not to be written anew by this version
         raise
     except DamageError as damage:
@@ -157,8 +163,9 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
 
 def _check_store(path: Path, repair: bool, trust: bool) -> Check:
     files: list[str] = []
-    pending = 0
-    for store in stores_in(path):
+    pending, stores = 0, stores_in(path)
+    checked = all(group_at(store, "r").attrs["format"] == CHECKED for store in stores)
+    for store in stores:
         found = damage_of(store)
         own = restore(store, trust=trust) if repair else found.files
         files += [(store / name).relative_to(path).as_posix() for name in own]
@@ -170,4 +177,4 @@ def _check_store(path: Path, repair: bool, trust: bool) -> Check:
                 "command: its runs are kept"
             )
         files += changes
-    return Check(path, files, repair and bool(files), pending)
+    return Check(path, files, repair and bool(files), pending, checked)

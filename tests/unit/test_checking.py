@@ -237,6 +237,10 @@ def test_results_without_checksums_load(result, tmp_path):
     run.data.to_netcdf(tmp_path / "a.nc", engine="h5netcdf")
     run.sticks.to_netcdf(tmp_path / "a.nc", mode="a", group="sticks", engine="h5netcdf")
     assert same(st.load(tmp_path / "a.nc"), run)
+    found = st.check(tmp_path / "a.nc")
+    assert found.ok
+    assert "There are no checksums" in str(found)
+    assert "no checksums" not in str(st.check(result))
 
 
 def test_a_result_of_another_layout_is_refused_and_not_repaired(tmp_path, monkeypatch):
@@ -313,6 +317,8 @@ def test_a_store_without_checksums_goes_on(store, tmp_path):
     assert len(done) == 2
     assert xr.open_zarr(path).load().drop_attrs(deep=False).identical(right)
     assert st.check(path).ok
+    assert "There are no checksums" in str(st.check(path))
+    assert "no checksums" not in str(st.check(store))
 
 
 def test_what_is_no_result_by_its_name_is_not_called_a_broken_one(tmp_path):
