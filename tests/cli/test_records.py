@@ -118,7 +118,7 @@ def test_import_echoes_its_guess_and_stores_the_record(data, capsys):
     assert told[0]["samples"] == 2000
     assert inside("analyse", target) == 0
     assert inside("analyse", target, "--force", "mN") == 2
-    assert "in SI already: leave out force" in capsys.readouterr().err
+    assert "in SI already: leave out --force" in capsys.readouterr().err
 
 
 def test_blocks_become_a_file_each(tmp_path, capsys):
@@ -132,10 +132,19 @@ def test_blocks_become_a_file_each(tmp_path, capsys):
     assert "holds 2 blocks" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("command", ["analyse", "import", "explore"])
+def test_what_a_record_lacks_is_named_as_an_option_of_the_command(tmp_path, capsys, command):
+    """The explorer named the argument of a function in Python."""
+    path = tmp_path / "ratio.csv"
+    path.write_text("t [s],F/mg [-]\n" + "".join(f"{0.1 * k:.1f},{0.01 * k}\n" for k in range(30)))
+    assert inside(command, path) == 2
+    assert "say --normal-load, e.g. '10 N'" in capsys.readouterr().err
+
+
 def test_the_result_of_a_run_knows_its_units(tmp_path, slider, capsys):
     path = st.simulate(slider, "20 ms", sample_rate="1 kHz").save(tmp_path / "run.nc")
     assert inside("analyse", path, "--force", "mN") == 2
-    assert "is the result of a run, in SI already: leave out force" in capsys.readouterr().err
+    assert "is the result of a run, in SI already: leave out --force" in capsys.readouterr().err
 
 
 def test_a_measured_record_of_paper(tmp_path, capsys):

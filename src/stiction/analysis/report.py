@@ -14,7 +14,7 @@ from stiction.analysis.creep.findings import attempt, find_creep
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
-from stiction.analysis.measurement.reading import source_of_file
+from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_columns import summary
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
@@ -178,7 +178,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     ('stick-slip', 3)
     """
     if isinstance(source, str | Path):
-        source = source_of_file(source, trust=trust)
+        source = read_source(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
     found = swings(record)

@@ -206,10 +206,10 @@ def audit(
     before = FITTING if record is not None else 0.0
     measured = None
     if record is not None:
-        from stiction.analysis.measurement.reading import source_of_file
+        from stiction.analysis.measurement.reading import read_source
         from stiction.auditing.measured import compare
 
-        seen = record if isinstance(record, Record) else as_record(source_of_file(record))
+        seen = record if isinstance(record, Record) else as_record(read_source(record))
         measured = compare(
             seen, rig, simulations=simulations, library=library,
             progress=lambda fraction: inform(before * fraction),

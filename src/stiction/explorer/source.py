@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.analysis.measurement.reading import source_of_file
+from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
 from stiction.drive.recorded.reading import locate_nothing
 from stiction.errors import DescriptionError, ResultError, echo
@@ -151,7 +151,7 @@ def open_source(source: Any, trust: bool) -> dict[str, Any]:
             view = view_study(path, {}, trust)
             first = view.study.description((0,) * len(view.study.layout.dims))
             return {"description": first, "study": view}
-        source = source_of_file(path, trust=trust)
+        source = read_source(path, trust=trust)
     if isinstance(source, Description):
         return {"description": source}
     if isinstance(source, Slider):

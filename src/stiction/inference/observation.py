@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.measurement.reading import source_of_file
+from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycles import OWN_HARMONICS, Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
@@ -325,7 +325,7 @@ def observe_all(records: Source | Sequence[Source], slider: Slider) -> list[Obse
 
 def record_from(source: Source) -> Record:
     """Return a record as it is, that of a run, or that of a file of either."""
-    return as_record(source_of_file(source) if isinstance(source, str | Path) else source)
+    return as_record(read_source(source) if isinstance(source, str | Path) else source)
 
 
 def noise_of(record: Record, channel: str, values: Floats, bands: tuple[Band, ...] = ()) -> Noise:

@@ -139,6 +139,14 @@ def test_a_fault_says_what_to_write(tmp_path, old, new, path, words):
     assert words in found[path]
 
 
+def test_a_wrong_value_beside_an_unknown_key_is_told_once(tmp_path):
+    """It is read a second time, without the key."""
+    law = {"law": ("v_f =", "colour = 3\nv_f = -1.0 #")}
+    with pytest.raises(st.DescriptionError) as error:
+        st.Slider.from_toml(write_file(tmp_path / "rig.toml", **law))
+    assert sorted(fault.path for fault in error.value.faults) == ["friction.colour", "friction.v_f"]
+
+
 def test_values_are_compared_beside_an_unknown_key(tmp_path):
     """They were not: a fault between two of them came only after the key was gone."""
     law = {"law": ("v_f =", "colour = 3\nmu_static = 0.1\nv_f =")}

@@ -188,14 +188,14 @@ def records_of_files(
     return tuple(found)
 
 
-def read_source(
+def source_of_file(
     path: str | Path,
     *,
     trust: bool = False,
     sidecar: str | Path | None = None,
     **said: Unpack[ReadArguments],
 ) -> Trajectory | Record:
-    """Return the run or the record of a file.
+    """Return the run or the record of a file; remedies are options of a command.
 
     Raises
     ------
@@ -204,16 +204,16 @@ def read_source(
     """
     if not is_run(Path(path)):
         return record_of_file(path, sidecar=sidecar, **said)
-    given = [name for name, value in said.items() if value is not None]
+    given = [name.replace("_", "-") for name, value in said.items() if value is not None]
     if given:
-        raise ResultError(f"{path}: is the result of a run, in SI already: leave out {given[0]}")
+        raise ResultError(f"{path}: is the result of a run, in SI already: leave out --{given[0]}")
     return load(path, trust=trust)
 
 
-def source_of_file(path: str | Path, *, trust: bool = False) -> Trajectory | Record:
-    """Do as `read_source`, with remedies for a function of which `read_record` takes more."""
+def read_source(path: str | Path, *, trust: bool = False) -> Trajectory | Record:
+    """Do as `source_of_file`, with remedies for a function of which `read_record` takes more."""
     with remedies_in_python("\nthese are arguments of st.read_record"):
-        return read_source(path, trust=trust)
+        return source_of_file(path, trust=trust)
 
 
 @contextmanager
@@ -276,7 +276,7 @@ def _measurements(
         name for name in changed if name not in Record.model_fields or name in stored.channels
     ]
     if strange or sidecar is not None:
-        what = ", ".join(strange) or "sidecar"
+        what = ", ".join(f"--{name.replace('_', '-')}" for name in strange) or "sidecar"
         raise ResultError(
             f"{path}: is a stored record, in SI already: leave out {what}, or read its source again"
         )
