@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from stiction.cli.tables import print_sections, table
-from stiction.text.sections import Section, Table
+from stiction.cli.tables import in_lines, print_sections, table
+from stiction.text.sections import Section, Table, table_html
 
 HEADINGS = (
     "law",
@@ -58,3 +58,13 @@ def test_a_table_is_turned_only_where_words_would_be_broken():
     assert upright.count("sticks") == 1
     assert turned.count("sticks") == 2  # with each row
     assert "0.000392" in turned.split("fastest slip")[1].split("slowest")[0]
+
+
+def test_a_line_does_not_end_within_a_word_that_has_a_hyphen():
+    assert in_lines("It is stick-slip.", 12).plain == "It is\nstick-slip."
+
+
+def test_a_table_without_rows_has_its_headings():
+    empty = Table(("law", "sticks"), [])
+    assert text_of(empty, 40).split()[:2] == ["law", "sticks"]
+    assert table_html(empty).count("<th ") == 2

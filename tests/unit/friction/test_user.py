@@ -19,6 +19,7 @@ import stiction as st
 from stiction.cli import main
 from stiction.errors import echo
 from stiction.friction import has_state
+from stiction.friction.user.derivative import jump
 from stiction.friction.user.source import excerpt
 from stiction.friction.user.validation import printing
 
@@ -323,6 +324,14 @@ def test_friction_that_jumps_between_two_speeds_of_slip_is_refused(slider, at):
     assert slider.replace(friction=Jumping(0.0, 0.0))  # a static coefficient
 
 
+@pytest.mark.parametrize(("height", "found"), [(1.1, True), (0.9, False)])
+def test_a_jump_is_one_from_the_stated_size_on(height, found):
+    steps = jump(lambda v: 1e-3 * height * (v > 1.3), lambda v: 0.0, 1.0, 2.0, 1e-3)
+    assert (steps is not None) == found
+    if steps is not None:
+        assert steps == (np.nextafter(1.3, 2.0), 0.0, 1e-3 * height)
+
+
 @pytest.mark.parametrize("law", [Jumping(0.0, 0.0113, 0.3), Vanishing(1e-3), Vanishing(1e-2)])
 def test_friction_that_falls_to_nothing_does_not_jump(slider, law):
     """Any change was more than a share of nothing: the law was refused, from 7e-45 to 7e-45."""
@@ -384,14 +393,16 @@ def test_the_example_describes_what_its_script_runs():
 
 
 def test_a_law_with_state_is_found(config):
+    """As of rate and state, its coefficient in steady sliding may be infinite at rest."""
     (config.parent / "mylaw.py").write_text("""
+from math import log
 from typing import NamedTuple
 class Mine(NamedTuple):
     mu_0: float
     v_h: float
     @staticmethod
     def states(): return (("z", "m", "bristle"),)
-    def coefficient(law, v): return law.mu_0
+    def coefficient(law, v): return law.mu_0 + 0.01 * log(v)
     def settled(law, speed): return (0.0,)
     def force(law, slip, load, state): return (0.0, 0.0)
     def change(law, slip, load, state): return (0.0,)

@@ -7,6 +7,7 @@ from math import pi
 import pytest
 
 import stiction as st
+from stiction.system.writing import parameter_table
 
 TOML = """
 [slider]
@@ -216,3 +217,11 @@ def test_a_slider_is_frozen(slider):
 )
 def test_what_was_read_with_units_is_copied_as_it_is(value):
     assert pickle.loads(pickle.dumps(value)) == copy.deepcopy(value) == value
+
+
+def test_a_notebook_shows_each_piece_of_a_long_program_and_how_many_numbers_a_long_list_has():
+    pieces = [{"piece": "hold", "duration": f"{k} s"} for k in range(1, 102)]
+    table = parameter_table({"drive": {"program": pieces, "time": [0.5] * 101, "v": [0.5] * 100}})
+    program, time, v = (value for _, value in table.rows)
+    assert program.count("hold") == 101
+    assert (time, v.count("0.5")) == ("101 values", 100)
