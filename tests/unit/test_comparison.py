@@ -89,6 +89,16 @@ def config(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return path
 
 
+@pytest.mark.parametrize("column", [2, 4])
+def test_times_and_speeds_of_the_table_have_up_to_three_digits(
+    runs: dict[str, st.Trajectory], column: int
+) -> None:
+    cells = [comparison.row(label, run)[column].split() for label, run in runs.items()]
+    digits = [len(number.replace(".", "").strip("0")) for number, _ in cells]
+    assert max(digits) == 3
+    assert {unit for _, unit in cells} & {"ms", "µm/s"}
+
+
 # --- what makes laws comparable ---
 
 
