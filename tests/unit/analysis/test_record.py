@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.measurement.reading import remedies_in_python
 from stiction.analysis.record import Record, record_of
+from stiction.errors import ResultError
 
 
 def test_every_fault_of_a_record_is_named_with_its_remedy():
@@ -171,3 +173,19 @@ def test_the_error_of_a_load_is_that_of_a_mean_over_as_many_samples_as_it_stays_
     assert (
         Record(**known).load_noise() == Record(**known, load=0.0 * ramp + 9.0).load_noise() == 0.0
     )
+
+
+@pytest.mark.parametrize(
+    ("option", "argument"),
+    [
+        ("say --force-across '3=mN'", "say force_across='3=mN'"),
+        ("(--drive-position 4)", "(drive_position=4)"),
+        ("a--load.csv: say --load", "a--load.csv: say load"),
+        ("stiction check a.nc --repair", "stiction check a.nc --repair"),
+        ("--time-zone", "--time-zone"),
+    ],
+)
+def test_an_option_of_a_remedy_becomes_the_argument_of_its_whole_name(option, argument):
+    with pytest.raises(ResultError) as error, remedies_in_python():
+        raise ResultError(option)
+    assert str(error.value) == argument
