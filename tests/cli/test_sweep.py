@@ -198,3 +198,10 @@ def test_the_next_command_has_the_trust_that_a_user_s_law_needs(config, tmp_path
     plot = [*command, "plot", "a.nc", "-o", "a.png"]
     assert subprocess.run(plot, cwd=tmp_path, check=False, timeout=PATIENCE).returncode == 2
     assert subprocess.run([*plot, "--trust"], cwd=tmp_path, check=False).returncode == 0
+
+
+def test_each_part_of_a_map_that_is_not_named_is_told_by_its_option(tmp_path, capsys):
+    assert inside("map", tmp_path / "a.zarr", "--at", "phi", "--at", "1 mm/s") == 2
+    said = capsys.readouterr().err
+    assert "--at 'phi' is not NAME=VALUE" in said
+    assert "--at '1 mm/s' is not NAME=VALUE" in said

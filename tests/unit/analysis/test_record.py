@@ -189,3 +189,10 @@ def test_an_option_of_a_remedy_becomes_the_argument_of_its_whole_name(option, ar
     with pytest.raises(ResultError) as error, remedies_in_python():
         raise ResultError(option)
     assert str(error.value) == argument
+
+
+@pytest.mark.parametrize("text", ["no such file", "say --force"])
+def test_whose_arguments_they_are_is_told_where_there_are_some(text):
+    with pytest.raises(ResultError) as error, remedies_in_python("; of st.read_record"):
+        raise ResultError(text)
+    assert str(error.value) == {"say --force": "say force; of st.read_record"}.get(text, text)
