@@ -44,11 +44,17 @@ class CommonMean(NamedTuple):
 
     @property
     def scaled_error(self) -> float:
-        """The error; of values that are not alike that by their scatter.
+        """The error; of values that are not alike that by their scatter."""
+        return self.error if self.alike else self.safe_error
 
-        It is scaled by Birge's ratio (R. T. Birge, Phys. Rev. 40, 207 (1932)).
+    @property
+    def safe_error(self) -> float:
+        """The error, or that by the scatter of the values if this is larger.
+
+        It is scaled by Birge's ratio (R. T. Birge, Phys. Rev. 40, 207 (1932)). What contradicts the
+        user rests on it: errors of the values may be stated too small.
         """
-        return self.error if self.alike else self.error * sqrt(self.square / self.free)
+        return self.error * sqrt(max(self.square / max(self.free, 1), 1.0))
 
     @property
     def variance_between(self) -> float:

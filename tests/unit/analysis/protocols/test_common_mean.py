@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.stats import t as student
 
 from stiction.analysis.protocols.common_mean import common_mean
 
@@ -36,6 +37,19 @@ def test_values_that_vary_have_the_error_of_their_scatter():
     alone = [common_mean(values, ERRORS) for values in draws(20.0, 0.0)]
     between = np.mean([each.variance_between for each in alone])
     assert between == pytest.approx(20.0**2, rel=0.1)
+
+
+def test_where_errors_are_stated_half_as_large_the_safe_error_holds_as_a_small_sample_can():
+    """Beyond three such errors lie no more than by Student's law of as many free values."""
+    found = [common_mean(values, 0.5 * ERRORS) for values in draws(shares=0.0)]
+    off = np.array([each.value - 7.0 for each in found])
+    safe, gated = (
+        np.abs(off) > 3.0 * np.array([getattr(each, name) for each in found])
+        for name in ("safe_error", "scaled_error")
+    )
+    expected = 2.0 * student.sf(3.0, found[0].free)
+    assert safe.mean() < expected + 4.0 * (expected / TRIALS) ** 0.5
+    assert gated.mean() > 2.0 * expected  # by which a rig as stated was called stiffer
 
 
 def test_a_value_without_error_has_the_weight():

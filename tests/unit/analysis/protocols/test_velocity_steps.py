@@ -206,6 +206,16 @@ def test_a_stiffness_is_named_beyond_three_errors_and_2_percent(stiffer, error, 
     assert bool(say_rig_and_clock([STEP], [fit], "the program")) is named
 
 
+@pytest.mark.parametrize(("apart", "named"), [(0.005, True), (0.016, False)])
+def test_a_stiffness_is_named_beyond_three_errors_by_its_scatter(apart, named):
+    """Of two steps, each 4 % stiffer ± 1 %, that may differ as much by chance, once in forty."""
+    fits = [
+        unknown(3)._replace(D_c=D, stiffer=each, stiffer_error=0.01, delay_error=1e-9)
+        for each in (0.04 - apart, 0.04 + apart)
+    ]
+    assert bool(say_rig_and_clock([STEP, STEP], fits, "the program")) is named
+
+
 @pytest.mark.parametrize("delays", [(-4e-7, 8e-7), (0.9e-7,)])
 def test_steps_are_late_by_more_than_a_sample_and_their_scatter(delays):
     known = unknown(3)._replace(D_c=D, stiffer_error=1.0, delay_error=1e-9)

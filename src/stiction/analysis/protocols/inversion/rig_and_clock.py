@@ -64,7 +64,7 @@ def _say_clock(steps: Sequence[StepData], drive: str) -> list[str]:
 
 def _say_stiffness(found: CommonMean) -> list[str]:
     """Return that a rig is stiffer or softer than stated, if it surely is."""
-    by, error = found.value, found.scaled_error
+    by, error = found.value, found.safe_error
     if abs(by) < max(ERRORS_997 * error, ALIKE):
         return []
     share, way = 100.0 * abs(expm1(by)), "stiffer" if by > 0.0 else "softer"
@@ -77,7 +77,7 @@ def _say_stiffness(found: CommonMean) -> list[str]:
 
 def _say_delay(late: CommonMean, interval: float, drive: str) -> list[str]:
     """Return that steps come earlier or later than stated, if they do by more than a sample."""
-    mean, error = late.value, late.scaled_error
+    mean, error = late.value, late.safe_error
     if abs(mean) < max(ERRORS_997 * error, interval):
         return []
     way, by = "later" if mean > 0.0 else "earlier", in_words(abs(mean), "s", 2)
