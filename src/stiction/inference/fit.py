@@ -36,6 +36,7 @@ from stiction.inference.simulated.library import (
 )
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
+from stiction.system.slider import Slider
 
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
@@ -113,10 +114,20 @@ def check(rig: Rig) -> None:
         message += 'phi = "2 +- 1 deg"'
         faults.append(Fault("slider", message))
     faults += law_faults(rig.slider.law)
-    if not isinstance(rig.slider.motion, ConstantVelocity) or rig.slider.load is not None:
-        faults.append(Fault("drive", "must be steady, and the load constant, for a fit"))
+    faults += program_faults(rig.slider)
     if faults:
         raise DescriptionError(faults)
+
+
+def program_faults(slider: Slider) -> Iterator[Fault]:
+    """Yield where drive or load change in time."""
+    part = "and take the part of the record in which it is so (--begin, --end)"
+    if not isinstance(slider.motion, ConstantVelocity):
+        yield Fault(
+            "drive", f'changes, and a fit takes a steady one: write velocity = "1 mm/s", {part}'
+        )
+    if slider.load is not None:
+        yield Fault("load", f"changes, and a fit takes a constant one: take out this table, {part}")
 
 
 def law_faults(law: Any) -> Iterator[Fault]:

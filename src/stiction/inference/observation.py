@@ -153,7 +153,8 @@ class Trend(NamedTuple):
 class Observation(NamedTuple):
     """A record's cycles as a fit uses them: conditions, features, thinned force and its cycles.
 
-    `changes` are sentences on how cycles differ within the record, as an analysis finds it.
+    `changes` are sentences on how cycles differ within the record, as an analysis finds it;
+    `averaged` the number of its samples of which each thinned one is the mean.
     """
 
     conditions: Conditions
@@ -161,6 +162,7 @@ class Observation(NamedTuple):
     force: Floats
     cycles: Cycles
     changes: tuple[str, ...] = ()
+    averaged: int = 1
 
     @property
     def trend(self) -> Trend:
@@ -239,7 +241,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     its = features(step * block, thin, conditions.scale(slider), found)
     until = float(record.time[0]) + step * block * float(found.after[-1] + 1)
     changes = changes_within(seen, regime, until)
-    return Observation(conditions, its, thin["force"], found, changes)
+    return Observation(conditions, its, thin["force"], found, changes, block)
 
 
 def grid_of(record: Record, name: str) -> EvenGrid:

@@ -152,8 +152,7 @@ class Fit(Report):
         short = short_names(plan.priors)
         for its in estimates:
             after[short[its.name]].attrs["coverage_of_95_percent_intervals"] = its.coverage
-        record = learned.summary.standard.scores(observed[None])
-        farther = float(learned.typicality.farther(record)[0])
+        farther = learned.farther(observed)
         count, ranks = len(library.scores), learned.ranks
         blocks = [each.features for each in seen]
         apart = disagreement([*plan.priors], library.scores, alone, blocks) if alone else None
@@ -253,14 +252,7 @@ class Fit(Report):
         """What speaks against the estimates, in sentences; none if nothing does."""
         found = []
         if self.farther < RARE:
-            found.append(
-                "The records are not like those of the rig as described, whatever the uncertain "
-                f"values are within their priors: {percent(self.farther)} of the simulated records "
-                f"are less like the others, {percent(RARE)} are needed. The values below mean "
-                "nothing until that is explained: is it this rig's record, are drive and load as "
-                "stated, does the load cell lie along the axis that the rig states? "
-                f"{self.narrow_priors}{self.explanation}".rstrip()
-            )
+            found.append(unlike(self.farther, f"{self.narrow_priors}{self.explanation}"))
         if self.disagreement is not None and self.disagreement.p_value < CONTRADICTS:
             found.append(
                 "The records contradict each other, most clearly about "
@@ -367,6 +359,17 @@ def estimate(
     return Estimate(
         name, unit_of(plan, name), middle, low, high, mid, bottom, top, narrower, coverage
     )
+
+
+def unlike(farther: float, why: str) -> str:
+    """Return that records are not like simulated ones, of which so few are `farther`, and why."""
+    return (
+        "The records are not like those of the rig as described, whatever the uncertain values are "
+        f"within their priors: {percent(farther)} of the simulated records are less like the "
+        f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
+        "explained: is it this rig's record, are drive and load as stated, does the load cell lie "
+        f"along the axis that the rig states? {why}"
+    ).rstrip()
 
 
 def unit_of(plan: Plan, name: str) -> str:

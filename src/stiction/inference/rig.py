@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
 from math import radians
 from pathlib import Path
@@ -12,7 +13,7 @@ from typing import Any, NamedTuple
 from pydantic_core import PydanticCustomError
 
 from stiction.drive.recorded.reading import locator, with_rows
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, Fault, StictionError, echo
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.inference.priors import Normal, Prior, Uniform, middle, prior_table, read_prior
@@ -142,6 +143,22 @@ def rig_of(source: Any) -> Rig:
     if isinstance(source, Rig):
         return source
     return Rig.from_toml(source) if isinstance(source, str | Path) else Rig(slider_of(source), {})
+
+
+def stated_names(source: Any, changes: Mapping[str, Any] | None = None) -> list[str]:
+    """Return the paths of a description's uncertain values, whatever else is wrong with it.
+
+    None are known where no description is given, or where it cannot be read.
+    """
+    if not isinstance(source, str | Path):
+        return []
+    stated: dict[str, Any] = {}
+    with suppress(StictionError):
+        raw, _ = read_slider(source, changes)
+        for name, table in raw.items():
+            if isinstance(table, Mapping):
+                dict(without_spread(table, (name,), stated))
+    return [*stated]
 
 
 def without_spread(

@@ -7,6 +7,7 @@ import pytest
 from tests.uncertain import TEXT
 
 import stiction as st
+from stiction.inference.columns import features_from
 from stiction.inference.features import USED
 from stiction.inference.next_test import design as module
 from stiction.inference.next_test import expected as expected_module
@@ -21,7 +22,8 @@ from stiction.inference.next_test.expected import (
     left_out_errors,
 )
 from stiction.inference.next_test.further import AGAIN, Wanted, further_tests
-from stiction.inference.observation import Conditions, Noise
+from stiction.inference.next_test.question import check_arguments, refuse_certain
+from stiction.inference.observation import Conditions, Noise, Observation
 from stiction.inference.priors import Normal, Uniform
 from stiction.inference.simulated.library import refuse_too_few
 from stiction.inference.simulated.plan import Plan
@@ -350,6 +352,91 @@ def test_what_is_known_of_a_sensor_stays_with_another_noise():
     assert found["force"] == its._replace(level=3e-3)
     assert found["force_across"] == Noise(3e-3)
     assert further.with_noise(present, slider, Wanted()).noise["force"] == its
+
+
+def test_a_given_noise_is_that_of_a_sample_not_of_the_means_that_are_compared():
+    """It was taken as that of means of eight samples: beside a record, 2.8 times too large."""
+    slider = st.presets.nakano_popov_2020()
+    noise = {"force": Noise(1e-3), "position": Noise(1e-6)}
+    present = further.usual_conditions(slider)._replace(noise=noise)
+    wanted = Wanted(noise="4 mN", position_noise="2 um")
+    found = further.with_noise(present, slider, wanted, averaged=4).noise
+    assert {name: its.level for name, its in found.items()} == {
+        "force": 2e-3, "force_across": 2e-3, "position": 1e-6,
+    }  # fmt: skip
+    bare = present._replace(noise={"force": Noise(1e-3)})
+    found = further.with_noise(bare, slider, wanted, averaged=4).noise
+    assert found["position"].level == 1e-6
+    said = module.assumptions(("force",), bare._replace(noise=found), Wanted(), 4)
+    assert "a noise of 2 mN of means of 4 samples in the force across" in said[0]
+
+
+def test_noise_that_lasts_is_kept_beside_a_given_one_and_named():
+    noise = {"force": Noise(1e-3, lasting=3e-3, lasts=0.02)}
+    slider = st.presets.nakano_popov_2020()
+    present = further.usual_conditions(slider)._replace(noise=noise)
+    wanted = Wanted(noise="4 mN", position_noise="2 um")
+    found = further.with_noise(present, slider, wanted)
+    said = module.assumptions(("force",), found, wanted)
+    assert said == [
+        "Beside the given noise of the force, that of the record which lasts 20 ms is kept, 3 mN."
+    ]
+
+
+def test_every_fault_of_a_question_is_told_at_once(tmp_path):
+    """The parameter of interest and the arguments came in a second round, the record in a third."""
+    wrong = TEXT.replace('mass = "', 'mass = "-')
+    asked = {"of": "phu", "angles": "3 mm", "noise": "1 mm", "channels": ["force", "position"]}
+    with pytest.raises(st.StictionError) as caught:
+        st.design(wrong, tmp_path / "none.csv", **asked)
+    said = str(caught.value)
+    for words in ("slider.mass", "none.csv: ", "channels: ", "phu: ", "angles.1: ", "noise: "):
+        assert words in said
+    assert "name one of k_x, k_y, phi, friction.mu_0, friction.mu_inf, jitter" in said
+
+
+def test_the_spread_of_friction_may_be_asked_for_as_every_fit_estimates_it():
+    given = {"channels": ("force",), "angles": (), "velocities": (), "loads": ()}
+    assert check_arguments(("phi",), "jitter", 0.0, given)[0] == "jitter"
+    with pytest.raises(st.DescriptionError, match="name one of phi, jitter"):
+        check_arguments(("phi",), "mass", 0.0, given)
+    with pytest.raises(st.DescriptionError, match="state its uncertainty in the file beside"):
+        refuse_certain("gain", PLAN)
+
+
+def test_a_design_says_that_its_record_is_of_another_rig():
+    """It ranked tests by a record that no rig within the priors can show, and said nothing."""
+    slider, random = st.Rig.from_toml(TEXT).slider, np.random.default_rng(1)
+    noise = {"force": Noise(0.01), "force_across": Noise(0.01), "position": Noise(1e-6)}
+    every = Conditions(5e-4, 4.0, 0.0, 0.01, 10, 1.0, noise)
+    alone = every._replace(noise={"force": Noise(0.01)})
+    trial = Plan(slider, {"phi": Normal(0.0, 1.0)}, (every, every))
+    columns = features_from(("force",), every, slider)
+    scores = random.standard_normal((320, 1))
+    features = random.standard_normal((320, 2 * len(columns)))
+    features[:, : len(columns)] += 10.0 * scores
+
+    def said(values, count=320, **given):
+        seen = Observation(alone, np.full(columns.sum(), values), np.zeros(0), None, ("A pause.",))
+        some = scores[:count], features[:count]
+        return module.doubts(trial, seen, *some, Wanted(**given), None)
+
+    assert said(5.0) == ""
+    assert said(99.0).startswith("The records are not like those of the rig as described")
+    assert "Cycles differ within the record, which may explain it. A pause." in said(99.0)
+    assert said(99.0, noise="20 mN").endswith(
+        "another noise, as given; leave it out to compare them."
+    )
+    assert said(99.0, position_noise="1 um") == said(99.0)  # no displacement is measured
+    assert said(99.0, count=200).endswith("have cycles now, 300 are needed; simulate more.")
+
+
+def test_errors_of_a_number_have_no_unit():
+    """A coefficient of friction was known to "2.3 ma fraction"."""
+    now = Expected("now", *(np.array([x]) for x in (0.1, 2.3e-3, 1.0, 1.0, 1.0)), 1.0)
+    plan = PLAN._replace(priors={"jitter": Normal(0.0, 1.0)})
+    (first, _) = Advice(plan, "jitter", (now, now._replace(test=AGAIN)), (), (), 2000).tables()
+    assert [row[1] for row in first.table.rows] == ["0.0023", "0.0023"]
 
 
 def test_a_vibration_beside_steady_sliding_is_not_stick_slip():

@@ -80,6 +80,19 @@ def test_a_run_of_a_drive_that_reverses_is_refused(no_simulation):
         st.fit(st.simulate(slider, "9.6 s", sample_rate=200), RIG)
 
 
+def test_a_rig_whose_drive_or_load_changes_is_told_what_to_write():
+    """It said "must be steady, and the load constant", at the drive, whichever of them was not."""
+    piece = st.protocols.Constant
+    program = st.protocols.DriveProgram(program=[piece("5 mm/s", "1 s"), piece("1 mm/s", "1 s")])
+    load = st.protocols.LoadProgram(program=[piece("2 N", "1 s"), piece("1 N", "1 s")])
+    for change, words in (
+        ({"drive": program}, "drive: changes, .* write velocity = .*--begin, --end"),
+        ({"load": load}, "load: changes, .* take out this table, .*--begin, --end"),
+    ):
+        with pytest.raises(st.DescriptionError, match=words):
+            st.fit("no record", RIG._replace(slider=RIG.slider.replace(**change)))
+
+
 def test_what_differs_within_a_record_explains_that_it_is_unlike():
     pause = np.full(1000, 1.4)
     assert observe(record(*[CYCLE] * 20), RIG.slider).changes == ()

@@ -66,6 +66,11 @@ class Learned(NamedTuple):
             pairs = zip(each, middle.tolist(), spread.tolist(), strict=True)
             yield with_marginals(joint, [marginal(*arguments) for arguments in pairs])
 
+    def farther(self, features: Floats) -> float:
+        """Return the share of the library that is less like the others than a record (f,)."""
+        (found,) = self.typicality.farther(self.summary.standard.scores(features[None]))
+        return float(found)
+
     def coverage(self, interval: float) -> Floats:
         """Return how often intervals of this probability hold the truth, (p,)."""
         inside = np.abs(self.ranks - 0.5) < 0.5 * interval

@@ -40,6 +40,8 @@ class Advice(Report):
         Number of simulated rigs with cycles in the present test.
     rare : tuple of str
         Tests in which hardly any of these rigs has cycles.
+    doubt : str
+        What speaks against the advice, as a sentence: a record that is not of this rig.
     """
 
     plan: Plan
@@ -49,6 +51,7 @@ class Advice(Report):
     assumed: tuple[str, ...]
     simulations: int
     rare: tuple[str, ...] = ()
+    doubt: str = ""
 
     @property
     def index(self) -> int:
@@ -96,8 +99,8 @@ class Advice(Report):
 
     def tables(self) -> list[Section]:
         """Return what is found as sentences and tables."""
-        its = "a fraction" if (unit := unit_of(self.plan, self.of)) == "" else unit
-        rows = [row(test, self.index, its) for test in (self.present, *self.ranked)]
+        unit = unit_of(self.plan, self.of)
+        rows = [row(test, self.index, unit) for test in (self.present, *self.ranked)]
         headings = ("test", f"typical error of {self.of}", "over present", "95 %", "usable")
         found = [Section("What to measure next", self.sentences(), Table(headings, rows))]
         names = [*self.plan.priors]
@@ -120,7 +123,7 @@ class Advice(Report):
         i, best, first = self.index, self.best, self.ranked[0]
         unit = unit_of(self.plan, self.of)
         before = in_words(float(self.present.error[i]), unit, 2)
-        found = []
+        found = [self.doubt] if self.doubt else []
         if best is not None:
             after = in_words(float(best.error[i]), unit, 2)
             found.append(

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from math import pi
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from stiction.arguments import is_list
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.errors import ResultError
 from stiction.inference.columns import features_from
-from stiction.inference.fit import check, plan_for
+from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for
+from stiction.inference.learning import calibration
 from stiction.inference.next_test.advice import Advice
 from stiction.inference.next_test.expected import (
     FEWEST_RIGS,
@@ -39,9 +37,11 @@ from stiction.inference.next_test.further import (
     with_cycle,
     with_noise,
 )
-from stiction.inference.observation import PER_CYCLE, Conditions, Source, observe, record_from
+from stiction.inference.next_test.question import ask, refuse_certain
+from stiction.inference.observation import PER_CYCLE, Conditions, Observation, Source, observe
+from stiction.inference.posterior import RARE, unlike
 from stiction.inference.progress import Progress, part, silent
-from stiction.inference.rig import Rig, rig_of
+from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import (
     have_cycles,
     library_folder,
@@ -49,11 +49,13 @@ from stiction.inference.simulated.library import (
     simulate_all,
 )
 from stiction.inference.simulated.plan import Plan
+from stiction.inference.suitability import explain_unlike
 from stiction.system.slider import Slider
-from stiction.text.paths import canonical, last_part
 from stiction.text.quantity_text import percent
 from stiction.text.units import Quantity, in_words
-from stiction.text.validation import read_arguments
+
+NOT_COMPARED = "Whether the record is like those of the rig as described is not known: "
+OTHER_NOISE = "the simulated tests have another noise, as given; leave it out to compare them."
 
 
 def design(
@@ -86,7 +88,8 @@ def design(
     record : Record, Trajectory, str or Path, optional
         Of the present test: its channels, cycles, velocity, load and noise are taken.
     of : str, optional
-        The parameter of interest, by its path: ``"phi"``, ``"friction.mu_0"``.
+        The parameter of interest, by its path: ``"phi"``, ``"friction.mu_0"``. Or ``"jitter"``,
+        the relative spread of friction from cycle to cycle, which every fit estimates.
     channels : sequence of str, optional
         What is measured at present, without a record: ``"force"``, and perhaps ``"force_across"``
         and ``"position"``.
@@ -120,31 +123,23 @@ def design(
     ResultError
         If the record cannot be used, or too few of the simulated rigs stick and slip.
     """
-    known = rig_of(rig)
-    check(known)
-    place, slider = library_folder(library), known.slider
-    if record is not None and several(channels) != ("force",):
-        message = "are those of the record; leave them out, or the record"
-        raise DescriptionError.of("channels", message)
-    name, wanted = check_arguments(
-        known, of, channels=several(channels), angles=several(angles),
-        velocities=None if velocities is None else several(velocities),
-        loads=None if loads is None else several(loads),
+    place = library_folder(library)
+    known, name, wanted, given = ask(
+        rig, record, of, channels=channels, angles=angles, velocities=velocities, loads=loads,
         noise=noise, position_noise=position_noise, simulations=simulations,
     )  # fmt: skip
-    now = (
-        usual_conditions(slider)
-        if record is None
-        else observe(record_from(record), slider).conditions
-    )
-    measured = wanted.channels if record is None else tuple(now.noise)
-    present = with_noise(now, slider, wanted)
-    if record is None:
+    slider, seen = known.slider, None if given is None else observe(given, known.slider)
+    now = usual_conditions(slider) if seen is None else seen.conditions
+    measured = wanted.channels if seen is None else tuple(now.noise)
+    averaged = 1 if seen is None else seen.averaged
+    present = with_noise(now, slider, wanted, averaged)
+    if seen is None:
         present = must_slip(with_cycle(present, slider))
     tests, skipped = split(further_tests(present, measured, wanted), slider)
     records = [test.record for test in tests if test.record is not None]
     signed = "force_across" in measured or present.yaw != 0.0
     trial = plan_for(known, [present, *records], signed)
+    refuse_certain(name, trial)
     folder = None if place is None else place / f"{trial.key}-{seed}"
     whole = progress or silent
     simulating, learning = part(whole, 0, 10, of=6), part(whole, 6, 10, of=4)
@@ -152,42 +147,14 @@ def design(
     path = None if folder is None else folder / f"tests-{simulations}-{'-'.join(measured)}.npz"
     every = [Further("the present test", measured), *tests]
     found = learn_or_read(trial, every, scores, features, path, learning)
+    doubt = "" if seen is None else doubts(trial, seen, scores, features, wanted, path)
     whole(1.0)
-    assumed = assumptions(() if record is None else measured, present, wanted)
+    assumed = assumptions(() if seen is None else measured, present, wanted, averaged)
     columns = features.shape[1] // len(trial.conditions)
     usable = int(have_cycles(features[:, :columns]).sum())
     rare = tuple(each.test for each in found if round(each.usable * usable) < FEWEST_RIGS)
     common = tuple(each for each in found if each.test not in rare)
-    return Advice(trial, name, common, (*skipped,), (*assumed,), usable, rare)
-
-
-def several(given: Any) -> tuple[Any, ...]:
-    """Return values as a tuple, one alone as well.
-
-    >>> several("3 deg"), several(["1 deg", "3 deg"])
-    (('3 deg',), ('1 deg', '3 deg'))
-    """
-    return tuple(given) if is_list(given) else (given,)
-
-
-def check_arguments(rig: Rig, of: str, **given: Any) -> tuple[str, Wanted]:
-    """Return the path of the parameter of interest and the other arguments, or every fault."""
-    name, faults = canonical(of).removeprefix("slider."), []
-    name = next((path for path in rig.priors if name in (path, last_part(path))), name)
-    if name not in rig.priors:
-        known = ", ".join(rig.priors)
-        faults.append(Fault(of, f"is not uncertain in this description; name one of {known}"))
-    try:
-        wanted = read_arguments(Wanted, **given)
-    except DescriptionError as error:
-        raise DescriptionError([*faults, *error.faults]) from None
-    for angle in wanted.angles:
-        if abs(rig.slider.phi + angle) >= 0.5 * pi:
-            message = f"{in_words(angle, 'rad')} turns the rig to 90 deg or more"
-            faults.append(Fault("angles", f"{message}; write a smaller one"))
-    if faults:
-        raise DescriptionError(faults)
-    return name, wanted
+    return Advice(trial, name, common, (*skipped,), (*assumed,), usable, rare, doubt)
 
 
 def must_slip(present: Conditions | None) -> Conditions:
@@ -291,9 +258,44 @@ def errors_of(
         yield [*parts, left_out_errors(records, truth, fewest)]
 
 
-def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) -> list[str]:
-    """Return what neither a record's channels nor the user said, as sentences."""
+def doubts(
+    trial: Plan,
+    seen: Observation,
+    scores: Floats,
+    features: Floats,
+    wanted: Wanted,
+    path: Path | None,
+) -> str:
+    """Return that the record is unlike simulations of the present test, or may be, or ''.
+
+    `scores` (n, p) and `features` (n, f) are those of all simulations; what is learned is kept
+    beside `path`.
+    """
+    given = {"force": wanted.noise, "force_across": wanted.noise, "position": wanted.position_noise}
+    if any(given[name] is not None for name in seen.conditions.noise):
+        return NOT_COMPARED + OTHER_NOISE
+    width = features.shape[1] // len(trial.conditions)
+    columns = features_from(tuple(seen.conditions.noise), trial.conditions[0], trial.slider)
+    rows = features[:, :width][:, columns]
+    usable = have_cycles(rows)
+    if (count := usable.sum()) < FEWEST_SIMULATIONS:
+        few = f"{count} of the simulated rigs have cycles now, {FEWEST_SIMULATIONS} are needed"
+        return f"{NOT_COMPARED}{few}; simulate more."
+    beside = None if path is None else path.with_name(f"{path.stem}-record.npz")
+    learned = calibration.learn_or_read(rows[usable], scores[usable], beside)
+    farther = learned.farther(seen.features)
+    return unlike(farther, explain_unlike([seen.changes])) if farther < RARE else ""
+
+
+def assumptions(
+    recorded: Sequence[str], present: Conditions, wanted: Wanted, averaged: int = 1
+) -> list[str]:
+    """Return what neither a record's channels nor the user said, as sentences.
+
+    Of means of `averaged` samples.
+    """
     noise = present.noise
+    means = f" of means of {averaged} samples" if averaged > 1 else ""
     found = []
     if not recorded:
         found.append(f"Assumed: {CYCLES} cycles in each record, {PER_CYCLE} samples in each cycle.")
@@ -304,8 +306,16 @@ def assumptions(recorded: Sequence[str], present: Conditions, wanted: Wanted) ->
         )
     if wanted.noise is None and recorded and "force_across" not in recorded:
         level = in_words(noise["force_across"].error, "N", 2)
-        found.append(f"Assumed: a noise of {level} in the force across, as in the other.")
+        found.append(f"Assumed: a noise of {level}{means} in the force across, as in the other.")
     if wanted.position_noise is None and "position" not in recorded:
         level = in_words(noise["position"].error, "m", 2)
-        found.append(f"Assumed: a noise of {level} in the displacement.")
+        found.append(f"Assumed: a noise of {level}{means} in the displacement.")
+    for name, given in (("force", wanted.noise), ("position", wanted.position_noise)):
+        if given is not None and name in recorded and noise[name].lasting:
+            level = in_words(noise[name].lasting, "N" if name == "force" else "m", 2)
+            lasts = in_words(noise[name].lasts, "s", 2)
+            found.append(
+                f"Beside the given noise of the {name}, that of the record which lasts {lasts} is "
+                f"kept, {level}."
+            )
     return found

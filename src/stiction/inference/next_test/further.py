@@ -75,18 +75,24 @@ def usual_conditions(slider: Slider) -> Conditions:
     return Conditions(velocity, slider.normal_load, 0.0, 0.0, CYCLES, 0.0, {})
 
 
-def with_noise(conditions: Conditions, slider: Slider, wanted: Wanted) -> Conditions:
-    """Return conditions in which every channel has a noise: what is given, known, or usual."""
-    known = conditions.noise
+def with_noise(
+    conditions: Conditions, slider: Slider, wanted: Wanted, averaged: int = 1
+) -> Conditions:
+    """Return conditions in which every channel has a noise: what is given, known, or usual.
+
+    That given is of a sample, of which the conditions are those of means of `averaged`.
+    """
+    known, root = conditions.noise, averaged**0.5
+    given = {"force": wanted.noise, "force_across": wanted.noise, "position": wanted.position_noise}
+    level = {name: None if noise is None else noise / root for name, noise in given.items()}
     own = known["force"].error if "force" in known else NOISE * slider.F_0
-    force = wanted.noise or own
+    force = level["force"] or own
     usual = {
         "force": Noise(force),
         "force_across": Noise(force),
-        "position": Noise(wanted.position_noise or force / slider.k_x),
+        "position": Noise(level["position"] or force / slider.k_x),
     }
-    given = {"force": wanted.noise, "force_across": wanted.noise, "position": wanted.position_noise}
-    kept = {name: its._replace(level=given[name] or its.level) for name, its in known.items()}
+    kept = {name: its._replace(level=level[name] or its.level) for name, its in known.items()}
     return conditions._replace(noise={**usual, **kept})
 
 

@@ -70,7 +70,8 @@ def design(
         Measured record of the present test, in any format that `stiction import` reads: its
         channels, cycles and noise are those of the tests to come. Example: --record data.csv.
     of
-        Parameter to learn more about, by its name in RIG. Example: --of friction.mu_0.
+        Parameter to learn more about, by its name in RIG; or jitter, the spread of friction from
+        cycle to cycle. Example: --of friction.mu_0.
     channels
         Channels that the present test measures, where there is no --record. Example: --channels
         force position.
@@ -83,8 +84,8 @@ def design(
         Normal loads to try, by default half the present one and twice it. Example: --loads "2 N"
         "8 N".
     noise
-        Standard deviation of a sample of force, by default that of the record, or 0.2 % of the
-        friction force. Example: --noise "2 mN".
+        Standard deviation of a sample of force, taken as often as the record's, by default that of
+        the record, or 0.2 % of the friction force. Example: --noise "2 mN".
     position_noise
         Standard deviation of a sample of displacement, by default that of the record, or the noise
         of the force over k_x. Example: --position-noise "50 nm".
@@ -94,9 +95,9 @@ def design(
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.next_test.design import design as find
-    from stiction.inference.next_test.further import ANGLES, Wanted
-    from stiction.inference.rig import Rig
-    from stiction.text.validation import read_arguments
+    from stiction.inference.next_test.further import ANGLES
+    from stiction.inference.next_test.question import check_arguments
+    from stiction.inference.rig import Rig, stated_names
 
     faults = Faults()
     altered = changes(set, faults)
@@ -105,6 +106,7 @@ def design(
 
         with faults.of_part():
             drawable(output)
+    known = None
     with faults.of_part():
         known = Rig.from_toml(rig, altered, trust=trust)
     with faults.of_part():
@@ -119,9 +121,11 @@ def design(
         "simulations": simulations,
     }
     if faults.found:  # without any, they are checked beside the rig
+        names = stated_names(rig, altered) if known is None else known.priors
         with faults.of_part():
-            read_arguments(Wanted, **tests)
+            check_arguments(names, of, 0.0 if known is None else known.slider.phi, tests)
     faults.refuse()
+    assert known is not None
     with progress("simulating and learning") as report:
         found = find(
             known,
