@@ -8,6 +8,15 @@ from typing import NamedTuple, TypeVar
 
 import numpy as np
 
+from stiction.analysis.creep.conditions import (
+    CHANGED,
+    FOLLOWED,
+    TURNED,
+    at_one_load,
+    driven_steadily,
+    load_change,
+    refuse_change,
+)
 from stiction.analysis.creep.curve import creep_curves, mean_creep
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.first_slip import slips
@@ -25,14 +34,6 @@ from stiction.analysis.creep.misalignment import (
     WEAKENINGS,
     Misalignment,
     fit_misalignment,
-)
-from stiction.analysis.creep.normal_load import (
-    CHANGED,
-    FOLLOWED,
-    TURNED,
-    at_one_load,
-    load_change,
-    refuse_change,
 )
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
@@ -53,6 +54,10 @@ SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by mo
 # Of the creep: rest between jerks; of F_0: what friction in them is less by. With more of both the
 # angle comes out up to 10 % low; a jerk that is slow beside what friction weakens by does no harm
 JERKS, LOST = 0.2, 0.02
+PAUSES = (
+    "not determined: the drive pauses, or changes its velocity, in every stick phase, and creep "
+    "goes with it; let it go on steadily through some cycles"
+)
 AT_ONCE = 0.1  # of a stick phase: a longer rest is none between jerks
 
 
@@ -90,16 +95,19 @@ def find_creep(
     missing: dict[str, str] = {}
     run = source if isinstance(source, Trajectory) else None
     by_force = None
+    begin, end = (cycles[name].values for name in ("start", "peak_time"))
+    driven = cycles.isel(cycle=driven_steadily(source, record, begin, end))
     if record.position is None:
-        by_force = attempt(missing, "misalignment", lambda: misalignment_from_force(record, cycles))
-    known = calibrate(record, cycles, by_force)
+        by_force = attempt(missing, "misalignment", lambda: _by_force(record, cycles, driven))
+    known = calibrate(record, driven, by_force)
     curves = attempt(missing, "creep", lambda: creep_curves(run or known, cycles, width))
     mean = None
     if curves is not None:
-        mean = attempt(missing, "creep", lambda: mean_curve(curves, known, record))
+        curves = _without_pauses(curves, source, record)
+        mean = attempt(missing, "creep", lambda: _mean(curves, known, record))
     if mean is not None:
         mean = with_base(mean, known, record) if by_force is None else mean
-        mean = with_rounding(mean, known, cycles)
+        mean = with_rounding(mean, known, driven)
         mean = with_slip_time(mean, known) if run is None else mean
     found = CreepFound(curves, mean, None, by_force, missing)
     V, stiffness = drive_speed(source, known), known.stiffness
@@ -110,6 +118,37 @@ def find_creep(
     if run is not None and run.slider.misalignment == 0.0:
         return found
     return _with_fits(found, run, record, stiffness, V)
+
+
+def _by_force(record: Record, cycles: xr.Dataset, driven: xr.Dataset) -> Misalignment:
+    """Return the misalignment that the force implies in those cycles that are driven steadily."""
+    if cycles.sizes["cycle"] and not driven.sizes["cycle"]:
+        raise ResultError(PAUSES)
+    return misalignment_from_force(record, driven)
+
+
+def _without_pauses(curves: xr.Dataset, source: Trajectory | Record, record: Record) -> xr.Dataset:
+    """Return creep curves without those of phases in which the drive pauses: their values NaN.
+
+    Their number is the attribute ``left_out``.
+    """
+    end = curves["slip_time"].values
+    begin = end - np.fmax.reduce(curves["begin"].values, axis=1, initial=np.nan)
+    seen = np.isfinite(begin)
+    paused = seen.copy()
+    paused[seen] = ~driven_steadily(source, record, begin[seen], end[seen])
+    its = curves.copy(deep=True)
+    for name in its.data_vars:
+        its[name].values[paused] = np.nan
+    its.attrs["left_out"] = int(paused.sum())
+    return its
+
+
+def _mean(curves: xr.Dataset, known: Record, record: Record) -> xr.Dataset:
+    """Return the mean creep curve, or refuse one of which the drive pauses in every phase."""
+    if curves.attrs["left_out"] and not np.isfinite(curves["velocity"].values).any():
+        raise ResultError(PAUSES)
+    return mean_curve(curves, known, record)
 
 
 def _with_divergence(found: CreepFound, rate: float) -> CreepFound:
@@ -135,7 +174,9 @@ def _with_fits(
     assert mean is not None
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
     ends = curves["slip_time"].values
-    change = load_change(record, ends - np.fmax.reduce(curves["begin"].values, axis=1), ends)
+    lasts = np.fmax.reduce(curves["begin"].values, axis=1)
+    seen = np.isfinite(lasts)
+    change = load_change(record, (ends - lasts)[seen], ends[seen])
     ends_in_slip = run is None or slips(run)
 
     def diverging() -> Divergence:

@@ -7,14 +7,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
-from stiction.analysis.creep.misalignment import Misalignment
-from stiction.analysis.creep.normal_load import (
+from stiction.analysis.creep.conditions import (
     CHANGED,
     load_change,
     refuse_change,
     typical_load,
 )
+from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
+from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import error_of_few

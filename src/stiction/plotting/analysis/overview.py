@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from stiction.analysis.creep.conditions import at_one_load, typical_load
 from stiction.analysis.creep.curve import mean_creep
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.misalignment import REST_SPEED, STRETCH, implied_velocity
-from stiction.analysis.creep.normal_load import at_one_load, typical_load
 from stiction.analysis.oscillation import stands_out
 from stiction.analysis.report import Analysis
 from stiction.arrays import Floats

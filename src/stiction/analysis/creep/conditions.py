@@ -1,0 +1,144 @@
+"""Load and drive in stick phases: creep at another load, loads that change, drives that pause."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.record import Record
+from stiction.arrays import Floats, xr
+from stiction.errors import ResultError
+from stiction.recording.noise import white_noise
+from stiction.text.quantity_text import percent
+from stiction.trajectory import Trajectory
+
+PARTS = 16  # of a stick phase, over each of which the load is averaged: their changes are its own
+# Largest change of the load in a stick phase, as a share of it: for the exponent of the divergence,
+# and a misalignment by the force alone; for one by creep; and that times (k_x/k_y)/tan^2(phi), as a
+# softer spring across turns the slip with friction. Found on random rigs under ramps and
+# oscillations: with twice as much, one in ten values is more than three errors off
+CHANGED, FOLLOWED, TURNED = 0.25, 0.4, 0.2
+# Of the drive's velocity: a stick phase in which its mean differs by more has a pause in it, or is
+# of another velocity. Creep differs by as much
+PAUSED = 0.1
+NOISE = 4.3  # standard deviations of a sample: three of a difference of two
+# Fewer rises are not compared; the quantile of their beginnings, and the share of a rise before its
+# peak, between which there are so many levels
+FEWEST_RISES, LOWER, BEFORE_SLIP, LEVELS = 4, 0.8, 0.12, 10
+
+
+def at_one_load(curves: xr.Dataset, record: Record) -> xr.Dataset:
+    """Return creep curves whose force is that at the load `normal_load` instead of a measured one.
+
+    Friction is proportional to the load, and the slip follows the direction of friction: by Eq. (7)
+    the velocity depends on the force over the load.
+    """
+    time = curves["slip_time"] - 0.5 * (curves["begin"] + curves["end"])
+    load = np.interp(time.values, record.time, record.relative_load())
+    return curves.assign(force=curves["force"] / load)
+
+
+def driven_steadily(
+    source: Trajectory | Record, record: Record, begin: Floats, end: Floats
+) -> NDArray[np.bool_]:
+    """Return in which stick phases the drive goes on at its velocity, (n,).
+
+    `begin` and `end` (s) are those of the phases. The drive is that of the run, that which was
+    measured, or that which loads the spring, X + F/k_x. Of a force alone pauses are seen.
+    """
+    known: float | None = record.drive_velocity
+    if not len(begin):
+        return np.ones(0, bool)
+    if isinstance(source, Trajectory):
+        drive = np.hypot(source.samples["drive_X"], source.samples["drive_Y"])
+        known, way = source.slider.drive_speed, _integral(record.time, drive)
+    elif record.drive_position is not None:
+        way = record.drive_position
+    elif record.position is not None and record.stiffness is not None:
+        known, way = None, record.position + record.force / record.stiffness
+    else:
+        return ~_pauses(record, begin, end)
+    lasts = end - begin
+    speed = np.diff(np.interp([begin, end], record.time, way), axis=0)[0] / lasts
+    usual = known or (float(np.median(speed)) if len(speed) else 0.0)
+    noise = NOISE * white_noise(np.asarray(way)) / lasts
+    return np.asarray(np.abs(speed - usual) <= PAUSED * abs(usual) + noise)
+
+
+def _pauses(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:
+    """Return in which rises the force stays for longer than in most others, but for the peak, (n,).
+
+    Creep has no memory: as long as the drive goes on, a force takes as long to rise from one level
+    to the next in each rise. Levels are shares of the peak, and times go with it: under another
+    load both are in proportion.
+    """
+    none = np.zeros(len(begin), bool)
+    rises = [record.force[i:j] for i, j in np.searchsorted(record.time, [begin, end]).T]
+    if len(rises) < FEWEST_RISES or min(map(len, rises)) < 2:
+        return none
+    peaks = np.array([each.max() for each in rises])
+    high = float(np.median(peaks))
+    if not peaks.min() > 0.0:
+        return none
+    scales = high / peaks
+    scaled = [each * scale for each, scale in zip(rises, scales, strict=True)]
+    low = float(np.quantile([each[0] for each in scaled], LOWER))
+    levels = np.linspace(low, high - BEFORE_SLIP * (high - low), LEVELS + 1)
+    if not np.diff(levels).min() > 0.0:
+        return none
+    stays = np.array([np.histogram(each, levels)[0] for each in scaled]) * scales[:, None]
+    usual = np.median(stays, axis=0)
+    noise = NOISE * white_noise(record.force) / (levels[1] - levels[0]) * usual
+    most = PAUSED * float(np.median([*map(len, rises)])) + noise
+    return np.asarray((stays - usual > most).any(axis=1))
+
+
+def _integral(time: Floats, values: Floats) -> Floats:
+    """Return the integral (trapezoids) from the first sample to each."""
+    steps = np.diff(time) * 0.5 * (values[1:] + values[:-1])
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def load_change(record: Record, begin: Floats, end: Floats) -> float:
+    """Return how far the load goes up and down, over its mean, in the stick phase of most change.
+
+    `begin` and `end` (s) are those of the phases. Readings without load count as neighbours do; 0
+    where the load's noise may be all of its variation.
+    """
+    time, load = _load_readings(record)
+    if len(time) < 2 or not record.load_variation() > 0.0:
+        return 0.0
+    area = _integral(time, load)
+    edges = np.linspace(begin, end, PARTS + 1)
+    means = np.diff(np.interp(edges, time, area), axis=0) / np.diff(edges, axis=0)
+    changes = np.abs(np.diff(means, axis=0)).sum(axis=0) / means.mean(axis=0)
+    return float(np.fmax.reduce(changes, initial=0.0))
+
+
+def typical_load(record: Record, times: Floats) -> float:
+    """Return the median of the load over `normal_load` at some times (s).
+
+    Readings without load count as neighbours do.
+    """
+    return float(np.median(np.interp(times, *_load_readings(record))))
+
+
+def _load_readings(record: Record) -> tuple[Floats, Floats]:
+    """Return the times (s) at which there is a load, and that over `normal_load`."""
+    load = record.relative_load()
+    its = np.isfinite(load)
+    return record.time[its], load[its]
+
+
+def refuse_change(change: float, most: float, why: str) -> None:
+    """Refuse a finding under a load that changes by more than a share `most`.
+
+    Raises
+    ------
+    ResultError
+        With `why` in words.
+    """
+    if change > most:
+        raise ResultError(
+            f"not determined: the normal load changes by {percent(change)} in a stick phase, {why}"
+        )
