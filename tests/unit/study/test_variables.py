@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from benchmarks.explore import misalignment
 from benchmarks.explore.rigs import first_slip
 from tests.drawn import inside
 from tests.rigs import NEARLY_ISOTROPIC
@@ -91,6 +92,27 @@ def test_creep_is_the_same_with_more_samples(slider, duration):
     assert value("creep_distance", few) == pytest.approx(crept, rel=2e-3)
     at = first_loading(slider, few.time, few.elongation, few.drive).slip
     assert abs(few.positions[at] - few.positions[0] - crept) > 0.1 * crept
+
+
+@pytest.mark.parametrize("seed", [1, 15])
+def test_creep_over_less_than_a_sample_is_that_of_closer_ones(seed):
+    """It was up to 400 times too large, or against the drive, where slip is fast within a sample.
+
+    Held against the travel of mass and drive in samples that are 200 times as close.
+    """
+    random = np.random.default_rng(seed)
+    slider = misalignment.rig(random, misalignment.SOFT if seed % 2 else (2.0, 4.0))
+    V = slider.motion.velocity
+    duration = 1.2 * slider.F_0 / slider.k_x / V
+    few = run_in_study(slider, duration)
+    step = float(few.time[1] - few.time[0])
+    begin, crept = few.first_slip
+    run = st.simulate(slider, duration=begin + 2.0 * step, sample_rate=200.0 / step)
+    time, X = run.samples["time"], run.samples["X"]
+    slips = int(np.argmax(np.where(time > begin - 2.0 * step, V * time - X, 0.0)))
+    assert begin == pytest.approx(float(time[slips]), abs=step / 200.0)
+    assert crept == pytest.approx(float(X[slips] - X[0]), rel=1e-3, abs=V * step / 200.0)
+    assert crept > 0.0
 
 
 def test_a_turning_point_lies_between_two_samples():
