@@ -75,6 +75,22 @@ def test_drift_is_seen_and_taken_off(force) -> None:
     assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
 
 
+def test_a_drift_is_taken_off_by_what_is_said_of_it(force, tmp_path) -> None:
+    """The remedy was a Python function, on the command line too."""
+    time, newtons = force
+    path = tmp_path / "drifts.csv"
+    np.savetxt(
+        path, np.c_[time, newtons + 0.05 * time], delimiter=",", header="time [s],force [N]",
+        comments="",
+    )  # fmt: skip
+    said = st.analyse(st.read_record(path, **KNOWN)).warnings[0]
+    line = re.search(r'state (zero_drift = "[^"]*") under (\[sensors.force\])', said)
+    path.with_suffix(".toml").write_text(f"{line[2]}\n{line[1]}\n", "utf-8")
+    mended = st.analyse(st.read_record(path, **KNOWN))
+    assert mended.warnings == ()
+    assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
+
+
 def test_a_drift_seen_in_the_second_half_is_taken_off_there_only() -> None:
     """Without cycles the first half may be anything: a loading, running in."""
     time = np.arange(0.0, 60.0, 0.01)
@@ -86,6 +102,7 @@ def test_a_drift_seen_in_the_second_half_is_taken_off_there_only() -> None:
     # -0.4 mN/s for 30 s is -12 mN: what `detrend` takes off, not that between means of parts
     change = float(re.search(r"N/s, (-[\d.]+) mN from 30 s on", said)[1])
     assert change == pytest.approx(-12.0, rel=5e-3)
+    assert "analyse the parts before and after 30 s by themselves (--end, --begin)" in said
     mended = st.analysis.detrend(record)
     first = time < 30.0
     assert mended.force[first].tolist() == record.force[first].tolist()

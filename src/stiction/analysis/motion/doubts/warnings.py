@@ -285,10 +285,16 @@ def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Itera
         return
     if drift.stands_out and is_shown(drift, kind):
         late = drift.start > float(record.time[0])
-        where = f"from {in_words(drift.start, 's')} on" if late else "in all"
+        rate, begin = in_words(drift.rate, "N/s"), in_words(drift.start, "s")
+        where = f"from {begin} on" if late else "in all"
+        remedy = (
+            f"analyse the parts before and after {begin} by themselves (--end, --begin)"
+            if late
+            else f'state zero_drift = "{rate}" under [sensors.force] in the file beside the record'
+        )
         yield (
-            f"The force drifts by {in_words(drift.rate, 'N/s')}, {in_words(drift.change, 'N')} "
-            f"{where}, and friction coefficients with it. If it is the load cell, analyse "
+            f"The force drifts by {rate}, {in_words(drift.change, 'N')} {where}, and friction "
+            f"coefficients with it. If it is the load cell, {remedy}; in Python, analyse "
             "st.analysis.detrend(record)."
         )
     if not drift.likely or not len(cycles):
