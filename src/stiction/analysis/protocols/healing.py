@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
-from math import isnan, nan
+from math import floor, inf, isnan, log10, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,10 @@ from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.lists import in_list, number_text, say_left_out
 from stiction.text.sections import Section, SectionReport, Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
+
+DECIMALS = 4  # of a coefficient, at most
 
 
 @dataclass(frozen=True)
@@ -84,8 +86,8 @@ class Healing(SectionReport):
                 in_words(t, "s"),
                 f"{before:.4f}",
                 f"{low:.4f}",
-                f"{'' if sure else '> '}{peak:.4f}",
-                f"{'' if sure else '> '}{peak - before:.4f}",
+                f"{'' if sure else '> '}{peak:.{decimals(error)}f}",
+                f"{'' if sure else '> '}{peak - before:.{decimals(error)}f}",
                 number_text(error, ".1g"),
             )
             for t, before, low, peak, error, sure in zip(
@@ -110,9 +112,19 @@ class Healing(SectionReport):
         if abs(self.per_decade) < least:
             zero = f"Healing is zero within its error, {least:.1g} per decade of hold time."
             return [zero, *said]
-        known = f", ± {error:.1g}" if error > 0.0 else ""
-        heals = f"Friction heals by {self.per_decade:.3g} per decade of hold time{known}."
-        return [heals, *said]
+        its = with_error(self.per_decade, error, "") if error > 0.0 else f"{self.per_decade:.3g}"
+        return [f"Friction heals by {its} per decade of hold time.", *said]
+
+
+def decimals(error: float) -> int:
+    """Return how many decimals a coefficient has with this error: to its first digit, or four.
+
+    >>> decimals(0.0021), decimals(0.03), decimals(nan), decimals(2e-6)
+    (3, 2, 4, 4)
+    """
+    if not 0.0 < error < inf:
+        return DECIMALS
+    return min(max(-floor(log10(float(f"{error:.1g}"))), 0), DECIMALS)
 
 
 def healing(source: Trajectory | Record, program: DriveProgram | None = None) -> Healing:
