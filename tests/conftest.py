@@ -13,7 +13,11 @@ from tests.uncertain import record_file as record_file
 from tests.uncertain import rig as rig
 
 import stiction as st
-from stiction.solver.compilation import machine_code
+from stiction.machine import CORES
+from stiction.solver.compilation import ahead, machine_code
+
+if int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")) >= CORES:
+    ahead.CORES = 1  # that of this worker: a second process would take that of another
 
 os.environ["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "30m"  # not 30 s: the machine may be busy
 
