@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from tests.uncertain import designed as designed
 from tests.uncertain import libraries as libraries
 from tests.uncertain import record as record
 from tests.uncertain import record_file as record_file

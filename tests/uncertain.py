@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import IO
 
@@ -12,6 +14,7 @@ import pytest
 
 import stiction as st
 from stiction.inference.mechanism.comparison import SHARE
+from stiction.inference.next_test import further
 from stiction.inference.simulated.jitter import Jitter, move
 
 TEXT = """
@@ -34,6 +37,8 @@ velocity = "0.5 mm/s"
 
 SIMULATIONS = 384  # whole blocks, enough for a fit
 BOTH = ("force", "force_across")
+CYCLES = 6  # of each record of a design: few, to see that it works
+ASKED = {"angles": ["3 deg"], "velocities": ["1 m/s"], "loads": ["1 kN"], "simulations": 200}
 
 
 def record_of(
@@ -82,14 +87,38 @@ def wait_for(lock: IO[str]) -> None:
         flock(lock, LOCK_EX)
 
 
-@pytest.fixture(scope="session")
-def libraries(record: st.Record, rig: st.Rig, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Simulations for audits of that record; one worker makes them, and the others wait for it."""
-    own = tmp_path_factory.getbasetemp()
-    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "libraries"
+@contextlib.contextmanager
+def shared_folder(name: str, factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Make a folder that one worker fills in the ``with`` block, and for which the others wait."""
+    own = factory.getbasetemp()
+    folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / name
     folder.mkdir(exist_ok=True)
     with folder.with_suffix(".lock").open("w") as lock:
         wait_for(lock)
+        yield folder
+
+
+@pytest.fixture(scope="session")
+def libraries(record: st.Record, rig: st.Rig, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Simulations for audits of that record."""
+    with shared_folder("libraries", tmp_path_factory) as folder:
         st.fit(record, rig, simulations=SIMULATIONS, library=folder)
         st.mechanism(record, rig, simulations=SIMULATIONS // SHARE, library=folder)
     return folder
+
+
+@pytest.fixture(scope="session")
+def designed(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Simulations for designs of that rig, in records of `CYCLES`."""
+    with (
+        shared_folder("designs", tmp_path_factory) as folder,
+        pytest.MonkeyPatch.context() as patch,
+    ):
+        patch.setattr(further, "CYCLES", CYCLES)
+        st.design(TEXT, library=folder, **ASKED)
+    return folder
+
+
+def copy_blocks(folder: Path, own: Path) -> None:
+    """Copy simulations to a folder of its own, without what was found in them."""
+    shutil.copytree(folder, own, ignore=shutil.ignore_patterns("tests-*"), dirs_exist_ok=True)

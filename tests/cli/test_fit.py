@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
-from tests.uncertain import SIMULATIONS, TEXT
+from tests.uncertain import CYCLES, SIMULATIONS, TEXT, copy_blocks
 
 import stiction as st
 from stiction.auditing import tolerance
@@ -121,8 +121,9 @@ def test_an_audit_of_a_record_without_priors_is_refused(tmp_path, capsys):
     assert "nothing is uncertain" in capsys.readouterr().err
 
 
-def test_a_design_says_what_to_measure_next(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(further, "CYCLES", 6)  # short, to see that it works
+def test_a_design_says_what_to_measure_next(designed, tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(further, "CYCLES", CYCLES)
+    copy_blocks(designed, tmp_path)
     rig = tmp_path / "rig.toml"
     rig.write_text(TEXT)
     options = ["--angles", "3 deg", "--velocities", "1 m/s", "--loads", "1 kN", "-n", 200]

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.uncertain import TEXT
+from tests.uncertain import ASKED, CYCLES, TEXT, copy_blocks
 
 import stiction as st
 from stiction.inference.columns import features_from
@@ -192,22 +192,22 @@ def test_what_may_be_added():
     assert names[1:] == ["at 670 µm/s", "at 6 mm/s", "under 4.9 N", "under 20 N"]
 
 
-def test_a_design_of_a_rig(monkeypatch, tmp_path):
+def test_a_design_of_a_rig(designed, monkeypatch, tmp_path):
     for each in (module, expected_module):  # few and short: to see that all of it works
         monkeypatch.setattr(each, "FEWEST_RIGS", 20)
-    monkeypatch.setattr(further, "CYCLES", 6)
-    asked = {"angles": ["3 deg"], "velocities": ["1 m/s"], "loads": (), "simulations": 200}
-    found = st.design(TEXT, library=tmp_path, **asked)
+    monkeypatch.setattr(further, "CYCLES", CYCLES)
+    copy_blocks(designed, tmp_path)
+    found = st.design(TEXT, library=tmp_path, **ASKED)
     assert found.tests[0].test == "the present test"
     assert found.skipped == ("at 1 m/s",)  # too fast for stick-slip
     assert {test.test for test in found.ranked} == {
         "the force across", "the displacement", "the force across and the displacement",
-        "the same test again", "turned by 3 deg",
+        "the same test again", "turned by 3 deg", "under 1 kN",
     }  # fmt: skip
     order = [test.ratio[found.index] for test in found.ranked]
     assert order == sorted(order)
     data = found.data
-    assert data.sizes["test"] == 6
+    assert data.sizes["test"] == 7
     assert (data["low"] <= data["ratio"] + 1e-12).all()
     said = "\n".join(map(str, found.tables()))
     assert "What to measure next" in said
@@ -217,7 +217,7 @@ def test_a_design_of_a_rig(monkeypatch, tmp_path):
     assert [each.get_text() for each in axes.get_yticklabels()] == [t.test for t in found.ranked]
     (kept,) = tmp_path.rglob("tests-*.npz")
     assert kept.name == "tests-200-force.npz"
-    again = st.design(TEXT, library=tmp_path, **asked)  # from the folder
+    again = st.design(TEXT, library=tmp_path, **ASKED)  # from the folder
     assert again.data.identical(data)
 
 
