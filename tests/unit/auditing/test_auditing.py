@@ -321,22 +321,26 @@ def test_every_end_of_a_window_of_changes_is_said_and_the_one_tried_lies_inside(
     assert max(growths) < 0.0
 
 
-def test_the_page_needs_nothing_from_outside(found):
-    text = page(found, "a <rig>")
-    assert "Audit of a &lt;rig&gt;" in text
-    assert text.count("data:image/png;base64,") == 5
-    assert not re.findall(r'(?:src|href)="(?!data:)(?!https://arxiv)', text)
-    assert "<script" not in text
+@pytest.fixture(scope="module")
+def text_of_page(found):
+    return page(found, "a <rig>")
 
 
-def test_readers_of_screens_find_all_of_the_page_in_its_main_part(found):
-    body = page(found, "rig").partition("<body>")[2].partition("</body>")[0].strip()
+def test_the_page_needs_nothing_from_outside(text_of_page):
+    assert "Audit of a &lt;rig&gt;" in text_of_page
+    assert text_of_page.count("data:image/png;base64,") == 5
+    assert not re.findall(r'(?:src|href)="(?!data:)(?!https://arxiv)', text_of_page)
+    assert "<script" not in text_of_page
+
+
+def test_readers_of_screens_find_all_of_the_page_in_its_main_part(text_of_page):
+    body = text_of_page.partition("<body>")[2].partition("</body>")[0].strip()
     assert body.startswith("<main>")
     assert body.endswith("</main>")
 
 
-def test_letters_in_all_figures_of_the_page_have_one_size(found):
-    figures = re.findall(r'width: ([0-9.]+)rem.*?base64,([^"]+)"', page(found, "rig"))
+def test_letters_in_all_figures_of_the_page_have_one_size(text_of_page):
+    figures = re.findall(r'width: ([0-9.]+)rem.*?base64,([^"]+)"', text_of_page)
     dots = [int.from_bytes(b64decode(image)[16:20]) for _, image in figures]  # wide, by its header
     scales = [wide / float(width) for (width, _), wide in zip(figures, dots, strict=True)]
     assert len(scales) == 5

@@ -110,8 +110,13 @@ def test_without_uncertainty_there_is_no_budget():
     assert st.audit(plain).budget is None
 
 
-def test_the_page_and_the_figure_show_it(found):
-    assert "How well to align" in page(found, "pin")
+@pytest.fixture(scope="module")
+def text_of_page(found):
+    return page(found, "pin")
+
+
+def test_the_page_and_the_figure_show_it(found, text_of_page):
+    assert "How well to align" in text_of_page
     axes = plot_tolerance(found.budget)
     assert [len(ax.lines[0].get_xdata()) for ax in axes] == [8] * 4
     (line,) = [line for line in axes[0].lines if len(set(line.get_xdata())) == 1 and
@@ -295,9 +300,9 @@ def test_the_interval_holds_95_percent_of_other_tests():
     assert np.diff(made.intervals, axis=0)[0] == pytest.approx(0.95, abs=0.01)
 
 
-def test_the_page_states_what_is_uncertain_as_the_description_does(found):
+def test_the_page_states_what_is_uncertain_as_the_description_does(found, text_of_page):
     assert st.Rig.from_toml(found.to_toml()) == st.Rig.from_toml(TEXT)
-    assert "uncertainty = &#34;1 deg&#34;" in page(found, "it")
+    assert "uncertainty = &#34;1 deg&#34;" in text_of_page
 
 
 def test_the_axis_of_angles_is_logarithmic_where_the_prior_is(found):
