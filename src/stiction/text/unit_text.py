@@ -103,8 +103,8 @@ def _metric_factor(text: str, wanted: str) -> float | None:
 
 
 def short(text: str) -> str:
-    """Return a unit in its short form, e.g. ``N·s/m``."""
-    return f"{registry().Unit(plain(text)):~P}"
+    """Return a unit in its short form, e.g. ``N·s/m``; micro is a sign of its own, not a letter."""
+    return f"{registry().Unit(plain(text)):~P}".replace("μ", "µ")  # pint 0.26 writes the letter
 
 
 def plain(text: str) -> str:

@@ -153,7 +153,7 @@ def test_netcdf_with_dates(tmp_path, unit, since):
 @pytest.mark.parametrize("resolution", ["s", "ms", "us", "ns"])
 def test_npz_with_dates(tmp_path, resolution):
     dates = DATES.astype(f"M8[{resolution}]")
-    dates[7] = np.datetime64("NaT")
+    dates[7] = np.datetime64("NaT", "s")
     np.savez(tmp_path / "a.npz", date=dates, force_N=np.arange(50.0))
     record = st.read_record(tmp_path / "a.npz", force="N")
     assert record.time.tolist() == [float(x) for x in range(50) if x != 7]
@@ -162,7 +162,7 @@ def test_npz_with_dates(tmp_path, resolution):
 
 def test_npz_with_a_first_date_that_is_missing(tmp_path):
     dates = DATES.astype("M8[s]")
-    dates[0] = np.datetime64("NaT")
+    dates[0] = np.datetime64("NaT", "s")
     np.savez(tmp_path / "a.npz", date=dates, force_N=np.arange(50.0))
     record = st.read_record(tmp_path / "a.npz", force="N")
     assert record.time.tolist() == [float(x) for x in range(49)]

@@ -6,7 +6,7 @@ import pytest
 import xarray as xr
 
 from stiction.text.quantity_text import percent, quantity_text
-from stiction.text.unit_text import COMMON, LONGEST_UNIT, UnitError, factor
+from stiction.text.unit_text import COMMON, LONGEST_UNIT, UnitError, factor, short
 from stiction.text.units import (
     FORCE,
     VELOCITY,
@@ -267,3 +267,8 @@ def test_exact_factors_leave_no_digits_of_rounding(text, kind, value):
 def test_a_number_that_its_unit_makes_too_large_is_refused(text):
     with pytest.raises(PydanticCustomError, match="is not finite"):
         to_si(text, FORCE)
+
+
+@pytest.mark.parametrize("text", ["um/s", "µm/s", "μm/s", "micrometer/s"])
+def test_micro_is_the_sign_whichever_pint_writes(text):
+    assert short(text) == "\N{MICRO SIGN}m/s"
