@@ -395,6 +395,15 @@ def times(ratio: float, digits: int = 2) -> str:
     return f"{in_words(ratio, '1', digits)} times"
 
 
+def first_decimal(value: float) -> int:
+    """Return at which decimal a value has its first digit, as it is rounded to one.
+
+    >>> first_decimal(0.0021), first_decimal(0.0098), first_decimal(30.0)
+    (3, 2, -1)
+    """
+    return -floor(log10(float(f"{value:.1g}")))
+
+
 def with_error(value: float, error: float, unit: str) -> str:
     """Return a value and its standard error in one unit, to the first digit of the error.
 
@@ -409,6 +418,6 @@ def with_error(value: float, error: float, unit: str) -> str:
         return in_words(value, unit)
     size, name = suited_unit(max(abs(value), error), unit)
     shown = float(f"{error / size:.1g}")
-    digit = -floor(log10(shown))
+    digit = first_decimal(shown)
     rounded, decimals = round(value / size, digit) + 0.0, max(0, digit)  # no -0
     return f"{rounded:.{decimals}f} ± {shown:.{decimals}f} {name}".rstrip()

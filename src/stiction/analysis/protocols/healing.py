@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
-from math import floor, inf, isnan, log10, nan
+from math import inf, isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.lists import in_list, number_text, say_left_out
 from stiction.text.sections import Section, SectionReport, Table
-from stiction.text.units import in_words, with_error
+from stiction.text.units import first_decimal, in_words, with_error
 from stiction.trajectory import Trajectory
 
 DECIMALS = 4  # of a coefficient, at most
@@ -124,7 +124,7 @@ def decimals(error: float) -> int:
     """
     if not 0.0 < error < inf:
         return DECIMALS
-    return min(max(-floor(log10(float(f"{error:.1g}"))), 0), DECIMALS)
+    return min(max(first_decimal(error), 0), DECIMALS)
 
 
 def healing(source: Trajectory | Record, program: DriveProgram | None = None) -> Healing:

@@ -271,8 +271,7 @@ def doubts(
     `scores` (n, p) and `features` (n, f) are those of all simulations; what is learned is kept
     beside `path`.
     """
-    given = {"force": wanted.noise, "force_across": wanted.noise, "position": wanted.position_noise}
-    if any(given[name] is not None for name in seen.conditions.noise):
+    if any(wanted.noises[name] is not None for name in seen.conditions.noise):
         return NOT_COMPARED + OTHER_NOISE
     width = features.shape[1] // len(trial.conditions)
     columns = features_from(tuple(seen.conditions.noise), trial.conditions[0], trial.slider)
@@ -310,8 +309,8 @@ def assumptions(
     if wanted.position_noise is None and "position" not in recorded:
         level = in_words(noise["position"].error, "m", 2)
         found.append(f"Assumed: a noise of {level}{means} in the displacement.")
-    for name, given in (("force", wanted.noise), ("position", wanted.position_noise)):
-        if given is not None and name in recorded and noise[name].lasting:
+    for name in ("force", "position"):
+        if wanted.noises[name] is not None and name in recorded and noise[name].lasting:
             level = in_words(noise[name].lasting, "N" if name == "force" else "m", 2)
             lasts = in_words(noise[name].lasts, "s", 2)
             found.append(

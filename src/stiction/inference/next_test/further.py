@@ -49,6 +49,12 @@ class Wanted(Described):
     position_noise: PositiveLength | None = None
     simulations: Annotated[Whole, Field(ge=LEAST)] = SIMULATIONS
 
+    @property
+    def noises(self) -> dict[str, float | None]:
+        """The given noise of a sample of each channel."""
+        forces = dict.fromkeys(("force", "force_across"), self.noise)
+        return {**forces, "position": self.position_noise}
+
 
 class Further(NamedTuple):
     """The present test, and what is added to it.
@@ -83,8 +89,7 @@ def with_noise(
     That given is of a sample, of which the conditions are those of means of `averaged`.
     """
     known, root = conditions.noise, averaged**0.5
-    given = {"force": wanted.noise, "force_across": wanted.noise, "position": wanted.position_noise}
-    level = {name: None if noise is None else noise / root for name, noise in given.items()}
+    level = {n: None if noise is None else noise / root for n, noise in wanted.noises.items()}
     own = known["force"].error if "force" in known else NOISE * slider.F_0
     force = level["force"] or own
     usual = {
