@@ -39,13 +39,15 @@ BINS = (0.0, 0.5, 0.7, 0.9, 0.97, 1.01)  # of confidence
 CHANGES = 0.6  # of a filter's width times the number of periods: heights change in the record
 
 
-def sawtooth(random: np.random.Generator, count: int, period: float) -> tuple[Floats, Floats]:
-    """Return corners of a sawtooth whose periods and drops differ by 5 % each way."""
-    lengths = period * random.uniform(0.95, 1.05, count)
+def sawtooth(
+    random: np.random.Generator, count: int, period: float, differ: float = 0.05
+) -> tuple[Floats, Floats]:
+    """Return corners of a sawtooth whose periods and drops differ by a share each way."""
+    lengths = period * random.uniform(1.0 - differ, 1.0 + differ, count)
     ends = np.cumsum(lengths)
     time = np.stack([ends - 0.06 * lengths, ends], axis=1).ravel()
-    force = np.stack([np.ones(count), 1.0 - random.uniform(0.95, 1.05, count)], axis=1).ravel()
-    return time, force
+    trough = 1.0 - random.uniform(1.0 - differ, 1.0 + differ, count)
+    return time, np.stack([np.ones(count), trough], axis=1).ravel()
 
 
 def between(corners: tuple[Floats, Floats], rate: float) -> tuple[Floats, Floats, int]:
@@ -284,13 +286,24 @@ def on_a_wave(random: np.random.Generator) -> Labelled:
     return st.Record(time=time, force=force), count, (STICK_SLIP,)
 
 
-def in_noise(random: np.random.Generator) -> Labelled:
-    """Return stick-slip under noise whose standard deviation is 0.3 to 1 times its drops."""
+def in_noise(random: np.random.Generator, least: float = -0.5, differ: float = 0.05) -> Labelled:
+    """Return stick-slip under noise whose standard deviation is 0.3 to 1 times its drops.
+
+    `least` is the logarithm of the lower of these two.
+    """
     period = 10 ** random.uniform(-1, 0.3)
     count, per_cycle = int(random.integers(20, 60)), 10 ** random.uniform(1.7, 3)
-    time, force, _ = between(sawtooth(random, count, period), per_cycle / period)
-    force += 2.0 + 10 ** random.uniform(-0.5, 0) * random.normal(size=len(time))
+    time, force, _ = between(sawtooth(random, count, period, differ), per_cycle / period)
+    force += 2.0 + 10 ** random.uniform(least, 0) * random.normal(size=len(time))
     return st.Record(time=time, force=force), None, (STICK_SLIP, TRANSITIONAL, HARMONIC)
+
+
+def irregular_in_noise(random: np.random.Generator) -> Labelled:
+    """Return stick-slip of drops and periods that differ by up to 50 % each way, under noise.
+
+    Its standard deviation is 0.1 to 1 times the drops.
+    """
+    return in_noise(random, -1.0, random.uniform(0.1, 0.5))
 
 
 def brief_sliding(random: np.random.Generator) -> Labelled:
@@ -306,7 +319,7 @@ def brief_sliding(random: np.random.Generator) -> Labelled:
 LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
     sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
-    hum_over_loading, random_times, on_a_wave, in_noise,
+    hum_over_loading, random_times, on_a_wave, in_noise, irregular_in_noise,
 )  # fmt: skip
 
 

@@ -61,16 +61,19 @@ class Line(NamedTuple):
         (n,) its contribution to the force, N.
     bands : tuple of Band
         In which it and its harmonics lie, with what they take of the motion.
+    clearness : float
+        How far it stands out, in units of what noise does not reach.
     """
 
     frequency: float
     height: float
     values: Floats
     bands: tuple[Band, ...] = ()
+    clearness: float = 1.0
 
 
-def narrow_lines(grid: EvenGrid | None, force: Floats) -> list[Line]:
-    """Return up to four lines that are narrow and alone, the clearest first.
+def narrow_lines(grid: EvenGrid | None, force: Floats, least: float = 1.0) -> list[Line]:
+    """Return up to four lines that are narrow and alone, first those most alone.
 
     Parameters
     ----------
@@ -78,14 +81,20 @@ def narrow_lines(grid: EvenGrid | None, force: Floats) -> list[Line]:
         That of the record's times.
     force : ndarray
         (n,), N.
+    least : float, optional
+        Their clearness, at least.
     """
     seen = _spectrum_on_grid(grid, force)
     if grid is None or seen is None:
         return []
     power, width = seen
     floor = beside(power)
-    found = _peaks(power, floor, ALONE)
-    return [_measure_line(force, grid, power, floor, width, at) for at in found]
+    return [
+        _measure_line(force, grid, power, floor, width, at)._replace(
+            clearness=min(float(power[at] / max(ABOVE * floor[at], TINY)), alone / ALONE)
+        )
+        for at, alone in _peaks(power, floor, least * ABOVE, least * ALONE).items()
+    ]
 
 
 def line_near(grid: EvenGrid, force: Floats, frequency: float) -> Line | None:
@@ -142,7 +151,7 @@ def peak_frequencies(grid: EvenGrid | None, force: Floats) -> list[float]:
     if grid is None or seen is None:
         return []
     power, width = seen
-    found = _peaks(power, beside(power), 1.0)
+    found = _peaks(power, beside(power), ABOVE, 1.0)
     return [_middle(power, at) * width / grid.step for at in found]
 
 
@@ -251,22 +260,22 @@ def beside(power: Floats) -> Floats:
     return np.repeat(around, size)
 
 
-def _peaks(power: Floats, floor: Floats, above: float) -> list[int]:
-    """Return samples that stand out of the floor, the clearest first.
+def _peaks(power: Floats, floor: Floats, above: float, alone: float) -> dict[int, float]:
+    """Return by how much some samples exceed all others within half an octave, the largest first.
 
-    Each is larger by the factor `above` than all within half an octave.
+    By the factor `alone` at least; and the floor by the factor `above`.
     """
-    candidate = power > ABOVE * np.maximum(floor, LEAST * power.max())
+    candidate = power > above * np.maximum(floor, LEAST * power.max())
     candidate[:PERIODS] = candidate[-LOBE - 1 :] = False
     candidate[1:-1] &= (power[1:-1] >= power[2:]) & (power[1:-1] >= power[:-2])
     found = np.flatnonzero(candidate)
-    alone = {}
+    exceeds = {}
     for at in found[np.argsort(-power[found])[:TRIED]].tolist():
         low, high, own = int(at / 1.5), int(at * 1.5) + 1, _lobe(at)
         others = max(power[low : own.start].max(), power[own.stop : high].max(initial=0.0))
-        if power[at] > above * others:
-            alone[at] = power[at] / max(others, TINY)
-    return sorted(alone, key=lambda at: -alone[at])[:MOST_LINES]
+        if power[at] > alone * others:
+            exceeds[at] = float(power[at] / max(others, TINY))
+    return dict(sorted(exceeds.items(), key=lambda each: -each[1])[:MOST_LINES])
 
 
 def _lobe(at: int) -> slice:

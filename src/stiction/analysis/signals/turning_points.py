@@ -100,7 +100,7 @@ def widest_gap(heights: ArrayLike, step: float, most: float) -> Gap:
     first = few[0]  # from there on all are few enough
     low, high = first + pairs_of(len(edges) - first)
     share = ((edges[low] + OVERSHOOT * step) / (edges[high] + OVERSHOOT * step)) ** 2
-    worth = _surprise(above_high[high], above_low[low], share)
+    worth = surprise(above_high[high], above_low[low], share)
     worth[worth < EACH * above_high[high]] = 0.0
     best = int(np.argmax(worth))
     return Gap(float(edges[low[best]]), float(edges[high[best]]), float(worth[best]))
@@ -112,7 +112,7 @@ def pairs_of(count: int) -> Indices:
     return np.array(np.triu_indices(count, 1))
 
 
-def _surprise(found: ArrayLike, among: ArrayLike, chance: ArrayLike) -> Floats:
+def surprise(found: ArrayLike, among: ArrayLike, chance: ArrayLike) -> Floats:
     """Return a lower bound of -log P(at least `found` of `among`), each with a `chance`.
 
     Chernoff's bound of the binomial distribution: among times the Kullback-Leibler divergence.

@@ -94,11 +94,11 @@ def test_what_stands_out(values, wanted):
 @pytest.mark.parametrize(("found", "among", "chance"), [(7, 10, 0.3), (3, 40, 0.01), (40, 50, 0.5)])
 def test_a_chance_is_bounded(found, among, chance):
     """Chernoff: the bound has the right exponent; of what is no surprise it tells nothing."""
-    worth = float(turning_points._surprise(found, among, chance))
+    worth = float(turning_points.surprise(found, among, chance))
     exact = -binom.logsf(found - 1, among, chance)
     assert worth <= exact <= worth + np.log(among + 1)
-    assert turning_points._surprise(2, 10, 0.3) == 0.0
-    assert turning_points._surprise(0, 0, 0.3) == 0.0
+    assert turning_points.surprise(2, 10, 0.3) == 0.0
+    assert turning_points.surprise(0, 0, 0.3) == 0.0
 
 
 @pytest.mark.parametrize(("small", "large"), [(1.0, 20.0), (3.0, 10.0)])

@@ -28,7 +28,7 @@ HANN = 0.375  # mean square of the window under which the spectrum is taken
 # through filters of any order, 1 of 200 records comes beyond both, and 1 of 6000 beyond 1.6 times
 # both; of vibrations beside a random walk that goes as far in a period 1 of 40 stays below.
 OVER_SLOWER, OVER_FASTER = 5.0, 1.25
-STEEP = 7.0  # power of the height with which the odds of a vibration grow
+STEEP = 7.0  # power of the height with which the odds grow that it is more than noise
 # A vibration fades if its root mean square falls from each eighth of the record to the next, in
 # so many of all pairs of them, to a third or less. What is below a fifth counts as nothing. Of
 # vibrations of irregular size 3 in 1000 do so.
@@ -55,8 +55,13 @@ class Hump(NamedTuple):
     @property
     def likelihood(self) -> float:
         """Likelihood of a vibration rather than noise, 0 to 1; one half at a height of 1."""
-        odds: float = min(self.height, 1e9) ** STEEP
-        return odds / (1.0 + odds)
+        return likelihood(self.height)
+
+
+def likelihood(height: float) -> float:
+    """Return the likelihood, 0 to 1, of what stands out of noise; one half at a height of 1."""
+    odds: float = min(height, 1e9) ** STEEP
+    return odds / (1.0 + odds)
 
 
 NO_HUMP = Hump(np.nan, 0.0, 0.0)

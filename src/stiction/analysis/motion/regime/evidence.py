@@ -127,6 +127,11 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "fades_to": ("at the end {} or less of that is left", percent),
     "hidden": ("it swings at {}, by its spectrum", _frequency),
     "hidden_height": ("by {} from crest to trough, in noise that hides their shape", _force),
+    "quick_falls": (
+        "it falls quickly {} times, and hardly ever rises so quickly, as where a mass slips",
+        _whole,
+    ),
+    "quick_fall": ("by {} in the median", _force),
     "few_periods": (
         "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
         _frequency,

@@ -6,6 +6,7 @@ from math import inf
 
 import numpy as np
 
+from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
 from stiction.analysis.motion.changes.sliding import sliding
 from stiction.analysis.motion.course import (
     BEGINS_UNLOADED,
@@ -22,6 +23,7 @@ from stiction.analysis.motion.regime.band import (
     SUSPECTED,
     Hump,
     highest_hump,
+    likelihood,
     remaining,
 )
 from stiction.analysis.motion.regime.evidence import Regime
@@ -54,6 +56,12 @@ SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the dr
 # Of the scatter about the course: swings that stand out in the spectrum may be stick-slip if they
 # are as high, which is 3 % of the variance
 HIDDEN = 0.5
+# The clearness of a line at which stick-slip is as likely as noise, of which 1 in 200 records has
+# more than 0.48, and one of 1800 more than 0.61. It is sought from there on
+EVEN_LINE, FAINT_LINE = 0.6, 0.3
+# A median fall over the standard deviation of the force: 3.5 for a sawtooth, 1.8 and more for falls
+# that differ by half; 1.0 to 1.5 for slips in measured steady sliding, which are not all its motion
+MAKES_UP = 1.6
 # Of the power of a hump: a line of so much is one vibration, in noise. In fewer periods an
 # irregular vibration has such a line, too
 MOST, MANY_PERIODS = 0.5, 100.0
@@ -62,6 +70,13 @@ RIPPLE = 1e-3  # of the force's span: a vibration that is less is not a motion o
 
 def by_course(record: Record, found: Swings) -> Regime:
     """Return the kind of motion without cycles: settling, steady, stuck or vibrating."""
+    seen = _without_slips(record, found)
+    slides = seen.kind in (SETTLING, STEADY, UNDETERMINED) and record.slip_speed is None
+    return _unless_it_slips(record, seen) if slides else seen
+
+
+def _without_slips(record: Record, found: Swings) -> Regime:
+    """Return the kind of motion, were there no slips that noise hides."""
     way = course(record.time, record.force)
     drive = record.loading_rate
     evidence = {"change": way.change, "span": way.span, "scatter": way.scatter}
@@ -186,24 +201,40 @@ def _unless_hidden(record: Record, begin: int, least: float, seen: Regime) -> Re
 
     Nothing is determined if they are so high that they may be what the mass does.
     """
-    line = None if record.slip_speed is not None else _hidden_line(record, begin, least)
+    line = None if record.slip_speed is not None else _hidden_line(record, begin, least, FAINT_LINE)
     if line is None:
         return seen
-    scatter = course(record.time[begin:], record.force[begin:]).scatter
-    evidence = seen.evidence | _as_evidence(line)
-    if line.height > HIDDEN * scatter:
+    height = line.height / course(record.time[begin:], record.force[begin:]).scatter
+    chance = likelihood(line.clearness / EVEN_LINE) * (1.0 if height > HIDDEN else height)
+    evidence = seen.evidence | (_as_evidence(line) if line.clearness > EVEN_LINE else {})
+    if chance > 0.5:
         return Regime(UNDETERMINED, 0.0, evidence)
-    sure = seen.confidence * (1.0 - line.height / scatter)
-    return Regime(seen.kind, sure, evidence, seen.runner_up)
+    return Regime(seen.kind, seen.confidence * (1.0 - chance), evidence, seen.runner_up)
 
 
-def _hidden_line(record: Record, begin: int, least: float) -> Line | None:
+def _unless_it_slips(record: Record, seen: Regime) -> Regime:
+    """Return a kind of motion, less sure if the force falls quickly, and does not rise so.
+
+    If such falls are most of what it does, it is that of a mass that slips, and noise hides its
+    cycles.
+    """
+    falls = quick_falls(record.force)
+    chance = likelihood(falls.clearness / EVEN)
+    if chance <= 0.5:
+        return seen._replace(confidence=seen.confidence * (1.0 - chance))
+    evidence = seen.evidence | {"quick_falls": falls.number, "quick_fall": falls.height}
+    if falls.times > MAKES_UP:
+        return Regime(UNDETERMINED, 0.0, evidence, STICK_SLIP)
+    return seen._replace(evidence=evidence)
+
+
+def _hidden_line(record: Record, begin: int, least: float, clearness: float = 1.0) -> Line | None:
     """Return the clearest lasting line in a force from a sample on, other than the mains'.
 
     Its root mean square is `least` (N) or more.
     """
     time, force = record.time[begin:], record.force[begin:]
-    for line in narrow_lines(even_grid(time), force):
+    for line in narrow_lines(even_grid(time), force, clearness):
         lasts = not of_mains(line.frequency) and line.height > 8.0**0.5 * least
         if lasts and remaining(time, line.values, line.frequency) == 1.0:
             return line

@@ -16,6 +16,7 @@ from benchmarks.explore.records import (
     filter_noise,
     hum_over_loading,
     in_noise,
+    irregular_in_noise,
     judge,
     long,
     mains,
@@ -700,6 +701,27 @@ def test_stick_slip_under_noise_as_high_as_its_drops_is_no_steady_sliding(number
     found = st.analysis.classify(record)
     assert found.kind == "undetermined"
     assert "in noise that hides their shape" in str(found)
+
+
+@pytest.mark.parametrize("number", [249, 269, 294, 304, 478])
+def test_a_line_that_hardly_stands_out_of_noise_leaves_no_sliding_for_sure(number: int) -> None:
+    record, _, _ = in_noise(np.random.default_rng([5, number]))
+    assert st.analysis.classify(record).kind == "undetermined"
+
+
+def test_irregular_stick_slip_in_noise_is_hardly_ever_steady_sliding() -> None:
+    found = [judge(irregular_in_noise, 5, number) for number in range(40)]
+    assert sum(each.wrong for each in found) <= 1
+    slips, _, _ = irregular_in_noise(np.random.default_rng([5, 5]))
+    regime = st.analysis.classify(slips)
+    assert regime.surely == "undetermined, perhaps stick-slip"
+    assert "hardly ever rises so quickly" in str(regime)
+
+
+def test_small_slips_of_a_mass_that_slides_are_named() -> None:
+    regime = st.analysis.classify(read_measured("k2254_v42"))
+    assert regime.kind == "steady sliding"
+    assert regime.evidence["quick_falls"] > 100
 
 
 def test_faint_swings_in_steady_sliding_are_named() -> None:
