@@ -272,11 +272,12 @@ def loading(random: np.random.Generator) -> Labelled:
     return st.Record(time=time, force=force), 0, (STUCK,)
 
 
-def on_a_wave(random: np.random.Generator) -> Labelled:
+def on_a_wave(random: np.random.Generator, differ: float = 0.05) -> Labelled:
     """Return stick-slip on a slower wave, up to 30 times as high as its drops; half with hum."""
     drop, period = 10 ** random.uniform(-1.5, 0), 10 ** random.uniform(-1, 0.3)
     rate = max(10 ** random.uniform(1.6, 2.7) / period, 300.0)
-    time, force, count = between(sawtooth(random, int(random.integers(30, 200)), period), rate)
+    corners = sawtooth(random, int(random.integers(30, 200)), period, differ)
+    time, force, count = between(corners, rate)
     turns = time / (period * random.uniform(3, 30)) + random.uniform()
     wave = np.sin(2 * pi * turns) + random.uniform(0, 0.5) * np.sin(4 * pi * turns + 1.0)
     force = drop * force + 0.5 * wave + 2.0
@@ -284,6 +285,12 @@ def on_a_wave(random: np.random.Generator) -> Labelled:
     if random.integers(2):
         force += 10 ** random.uniform(-2, -0.5) * drop * mains(random, time)
     return st.Record(time=time, force=force), count, (STICK_SLIP,)
+
+
+def irregular_on_a_wave(random: np.random.Generator) -> Labelled:
+    """Return stick-slip on a wave, of drops and periods that differ by up to 50 % each way."""
+    record, _, kinds = on_a_wave(random, random.uniform(0.1, 0.5))
+    return record, None, kinds
 
 
 def in_noise(random: np.random.Generator, least: float = -0.5, differ: float = 0.05) -> Labelled:
@@ -319,7 +326,8 @@ def brief_sliding(random: np.random.Generator) -> Labelled:
 LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
     sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
-    hum_over_loading, random_times, on_a_wave, in_noise, irregular_in_noise,
+    hum_over_loading, random_times, on_a_wave, irregular_on_a_wave, in_noise,
+    irregular_in_noise,
 )  # fmt: skip
 
 

@@ -8,11 +8,13 @@ import numpy as np
 
 from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.changes.few_slips import FEW, few_slips
+from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
 from stiction.analysis.motion.course import dies_out, is_over
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
+    have_period,
     is_beside,
     is_carried,
     is_larger,
@@ -240,16 +242,28 @@ def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings, read: Float
     """
     if record.slip_speed is not None:
         return None
-    for frequency in peak_frequencies(grid, record.force):
+    regular = peak_frequencies(grid, record.force)
+    for frequency in [*regular, *_frequency_of_falls(record, found)]:
         wave = slow_wave(grid, record.force, frequency)
         if not may_be_carried(frequency, record.duration, record.force - wave, found.table):
             continue
         carried = own_swings(record, wave)
         its = carried.table
-        if is_carried(frequency, record.duration, found.table, its) and not is_rounding(its, read):
+        carries = is_carried(frequency, record.duration, found.table, its)
+        if carries and frequency in regular:
+            carries = have_period(its, 1.0 / frequency)
+        if carries and not is_rounding(its, read):
             low, high = np.percentile(wave, (1.0, 99.0))
             return carried._replace(wave=float(high - low), lines=found.lines)
     return None
+
+
+def _frequency_of_falls(record: Record, found: Swings) -> list[float]:
+    """Return the mean frequency (Hz) of quick falls beside swings that do not stick, if any."""
+    if is_stick_slip(found.table):
+        return []
+    falls = quick_falls(record.force)
+    return [falls.number / record.duration] if falls.clearness > EVEN else []
 
 
 def _without_line(

@@ -28,7 +28,7 @@ SLOWER, HIGHER = 2.0, 0.75
 # slips twice as long as a line's period, but irregular by 5 %, come to 0.95
 WHOLE = 0.98
 # Cycles on a slow wave: by so much, and by so many, more than without regard to it; share of them
-# that the line's period gives; how far their periods lie from it; and how much larger the wave's
+# that the line's period gives; how far regular ones lie from it; and how much larger the wave's
 # own swings are at most if these stick, too
 MORE, AND_MORE, NEARLY_ALL, NEAR, NO_LARGER = 1.01, 1, 0.8, 0.2, 1.5
 MEANS = 24  # of each period, in which such cycles are first sought
@@ -140,7 +140,7 @@ def may_be_carried(frequency: float, duration: float, left: Floats, seen: CycleT
 def is_carried(frequency: float, duration: float, seen: CycleTable, left: CycleTable) -> bool:
     """Return whether the swings that are left without a slow wave are stick-slip which it carries.
 
-    They have the period that is sought, nearly all of them, and stick; and they are more than the
+    They are nearly as many as the periods that are sought, and stick; and they are more than the
     swings `seen` beside the wave, which are no larger stick-slip themselves. If these stick, only
     cycles among them count: before, while the spring is first loaded, the bends of a wave look like
     some.
@@ -153,9 +153,13 @@ def is_carried(frequency: float, duration: float, seen: CycleTable, left: CycleT
         among = among[(among > seen["start"][0]) & (among < seen["trough_time"][-1])]
     if len(among) <= MORE * len(seen) + AND_MORE:
         return False
-    alike = np.abs(left["period"] * frequency - 1.0) < NEAR
     larger = seen.median("drop") > NO_LARGER * left.median("drop")
-    return bool(np.mean(alike) > NEARLY_ALL) and not (is_stick_slip(seen) and larger)
+    return not (is_stick_slip(seen) and larger)
+
+
+def have_period(table: CycleTable, period: float) -> bool:
+    """Return whether nearly all cycles have about that period, s."""
+    return bool(np.mean(np.abs(table["period"] / period - 1.0) < NEAR) > NEARLY_ALL)
 
 
 def is_stick_slip(table: CycleTable) -> bool:

@@ -6,7 +6,13 @@ from math import pi
 
 import numpy as np
 import pytest
-from benchmarks.explore.records import hum_over_loading, on_a_wave, sawtooth
+from benchmarks.explore.records import (
+    hum_over_loading,
+    irregular_on_a_wave,
+    judge,
+    on_a_wave,
+    sawtooth,
+)
 from numpy.typing import NDArray
 from tests.measured import bare, read_measured
 
@@ -663,6 +669,11 @@ def test_stick_slip_that_a_larger_wave_carries_has_all_its_cycles(number: int) -
     with_hum = np.interp(found.cycles["peak_time"], record.time, record.force)
     drop = float(found.cycles["drop"].median())
     assert found.cycles["peak"].values == pytest.approx(with_hum, abs=0.5 * drop)
+
+
+def test_irregular_stick_slip_that_a_wave_carries_is_no_vibration() -> None:
+    found = [judge(irregular_on_a_wave, 3, number) for number in range(20)]
+    assert sum(each.right for each in found) >= 18
 
 
 @pytest.mark.parametrize("steps", [28.7, 40.0, 100.0])
