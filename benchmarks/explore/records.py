@@ -313,6 +313,14 @@ def irregular_in_noise(random: np.random.Generator) -> Labelled:
     return in_noise(random, -1.0, random.uniform(0.1, 0.5))
 
 
+def irregular_few_samples(random: np.random.Generator) -> Labelled:
+    """Return irregular stick-slip of 5 to 40 samples a cycle, in noise up to 0.3 of its drops."""
+    count, per_cycle = int(random.integers(12, 80)), 10 ** random.uniform(0.7, 1.6)
+    time, force, _ = between(sawtooth(random, count, 1.0, random.uniform(0.1, 0.5)), per_cycle)
+    force += 2.0 + 10 ** random.uniform(-2.5, -0.5) * random.normal(size=len(time))
+    return st.Record(time=time, force=force), None, (STICK_SLIP, TRANSITIONAL)
+
+
 def brief_sliding(random: np.random.Generator) -> Labelled:
     """Return 64 to 500 samples of steady sliding under white or filtered noise."""
     size = int(10 ** random.uniform(1.8, 2.7))
@@ -327,7 +335,7 @@ LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
     sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
     hum_over_loading, random_times, on_a_wave, irregular_on_a_wave, in_noise,
-    irregular_in_noise,
+    irregular_in_noise, irregular_few_samples,
 )  # fmt: skip
 
 

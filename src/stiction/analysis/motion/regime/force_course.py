@@ -71,8 +71,8 @@ RIPPLE = 1e-3  # of the force's span: a vibration that is less is not a motion o
 def by_course(record: Record, found: Swings) -> Regime:
     """Return the kind of motion without cycles: settling, steady, stuck or vibrating."""
     seen = _without_slips(record, found)
-    slides = seen.kind in (SETTLING, STEADY, UNDETERMINED) and record.slip_speed is None
-    return _unless_it_slips(record, seen) if slides else seen
+    may_slip = seen.kind in (IRREGULAR, SETTLING, STEADY, UNDETERMINED)
+    return _unless_it_slips(record, seen) if may_slip and record.slip_speed is None else seen
 
 
 def _without_slips(record: Record, found: Swings) -> Regime:

@@ -16,6 +16,7 @@ from benchmarks.explore.records import (
     filter_noise,
     hum_over_loading,
     in_noise,
+    irregular_few_samples,
     irregular_in_noise,
     judge,
     long,
@@ -709,9 +710,15 @@ def test_a_line_that_hardly_stands_out_of_noise_leaves_no_sliding_for_sure(numbe
     assert st.analysis.classify(record).kind == "undetermined"
 
 
-def test_irregular_stick_slip_in_noise_is_hardly_ever_steady_sliding() -> None:
-    found = [judge(irregular_in_noise, 5, number) for number in range(40)]
+@pytest.mark.parametrize("make", [irregular_in_noise, irregular_few_samples])
+def test_irregular_stick_slip_in_noise_is_hardly_ever_another_motion(
+    make: Callable[[np.random.Generator], Labelled],
+) -> None:
+    found = [judge(make, 5, number) for number in range(40)]
     assert sum(each.wrong for each in found) <= 1
+
+
+def test_quick_falls_that_noise_hides_are_named() -> None:
     slips, _, _ = irregular_in_noise(np.random.default_rng([5, 5]))
     regime = st.analysis.classify(slips)
     assert regime.surely == "undetermined, perhaps stick-slip"
