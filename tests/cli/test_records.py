@@ -138,7 +138,7 @@ def test_what_a_record_lacks_is_named_as_an_option_of_the_command(tmp_path, caps
     path = tmp_path / "ratio.csv"
     path.write_text("t [s],F/mg [-]\n" + "".join(f"{0.1 * k:.1f},{0.01 * k}\n" for k in range(30)))
     assert inside(command, path) == 2
-    assert "say --normal-load, e.g. '10 N'" in capsys.readouterr().err
+    assert "say for example --normal-load '10 N'" in capsys.readouterr().err
 
 
 def test_the_result_of_a_run_knows_its_units(tmp_path, slider, capsys):

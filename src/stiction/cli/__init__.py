@@ -25,6 +25,7 @@ from stiction.errors import (
     without_middle,
 )
 from stiction.names import entry
+from stiction.text.suggestion import as_option, suggest
 
 app = cyclopts.App(
     name="stiction",
@@ -101,7 +102,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     errors = Console(stderr=True, soft_wrap=True, emoji=False)
     words = join_negative_values(sys.argv[1:] if arguments is None else arguments)
     try:
-        code = app(words, result_action="return_value", print_error=False, exit_on_error=False)
+        with suggest(as_option):
+            code = app(words, result_action="return_value", print_error=False, exit_on_error=False)
         if sys.stdout is not None:
             sys.stdout.flush()
     except cyclopts.CycloptsError as error:

@@ -215,11 +215,11 @@ def library_or_cache(library: Path | None) -> Path:
 
 def record_in(path: Path, measured: RecordOptions | None, trust: bool) -> Record:
     """Read a measured record, or a run as if it was measured."""
-    from stiction.analysis.measurement.reading import source_of_file
+    from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.record import as_record
 
     said = (measured or RecordOptions()).arguments()
-    return as_record(source_of_file(path, trust=trust, **said))
+    return as_record(read_source(path, trust=trust, **said))
 
 
 def record_or_none(

@@ -37,6 +37,7 @@ from stiction.inference.simulated.library import (
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.system.slider import Slider
+from stiction.text.suggestion import begin_and_end
 
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
@@ -121,7 +122,7 @@ def check(rig: Rig) -> None:
 
 def program_faults(slider: Slider) -> Iterator[Fault]:
     """Yield where drive or load change in time."""
-    part = "and take the part of the record in which it is so (--begin, --end)"
+    part = f"and take the part of the record in which it is so ({begin_and_end()})"
     if not isinstance(slider.motion, ConstantVelocity):
         yield Fault(
             "drive", f'changes, and a fit takes a steady one: write velocity = "1 mm/s", {part}'

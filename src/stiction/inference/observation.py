@@ -35,6 +35,7 @@ from stiction.recording.noise import ROUNDING_SPREAD, lattice, resolved_noise
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
+from stiction.text.suggestion import begin_and_end
 from stiction.trajectory import Trajectory
 
 Source = Record | Trajectory | str | Path  # of a record: a run is taken as if measured
@@ -251,7 +252,7 @@ def grid_of(record: Record, name: str) -> EvenGrid:
         raise ResultError(
             f"{name} has samples too far apart, or too close together, for a fit, which takes an "
             f"uneven clock and gaps in {percent(MOST_MISSING)} of the time; fit a part without "
-            "gaps (--begin, --end)"
+            f"gaps ({begin_and_end()})"
         )
     return grid
 

@@ -23,14 +23,11 @@ from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.cycles import LEAST_CYCLES, Cycles
 from stiction.system.slider import Slider
+from stiction.text.suggestion import Suggestion, begin_and_end, by_strokes
 from stiction.text.units import in_words
 
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
-BY_STROKES = (
-    "fit the strokes by themselves: where a file has the drive's displacement, --stroke 1 "
-    "(stroke=1 of st.read_record) reads the first"
-)
 
 
 def refuse_far(record: Record, slider: Slider, name: str) -> None:
@@ -53,7 +50,8 @@ def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
         turns = "the force goes back and forth between both signs"
     if turns:
         raise ResultError(
-            f"in {name} {turns}, and a fit takes a steady drive and a constant load; {BY_STROKES}"
+            f"in {name} {turns}, and a fit takes a steady drive and a constant load; fit "
+            f"{by_strokes()}"
         )
     if regime.kind in NO_CYCLES:
         raise ResultError(
@@ -77,7 +75,8 @@ def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
     if force.mean() <= 0.0 and np.median(shares) < QUICKLY:
         raise ResultError(
             f"the force of {name} falls slowly and rises fast: it is recorded with the other sign, "
-            'in all likelihood; fit it with force=-force, or its file with --force="-1 N"'
+            "in all likelihood; fit it with force=-force, or its file with "
+            f"{Suggestion('force', '-1 N')}"
         )
 
 
@@ -121,5 +120,5 @@ def explain_unlike(changes: Sequence[Sequence[str]]) -> str:
         return ""
     return (
         f"Cycles differ within the record, which may explain it. {' '.join(said)} Fit a part "
-        "whose cycles are alike by itself (--begin, --end; begin= and end= of st.read_record)."
+        f"whose cycles are alike by itself ({begin_and_end()})."
     )

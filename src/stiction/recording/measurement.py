@@ -37,6 +37,7 @@ from stiction.recording.request import (
 )
 from stiction.recording.sensor import Sensor
 from stiction.text.quantity_text import percent
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
 T = TypeVar("T")
@@ -138,7 +139,7 @@ def block_of(path: str | Path, found: Sequence[T], number: int) -> T:
         raise ResultError(
             f"{path}: has {number_of(len(found), 'block')}; there is no block {echo(number)}. "
             "A block begins where the times of the file begin again; a stroke of a drive that goes "
-            "to and fro is read by --stroke 2"
+            f"to and fro is read by {Suggestion('stroke', 2)}"
         )
     return found[number - 1]
 
@@ -361,7 +362,8 @@ def _unwrap(
         return found, []
     return found, [
         f"the {CHANNELS[name].meaning} starts again {number_of(count, 'time')}, every "
-        f"{in_words(length, 'm')}, and was made continuous (--wrap none leaves it)"
+        f"{in_words(length, 'm')}, and was made continuous ({Suggestion('wrap', 'none')} "
+        "leaves it)"
     ]
 
 
@@ -409,7 +411,7 @@ def _weigh(
     if load is None and "normal_load" not in known:
         raise ResultError(
             f"{path}: column {force.column} is a friction coefficient, and the force is that times "
-            "the normal load; say --normal-load, e.g. '10 N'"
+            f"the normal load; say for example {Suggestion('normal_load', '10 N')}"
         )
     its = channels["force"].values * (load if load is not None else known["normal_load"])
     channels["force"] = MeasuredChannel(its, _with_noise(None, its, "force"))

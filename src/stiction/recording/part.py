@@ -10,6 +10,7 @@ from stiction.errors import ResultError
 from stiction.formats.table import number_of
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import FEWEST_SAMPLES, Measurement
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
 DIRECTED = ("force", "force_across", "position", "drive_position")  # channels with a sign
@@ -58,7 +59,7 @@ def part_between(
     if last - first < FEWEST_SAMPLES:
         count = number_of(max(last - first, 0), "sample")
         raise ResultError(
-            f"{path}: has {count} between --begin and --end; its times go from "
-            f"{in_words(float(time[0]), 's')} to {in_words(float(time[-1]), 's')}"
+            f"{path}: has {count} between {Suggestion('begin')} and {Suggestion('end')}; its times "
+            f"go from {in_words(float(time[0]), 's')} to {in_words(float(time[-1]), 's')}"
         )
     return part_of(found, slice(first, last), "a part")

@@ -12,6 +12,7 @@ from stiction.errors import ResultError, echo
 from stiction.formats.table import number_of
 from stiction.recording.measurement import Measurement
 from stiction.recording.part import part_of
+from stiction.text.suggestion import Suggestion
 
 ENDS = 0.25  # of the reach, about its middle: beyond it the drive is at one end or at the other
 AT_AN_END = 0.02  # of the reach: so near its end a drive turns, or dwells
@@ -76,7 +77,7 @@ def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
     if name is None:
         raise ResultError(
             f"{path}: which samples are stroke {echo(number)} follows from the displacement of the "
-            "drive; say --drive-position with its column and unit, such as 'stage=mm'"
+            f"drive; say its column and unit, such as {Suggestion('drive_position', 'stage=mm')}"
         )
     parts = strokes(found.channels[name])
     if not 1 <= number <= len(parts):

@@ -10,6 +10,7 @@ from stiction.errors import StictionError
 from stiction.friction.registry import LAWS
 from stiction.storage.files import whole
 from stiction.system.schema import schema as description_schema
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import hints_of, unit_of
 
 SCHEMA = "stiction.schema.json"
@@ -38,8 +39,8 @@ def write_description(
             return target
     if target.exists() and not force:
         raise StictionError(
-            f"{target} exists already; choose another name, or overwrite it with --force "
-            "(in Python: force=True)"
+            f"{target} exists already; choose another name, or overwrite it with "
+            f"{Suggestion('force', True, of='')}"
         )
     with whole(target) as part:
         part.write_text(BY_SCHEMA * schema + text, encoding="utf-8")

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.analysis.measurement.reading import remedies_in_python
 from stiction.analysis.record import Record, record_of
+from stiction.cli import main
 from stiction.errors import ResultError
 
 
@@ -176,23 +176,20 @@ def test_the_error_of_a_load_is_that_of_a_mean_over_as_many_samples_as_it_stays_
 
 
 @pytest.mark.parametrize(
-    ("option", "argument"),
+    ("read", "remedy"),
     [
-        ("say --force-across '3=mN'", "say force_across='3=mN'"),
-        ("(--drive-position 4)", "(drive_position=4)"),
-        ("a--load.csv: say --load", "a--load.csv: say load"),
-        ("stiction check a.nc --repair", "stiction check a.nc --repair"),
-        ("--time-zone", "--time-zone"),
+        (st.read_record, "say force='2=mN'"),
+        (st.read_records, "say force='2=mN'"),
+        (st.analyse, "say force='2=mN' of st.read_record"),
+        (lambda path: main(["analyse", str(path)]), "say --force '2=mN'"),
     ],
 )
-def test_an_option_of_a_remedy_becomes_the_argument_of_its_whole_name(option, argument):
-    with pytest.raises(ResultError) as error, remedies_in_python():
-        raise ResultError(option)
-    assert str(error.value) == argument
-
-
-@pytest.mark.parametrize("text", ["no such file", "say --force"])
-def test_whose_arguments_they_are_is_told_where_there_are_some(text):
-    with pytest.raises(ResultError) as error, remedies_in_python("; of st.read_record"):
-        raise ResultError(text)
-    assert str(error.value) == {"say --force": "say force; of st.read_record"}.get(text, text)
+def test_a_remedy_is_what_whoever_called_can_write(tmp_path, capsys, read, remedy):
+    path = tmp_path / "a--load.csv"
+    path.write_text("t [s],force\n0,1\n1,2\n2,1\n")
+    with pytest.raises((ResultError, SystemExit)) as error:
+        read(path)
+    told = capsys.readouterr().err or str(error.value)
+    assert told.rstrip().endswith(
+        f"{path}: column 2 'force' states no unit of the force along the drive; {remedy}"
+    )

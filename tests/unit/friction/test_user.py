@@ -140,7 +140,7 @@ def test_a_law_lies_in_the_folder_of_its_description(config, to):
     (folder / "linked").symlink_to(working)
     text = TABLE.replace("mylaw.py", to.format(working=working))
     (folder / "a.toml").write_text(text)
-    with pytest.raises(st.DescriptionError, match=r"lies outside the folder .* --trust"):
+    with pytest.raises(st.DescriptionError, match=r"lies outside .* allow it: trust=True$"):
         st.Description.from_toml(folder / "a.toml")
     assert not (working / "ran").exists()
     allowed = st.Description.from_toml(folder / "a.toml", trust=True)
@@ -842,6 +842,6 @@ def test_the_command_line(config, tmp_path, capsys):
     forget_laws()
     capsys.readouterr()
     assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png") == 2
-    assert "on the command line --trust" in capsys.readouterr().err
+    assert "run the stored text: --trust; the arrays" in capsys.readouterr().err
     assert not (tmp_path / "b.png").exists()
     assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png", "--trust") == 0

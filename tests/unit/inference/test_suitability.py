@@ -64,7 +64,7 @@ def test_a_force_that_reverses_is_refused_before_simulating(no_simulation, name)
     with pytest.raises(ResultError) as error:
         getattr(st, name)(loops, replace_phi(RIG))
     assert "the force goes back and forth between both signs" in str(error.value)
-    assert "--stroke 1 (stroke=1 of st.read_record) reads the first" in str(error.value)
+    assert "stroke=1 of st.read_record reads the first" in str(error.value)
 
 
 def replace_phi(rig):
@@ -86,8 +86,8 @@ def test_a_rig_whose_drive_or_load_changes_is_told_what_to_write():
     program = st.protocols.DriveProgram(program=[piece("5 mm/s", "1 s"), piece("1 mm/s", "1 s")])
     load = st.protocols.LoadProgram(program=[piece("2 N", "1 s"), piece("1 N", "1 s")])
     for change, words in (
-        ({"drive": program}, "drive: changes, .* write velocity = .*--begin, --end"),
-        ({"load": load}, "load: changes, .* take out this table, .*--begin, --end"),
+        ({"drive": program}, "drive: changes, .* write velocity = .*begin, end of st.read_record"),
+        ({"load": load}, "load: changes, .* take out this table, .*begin, end of st.read_record"),
     ):
         with pytest.raises(st.DescriptionError, match=words):
             st.fit("no record", RIG._replace(slider=RIG.slider.replace(**change)))
@@ -103,7 +103,7 @@ def test_what_differs_within_a_record_explains_that_it_is_unlike():
     assert "the cycles take" in faster
     said = explain_unlike([(), (long,)])
     assert "Record 2: The cycle from" in said
-    assert "--begin, --end" in said
+    assert "(begin, end of st.read_record)" in said
 
 
 def test_what_comes_after_the_cycles_that_are_used_explains_nothing():

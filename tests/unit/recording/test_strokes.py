@@ -83,7 +83,7 @@ def test_strokes_that_are_not_there_are_refused_with_a_remedy(path, tmp_path, ca
         st.read_record(path, stroke=0)
     alone = tmp_path / "force.csv"
     alone.write_text("time [s],Fx [N]\n" + "".join(f"{t},0.2\n" for t in range(9)))
-    with pytest.raises(st.ResultError, match="displacement of the drive; say drive_position"):
+    with pytest.raises(st.ResultError, match=r"of the drive; say .* as drive_position='stage=mm'"):
         st.read_record(alone, stroke=1)
     with pytest.raises(SystemExit) as ended:
         main(["analyse", str(path), "--block", "2"])
@@ -95,7 +95,7 @@ def test_strokes_that_are_not_there_are_refused_with_a_remedy(path, tmp_path, ca
 
 def test_an_analysis_of_a_record_to_and_fro_says_how_to_read_a_stroke(path):
     whole = str(st.analyse(st.read_record(path)))
-    assert "--stroke 1" in " ".join(whole.split())
+    assert "stroke=1 of st.read_record reads the first" in " ".join(whole.split())
     found = st.analyse(st.read_record(path, stroke=2))
     assert "back and forth" not in str(found)
 

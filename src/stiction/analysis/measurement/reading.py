@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
@@ -18,6 +16,7 @@ from stiction.recording.stored import read_stored, root_attributes
 from stiction.recording.strokes import stroke_of
 from stiction.result.file import FIT_KIND, RECORD_KIND, refuse_kinds
 from stiction.storage.kinds import use_of
+from stiction.text.suggestion import Suggestion, as_argument, as_argument_elsewhere, suggest
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
 
@@ -50,11 +49,7 @@ class ReadArguments(TypedDict, total=False):
     turned: Quantity | None
 
 
-WORDS = ("point", "comma", "clock", "intervals")  # values of options, which are not in quotes
-NAMES = "|".join(ReadArguments.__annotations__).replace("_", "-")
-OPTION = re.compile(rf"(?<![^\s(])--({NAMES})\b(?!-)(?: ('[^']*'|\d+|{'|'.join(WORDS)})(?!\w))?")
-
-
+@suggest(as_argument)
 def read_record(
     path: str | Path, *, sidecar: str | Path | None = None, **said: Unpack[ReadArguments]
 ) -> Record:
@@ -116,24 +111,17 @@ def read_record(
     >>> record.force.tolist(), record.sample_rate
     ([0.0015, 0.0025, 0.0005], 2.0)
     """
-    with remedies_in_python():
-        return record_of_file(path, sidecar=sidecar, **said)
-
-
-def record_of_file(
-    path: str | Path, *, sidecar: str | Path | None = None, **said: Unpack[ReadArguments]
-) -> Record:
-    """Do as `read_record`, whose remedies are here options of a command."""
     found = _measurements(path, sidecar, dict(said))
     if len(found) > 1:
         listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")
         raise ResultError(
-            f"{path}: holds {len(found)} blocks: {listed}. Say --block 1 for one of them; "
-            "st.read_records(path) reads all"
+            f"{path}: holds {len(found)} blocks: {listed}. Say {Suggestion('block', 1)} for one of "
+            "them; st.read_records(path) reads all"
         )
     return _record(path, found[0])
 
 
+@suggest(as_argument)
 def read_records(
     paths: str | Path | Iterable[str | Path],
     *,
@@ -164,17 +152,6 @@ def read_records(
     >>> [record.force.tolist() for record in st.read_records("strokes.csv")]
     [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
     """
-    with remedies_in_python():
-        return records_of_files(paths, sidecar=sidecar, **said)
-
-
-def records_of_files(
-    paths: str | Path | Iterable[str | Path],
-    *,
-    sidecar: str | Path | None = None,
-    **said: Unpack[ReadArguments],
-) -> tuple[Record, ...]:
-    """Do as `read_records`, whose remedies are here options of a command."""
     files = [Path(paths)] if isinstance(paths, str | Path) else [Path(each) for each in paths]
     if not files:
         raise ResultError("no file is given; name one or several")
@@ -188,14 +165,15 @@ def records_of_files(
     return tuple(found)
 
 
-def source_of_file(
+@suggest(as_argument_elsewhere)
+def read_source(
     path: str | Path,
     *,
     trust: bool = False,
     sidecar: str | Path | None = None,
     **said: Unpack[ReadArguments],
 ) -> Trajectory | Record:
-    """Return the run or the record of a file; remedies are options of a command.
+    """Return the run or the record of a file, for a function that takes either.
 
     Raises
     ------
@@ -203,40 +181,13 @@ def source_of_file(
         As of `stiction.load` or `read_record`; also if something is said about the file of a run.
     """
     if not is_run(Path(path)):
-        return record_of_file(path, sidecar=sidecar, **said)
-    given = [name.replace("_", "-") for name, value in said.items() if value is not None]
+        return read_record(path, sidecar=sidecar, **said)
+    given = [name for name, value in said.items() if value is not None]
     if given:
-        raise ResultError(f"{path}: is the result of a run, in SI already: leave out --{given[0]}")
+        raise ResultError(
+            f"{path}: is the result of a run, in SI already: leave out {Suggestion(given[0])}"
+        )
     return load(path, trust=trust)
-
-
-def read_source(path: str | Path, *, trust: bool = False) -> Trajectory | Record:
-    """Do as `source_of_file`, with remedies for a function of which `read_record` takes more."""
-    with remedies_in_python("\nthese are arguments of st.read_record"):
-        return source_of_file(path, trust=trust)
-
-
-@contextmanager
-def remedies_in_python(whose: str = "") -> Iterator[None]:
-    """Turn options of a command, which errors give as remedies, into arguments of a function."""
-    try:
-        yield
-    except ResultError as error:
-        text, count = OPTION.subn(as_argument, str(error))
-        error.args = (text + whose if count else text,)
-        raise
-
-
-def as_argument(option: re.Match[str]) -> str:
-    """Return an option as the argument of that name.
-
-    >>> OPTION.sub(as_argument, "say --force '2=mN', --block 1, --decimal comma or --normal-load")
-    "say force='2=mN', block=1, decimal='comma' or normal_load"
-    """
-    name, value = option[1].replace("-", "_"), option[2]
-    if value is None:
-        return name
-    return f"{name}={repr(value) if value in WORDS else value}"
 
 
 def is_run(path: Path) -> bool:
@@ -275,8 +226,9 @@ def _measurements(
     strange = [
         name for name in changed if name not in Record.model_fields or name in stored.channels
     ]
-    if strange or sidecar is not None:
-        what = ", ".join(f"--{name.replace('_', '-')}" for name in strange) or "sidecar"
+    strange += ["sidecar"] if sidecar is not None else []
+    if strange:
+        what = ", ".join(str(Suggestion(name)) for name in strange)
         raise ResultError(
             f"{path}: is a stored record, in SI already: leave out {what}, or read its source again"
         )

@@ -30,6 +30,7 @@ from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
+from stiction.text.suggestion import Suggestion, by_strokes
 from stiction.text.units import in_words, times, with_error
 from stiction.trajectory import Trajectory
 
@@ -39,24 +40,19 @@ if TYPE_CHECKING:
 
 ALIKE = 0.1  # standard deviation of the drops over their mean
 SLOW_SWING = 2.0  # times the mass's own period on its spring: a slower swing is not its own
-BY_STROKES = (
-    "Analyse the strokes by themselves: where a file has the drive's displacement, --stroke 1 "
-    "(stroke=1 of st.read_record) reads the first. Of a run, or with the position, "
-    "st.analysis.hysteresis gives the loops."
-)
 IMPOSED = {  # by the evidence
     "unchanging": "The force is the same in all samples, as no measured force is: the channel is "
     "dead, or at an end of its range.",
-    "forth": f"The force goes back and forth between both signs, as where the drive does so. "
-    f"{BY_STROKES}",
+    "forth": "The force goes back and forth between both signs, as where the drive does so.",
     "straight": "The force rises and falls evenly, as where a drive goes back and forth and the "
     "mass sticks, or the load changes so. No vibration has such a shape.",
     "levels": "The force stays at several levels, one after the other, as where the velocity of "
     "the drive, or the load, changes in steps while the mass slides. At a lower level it may "
     "rest, as where the drive has stopped.",
     "plateaus": "The force goes back and forth between two levels, as where the drive does so, or "
-    f"the load changes in steps. {BY_STROKES}",
+    "the load changes in steps.",
 }
+TO_AND_FRO = ("forth", "plateaus")  # of these
 
 
 def section(found: Analysis) -> Section:
@@ -103,7 +99,10 @@ def _describe_imposed_force(found: Analysis) -> str:
             f"The motion changes at {in_words(change, 's')}: one part is {kind}, the other "
             f"{found.regime.runner_up}. Analyse each by itself: means over both mean little."
         )
-    return next((sentence for name, sentence in IMPOSED.items() if name in evidence), "")
+    name = next((name for name in IMPOSED if name in evidence), "")
+    loops = "Of a run, or with the position, st.analysis.hysteresis gives the loops."
+    remedy = f" Analyse {by_strokes()}. {loops}" if name in TO_AND_FRO else ""
+    return f"{IMPOSED.get(name, '')}{remedy}"
 
 
 def _describe_cycles(found: Analysis) -> str:
@@ -175,13 +174,13 @@ def _describe_unclear_force(found: Analysis) -> str:
 
 
 def _with_other_sign(found: Analysis) -> str:
-    """Return the option that reads the force of the same column with the other sign."""
+    """Return how the force of the same column is read with the other sign."""
     origin = found.record.origin
     uses = [use for use in origin.uses if use.channel == "force"] if origin is not None else []
     if not uses:
-        return 'or a file with --force="-1 N"'
+        return f"or a file with {Suggestion('force', '-1 N')}"
     column = f"{uses[0].column}=" if uses[0].column else ""
-    return f'or the file with --force="{column}{with_other_sign(uses[0].unit)}"'
+    return f"or the file with {Suggestion('force', f'{column}{with_other_sign(uses[0].unit)}')}"
 
 
 def _describe_course(found: Analysis) -> str:

@@ -19,6 +19,7 @@ from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 from stiction.recording.guess.clock import ONE_MISSING
 from stiction.text.quantity_text import percent
+from stiction.text.suggestion import begin_and_end
 
 EVEN = 0.1  # of a step: how far a sample may lie off the grid to count as on it
 OWN = 0.4  # of a step: samples so close to their own times leave none out, which one lies 0.5 off
@@ -180,7 +181,7 @@ def why_not(grid: EvenGrid | None) -> str:
         return "a spectrum needs at least two samples"
     if grid.serves:
         return ""
-    remedy = "analyse a part without gaps (--begin, --end), or sample it evenly"
+    remedy = f"analyse a part without gaps ({begin_and_end()}), or sample it evenly"
     if grid.missing.mean() > MOST_MISSING:
         return (
             f"{percent(grid.missing.mean())} of the time lies in gaps between samples, and a "

@@ -44,7 +44,7 @@ def analyse(
         report.
     """
     from stiction.analysis.export import write as write_tables
-    from stiction.analysis.measurement.reading import source_of_file
+    from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.parts.cycles import each_cycle
     from stiction.analysis.parts.wording import rows_left_out
     from stiction.analysis.record import Record
@@ -56,7 +56,7 @@ def analyse(
     from stiction.storage.files import make_folder, usable_folder
     from stiction.text.sections import Section
 
-    source = source_of_file(result, trust=trust, **(measured or RecordOptions()).arguments())
+    source = read_source(result, trust=trust, **(measured or RecordOptions()).arguments())
     folder = result.with_name(f"{result.stem}-analysis") if output is None else output
     usable_folder(folder)
     with progress("analysing"):
@@ -123,7 +123,7 @@ def import_(
     json
         Write the guess as JSON, too. Example: --json guess.json.
     """
-    from stiction.analysis.measurement.reading import records_of_files
+    from stiction.analysis.measurement.reading import read_records
     from stiction.cli.tables import print_sections
     from stiction.storage.files import NETCDF, placeable, whole
 
@@ -132,7 +132,7 @@ def import_(
     if json is not None:
         placeable(json)
     said = (measured or RecordOptions()).arguments()
-    records = records_of_files([file, *files], **said)
+    records = read_records([file, *files], **said)
     targets: list[Path] = []
     if output is not None:
         several = len(records) > 1

@@ -12,6 +12,7 @@ from stiction.errors import DescriptionError, Fault, echo
 from stiction.storage.checksums import crc
 from stiction.storage.foreign import is_within
 from stiction.text.samples import FrozenColumn
+from stiction.text.suggestion import TRUST
 
 # from the name of a file in a description to its path, or a `DescriptionError`
 Locate = Callable[[str], Path]
@@ -80,8 +81,7 @@ def locator(folder: Path, trust: bool = False) -> Locate:
             raise DescriptionError.of(
                 "file",
                 f"{echo(file)} lies outside the folder of the description, {folder}: put the table "
-                "into it; or, if you trust who wrote this, allow it: trust=True, on the command "
-                "line --trust",
+                f"into it; or, if you trust who wrote this, allow it: {TRUST}",
             )
         if not path.is_file():
             message = f"no file {echo(file)} in {folder}; write its path from there"

@@ -13,6 +13,7 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.formats import TextLayout
+from stiction.text.suggestion import Suggestion
 
 SAMPLE = 400  # lines by which they are found
 SEPARATORS = {"\t": "a tab", ";": "a semicolon", ",": "a comma", "|": "a bar", " ": "spaces"}
@@ -199,7 +200,8 @@ def _settle(
         if (commas and headed != width[chosen]) or half:
             raise ResultError(
                 f"{path}: in {samples[:60]!r} commas separate {width[chosen]} columns, or are "
-                f"decimal signs; if they separate, say --decimal point; if not, {_remedy(commas)}"
+                f"decimal signs; if they separate, say {Suggestion('decimal', 'point')}; if not, "
+                f"{_remedy(commas)}"
             )
     if layout.decimal is None and not chosen.groups:
         _refuse_thousands(path, chosen, rows)
@@ -230,14 +232,14 @@ def _refuse_thousands(path: object, dialect: Dialect, rows: Sequence[Sequence[st
         if cells and not bare and all(GROUPED.fullmatch(cell) for cell in cells):
             raise ResultError(
                 f"{path}: in {echo(cells[0])} the {name} is a decimal sign, or groups thousands; "
-                f"say --decimal {name} or --decimal {other}"
+                f"say {Suggestion('decimal', name)} or {Suggestion('decimal', other)}"
             )
 
 
 def _remedy(commas: list[Dialect]) -> str:
     """Return what helps where commas are decimal signs."""
     if commas:
-        return "say --decimal comma"
+        return f"say {Suggestion('decimal', 'comma')}"
     return "write the file with semicolons between columns: here commas do both"
 
 

@@ -20,6 +20,7 @@ from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.user.source import Text, member, module_name, module_of, read, text_of
 from stiction.friction.user.validation import fault, is_law, law_in, try_law
 from stiction.storage.foreign import is_within
+from stiction.text.suggestion import TRUST
 from stiction.text.validation import make
 
 # from a law's name, and its text if stored, to the class
@@ -61,10 +62,8 @@ def finder_for_results(trust: bool = False) -> Find:
             return law_in(run(Text(_relative(file), text), f"<{file}>"), kind, name)
         raise fault(
             f"{echo(name)} is a user's law, and the code stored with it is not run without "
-            "permission: "
-            "import its module first; or, if you trust the source, run the stored text: "
-            "trust=True, on the command line --trust; the arrays can be read without it: "
-            "xarray.open_dataset"
+            "permission: import its module first; or, if you trust the source, run the stored "
+            f"text: {TRUST}; the arrays can be read without it: xarray.open_dataset"
         )
 
     return find
@@ -109,8 +108,7 @@ def _there(folder: Path, file: str, trust: bool) -> Path:
     if not trust and not is_within(folder, path):
         raise fault(
             f"{echo(file)} lies outside the folder of the description, {folder}: put the law "
-            "into it; "
-            "or, if you trust who wrote this, allow it: trust=True, on the command line --trust"
+            f"into it; or, if you trust who wrote this, allow it: {TRUST}"
         )
     if not os.path.isfile(path):
         raise fault(f"no file {echo(file)} in {folder}; write its path from there")

@@ -25,6 +25,7 @@ from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.names import draw
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Report, Section, Table
+from stiction.text.suggestion import Suggestion
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
 BY_HALF = 0.6  # by each half of the simulations: a claim is not a matter of their draw
@@ -170,7 +171,7 @@ class Odds(Report):
             found.append(
                 "Friction drifts: peaks or drops have a trend from cycle to cycle (p = "
                 f"{self.steady:.1g}), which is not simulated. Take cycles after running in "
-                f"(--begin). {STATE_DRIFT}"
+                f"({Suggestion('begin')}). {STATE_DRIFT}"
             )
         if self.rest is not None and not self.rest.known:
             found.append(

@@ -22,6 +22,7 @@ from stiction.inference.simulated.synthetic import draw
 from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
 from stiction.storage.files import prepare_folder
 from stiction.study.execution.cores import Cores
+from stiction.text.suggestion import Suggestion
 
 BLOCK = 32  # simulations that are stored together
 SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
@@ -150,7 +151,7 @@ def refuse_too_few(
         return
     enough = SAFE * fewest * simulated / max(usable, 1)
     number = ceil(enough / 100.0) * 100
-    more = f", or simulate {number} (-n {number}, in Python simulations={number})"
+    more = f", or simulate {number} ({Suggestion('simulations', number, of='')})"
     raise ResultError(
         f"only {usable} of {simulated} {what} have cycles of stick and slip{which}, {fewest} are "
         f"needed: check {check}{more if 10 * usable > fewest else ''}"

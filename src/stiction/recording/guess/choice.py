@@ -12,6 +12,7 @@ from stiction.errors import Faults, ResultError, echo
 from stiction.formats.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.formats.table import FileColumn, FileTable
 from stiction.formats.units import is_electric, is_ratio, size_of, split_unit
+from stiction.text.suggestion import Suggestion
 
 DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
 AN_AREA = "25 mm^2"  # that turns a stress into a force, for example
@@ -113,8 +114,9 @@ def choose_columns(path: object, table: FileTable, said: dict[str, str], *, time
     for column in table.columns:
         if column not in taken and LENGTH.fullmatch(plain(column.name)):
             notes.append(
-                f"column {column} is not used: is it the displacement of the mass (--position "
-                f"{column.number}) or of the drive (--drive-position {column.number})?"
+                f"column {column} is not used: is it the displacement of the mass "
+                f"({Suggestion('position', column.number)}) or of the drive "
+                f"({Suggestion('drive_position', column.number)})?"
             )
     return Choice(found, tuple(notes))
 
@@ -131,9 +133,8 @@ def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
     is_unit = size_of(text, CHANNELS[name].unit) is not None
     if column is not None and is_unit and not text.strip().isdigit():
         raise ResultError(
-            f"{path}: {echo(text)} is a column and a unit; say {_flag(name)} '{text}=' for the "
-            "column, "
-            f"or '={text}' for the unit"
+            f"{path}: {echo(text)} is a column and a unit; say {Suggestion(name, f'{text}=')} for "
+            f"the column, or '={text}' for the unit"
         )
     if column is not None:
         return _Wish(column, "")
@@ -190,7 +191,7 @@ def _by_name(
             at = doubtful[0].number
             raise ResultError(
                 f"{path}: column {doubtful[0]} may be the force along the drive or the normal "
-                f"load; say --force {at} or --load {at}"
+                f"load; say {Suggestion('force', at)} or {Suggestion('load', at)}"
             )
     matches = [x for x in matches if plain(x.name) in OWN] or matches
     if len(matches) > 1:
@@ -265,7 +266,7 @@ def _times(
     if not matches and _has_no_names(table) and wish.unit:
         matches = [x for x in free if x.number == 1]
     if not matches:
-        _refuse_lack(path, table, "time", "; or give --interval, e.g. '0.5 ms'")
+        _refuse_lack(path, table, "time", f"; or give {Suggestion('interval', '0.5 ms')}")
     first = matches[0]
     same = all(np.array_equal(x.values, first.values, equal_nan=True) for x in matches)
     alike = same and len({x.unit for x in matches}) == 1
@@ -303,7 +304,7 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
         if "/" not in unit and (headed is None or abs(headed.value) != abs(size.value)):
             note = f"column {column} is read in {unit}, as asked, not in what its heading says"
         return Chosen(column, size.value, text, note)
-    example = f"{_flag(name)} '{column.number}={channel.example}'"
+    example = Suggestion(name, f"{column.number}={channel.example}")
     if not text or (is_ratio(text) and not unit):
         raise ResultError(
             f"{path}: column {column} states no unit of {_article(channel.meaning)}; say {example}"
@@ -317,12 +318,11 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
         hint = f"; line {hints[0].line} says {hints[0].text.strip()[:60]!r}" if hints else ""
         raise ResultError(
             f"{path}: column {column} is in {text}, and its scale is needed; say "
-            f"{_flag(name)} '{column.number}={_scale(channel.unit, text)}'{hint}"
+            f"{Suggestion(name, f'{column.number}={_scale(channel.unit, text)}')}{hint}"
         )
     raise ResultError(
         f"{path}: column {column} is in {echo(text)}, not a unit of "
-        f"{_article(channel.meaning)}; say "
-        f"{example}"
+        f"{_article(channel.meaning)}; say {example}"
     )
 
 
@@ -330,15 +330,11 @@ def _article(meaning: str) -> str:
     return "time" if meaning == "time" else f"the {meaning}"
 
 
-def _flag(name: str) -> str:
-    return f"--{name.replace('_', '-')}"
-
-
 def _ambiguous(path: object, name: str, matches: Sequence[FileColumn]) -> NoReturn:
     choices = ", ".join(str(each) for each in matches)
     raise ResultError(
         f"{path}: {len(matches)} columns may be the {CHANNELS[name].meaning}: {choices}; say which "
-        f"by its number: {_flag(name)} {matches[0].number}"
+        f"by its number: {Suggestion(name, matches[0].number)}"
     )
 
 
@@ -358,7 +354,7 @@ def _with_columns(path: object, table: FileTable, name: str, why: str) -> str:
     stress = "; a stress times the area that it acts on is a force" if AN_AREA in example else ""
     return (
         f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; say for example "
-        f"{_flag(name)} '{example}'{stress}"
+        f"{Suggestion(name, example)}{stress}"
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from stiction.arrays import Floats, Indices
 from stiction.errors import Faults, ResultError
 from stiction.formats.table import FileTable, number_of
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
 ALIKE = 1e-3  # relative: intervals, of which the file rounds one
@@ -92,7 +93,7 @@ def _are_periods(path: object, values: Floats, said: str | None, name: str) -> b
         raise ResultError(
             f"{path}: {name} has only {distinct} values, {values.min():g} to {values.max():g} s, "
             "in ascending order: the times of a coarse clock, or the interval of each sample? say "
-            "--times clock or --times intervals"
+            f"{Suggestion('times', 'clock')} or {Suggestion('times', 'intervals')}"
         )
     return False
 

@@ -21,6 +21,7 @@ from stiction.study.store.store import CHECKED, group_at, open_study
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.measures import FORMERLY
 from stiction.text.paths import canonical_path
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
 
@@ -77,7 +78,8 @@ def view_study(
     left = [dim for dim in dims if dim not in at]
     found += strange_measures(data, measures)
     if not found and not 1 <= len(left) <= 2:
-        remedy = "cut it at a value: --at 'NAME=VALUE'" if left else "leave one or two"
+        at_a_value = Suggestion("at", {"NAME": "VALUE"}, of="")
+        remedy = f"cut it at a value: {at_a_value}" if left else "leave one or two"
         found.append(Fault(", ".join(dims), f"{len(left)} dimensions are left; {remedy}"))
     if found:
         raise DescriptionError(found)

@@ -102,7 +102,7 @@ def test_a_drift_seen_in_the_second_half_is_taken_off_there_only() -> None:
     # -0.4 mN/s for 30 s is -12 mN: what `detrend` takes off, not that between means of parts
     change = float(re.search(r"N/s, (-[\d.]+) mN from 30 s on", said)[1])
     assert change == pytest.approx(-12.0, rel=5e-3)
-    assert "analyse the parts before and after 30 s by themselves (--end, --begin)" in said
+    assert "before and after 30 s by themselves (end, begin of st.read_record)" in said
     mended = st.analysis.detrend(record)
     first = time < 30.0
     assert mended.force[first].tolist() == record.force[first].tolist()
@@ -412,7 +412,7 @@ def test_harmonics_of_few_cycles_and_of_changing_ones_are_no_oscillation(duratio
 def test_a_force_of_the_other_sign_is_told_in_words() -> None:
     time = np.arange(0.0, 40.0, 2e-3)
     text = str(st.analyse(st.Record(time=time, force=-sawtooth(time / 2.0))))
-    assert 'Analyse it with force=-force, or a file with --force="-1 N".' in text
+    assert "Analyse it with force=-force, or a file with force='-1 N' of st.read_record." in text
 
 
 @pytest.mark.parametrize("unit", ["N", "gf", "mN"])
@@ -421,7 +421,7 @@ def test_the_option_that_turns_the_sign_of_a_file_keeps_its_unit(tmp_path, unit)
     rows = np.column_stack([time, -sawtooth(time / 2.0)])
     np.savetxt(path, rows, delimiter=",", header=f"time [s],force [{unit}]", comments="")
     record = st.read_record(path)
-    option = re.search(r'--force="(.*?)"', str(st.analyse(record)))
+    option = re.search(r"file with force='(.*?)' of", str(st.analyse(record)))
     assert option is not None
     turned = st.read_record(path, force=option[1])
     np.testing.assert_allclose(turned.force, -record.force, rtol=1e-12)

@@ -37,6 +37,7 @@ from stiction.analysis.record import ACROSS, Record, across_force
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.quantity_text import percent
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, times
 from stiction.trajectory import Trajectory
 
@@ -288,7 +289,8 @@ def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Itera
         rate, begin = in_words(drift.rate, "N/s"), in_words(drift.start, "s")
         where = f"from {begin} on" if late else "in all"
         remedy = (
-            f"analyse the parts before and after {begin} by themselves (--end, --begin)"
+            f"analyse the parts before and after {begin} by themselves "
+            f"({Suggestion('end', of='')}, {Suggestion('begin')})"
             if late
             else f'state zero_drift = "{rate}" under [sensors.force] in the file beside the record'
         )

@@ -41,12 +41,12 @@ def explore(
     browser
         Open the browser; otherwise the address is printed, and it serves until Ctrl-C.
     """
-    from stiction.analysis.measurement.reading import is_run, source_of_file
+    from stiction.analysis.measurement.reading import is_run, read_source
     from stiction.explorer.door import explore as open_explorer
 
     said = (measured or RecordOptions()).arguments()
     records = [each for each in source if each.suffix != ".toml" and not is_run(each)]
-    read = {each: source_of_file(each, **said) for each in records}
+    read = {each: read_source(each, **said) for each in records}
     if not records:
         record_or_none(None, measured, trust, "name its file")
     opened = [read.get(each, each) for each in source]
