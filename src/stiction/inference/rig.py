@@ -132,8 +132,10 @@ class Rig(NamedTuple):
         return tables
 
 
-def rig_of(source: Any) -> Rig:
+def rig_of(source: Any, changes: Mapping[str, Any] | None = None, trust: bool = False) -> Rig:
     """Return the rig that is given, that of a file or text, or a slider without priors.
+
+    `changes` and `trust` are those of `Rig.from_toml`, of a file or text.
 
     Raises
     ------
@@ -142,7 +144,9 @@ def rig_of(source: Any) -> Rig:
     """
     if isinstance(source, Rig):
         return source
-    return Rig.from_toml(source) if isinstance(source, str | Path) else Rig(slider_of(source), {})
+    if isinstance(source, str | Path):
+        return Rig.from_toml(source, changes, trust=trust)
+    return Rig(slider_of(source), {})
 
 
 def stated_names(source: Any, changes: Mapping[str, Any] | None = None) -> list[str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.errors import ResultError
+from stiction.errors import Faults, ResultError
 from stiction.inference.columns import features_from
 from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for
 from stiction.inference.learning import calibration
@@ -37,8 +37,15 @@ from stiction.inference.next_test.further import (
     with_cycle,
     with_noise,
 )
-from stiction.inference.next_test.question import ask, refuse_certain
-from stiction.inference.observation import PER_CYCLE, Conditions, Observation, Source, observe
+from stiction.inference.next_test.question import Question, ask, refuse_certain
+from stiction.inference.observation import (
+    PER_CYCLE,
+    Conditions,
+    Observation,
+    Source,
+    observe,
+    record_from,
+)
 from stiction.inference.posterior import RARE, unlike
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig
@@ -123,11 +130,22 @@ def design(
     ResultError
         If the record cannot be used, or too few of the simulated rigs stick and slip.
     """
-    place = library_folder(library)
-    known, name, wanted, given = ask(
-        rig, record, of, channels=channels, angles=angles, velocities=velocities, loads=loads,
-        noise=noise, position_noise=position_noise, simulations=simulations,
+    faults, place = Faults(), None
+    with faults.of_part():
+        place = library_folder(library)
+    read_record = None if record is None else lambda: record_from(record)
+    question = ask(
+        rig, read_record, of, faults, channels=channels, angles=angles, velocities=velocities,
+        loads=loads, noise=noise, position_noise=position_noise, simulations=simulations,
     )  # fmt: skip
+    return answer(question, place, seed, progress)
+
+
+def answer(
+    question: Question, place: Path | None, seed: int, progress: Callable[[float], None] | None
+) -> Advice:
+    """Simulate the tests, in the library `place` if there is one, and learn what each tells."""
+    known, name, wanted, given = question
     slider, seen = known.slider, None if given is None else observe(given, known.slider)
     now = usual_conditions(slider) if seen is None else seen.conditions
     measured = wanted.channels if seen is None else tuple(now.noise)
@@ -143,8 +161,9 @@ def design(
     folder = None if place is None else place / f"{trial.key}-{seed}"
     whole = progress or silent
     simulating, learning = part(whole, 0, 10, of=6), part(whole, 6, 10, of=4)
-    scores, features = simulate_all(trial, simulations, folder, seed=seed, progress=simulating)
-    path = None if folder is None else folder / f"tests-{simulations}-{'-'.join(measured)}.npz"
+    count = wanted.simulations
+    scores, features = simulate_all(trial, count, folder, seed=seed, progress=simulating)
+    path = None if folder is None else folder / f"tests-{count}-{'-'.join(measured)}.npz"
     every = [Further("the present test", measured), *tests]
     found = learn_or_read(trial, every, scores, features, path, learning)
     doubt = "" if seen is None else doubts(trial, seen, scores, features, wanted, path)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection, Mapping
 from math import pi
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -12,7 +12,6 @@ from stiction.arguments import is_list
 from stiction.errors import DescriptionError, Fault, Faults
 from stiction.inference.fit import check
 from stiction.inference.next_test.further import Wanted
-from stiction.inference.observation import Source, record_from
 from stiction.inference.posterior import OWN_UNITS
 from stiction.inference.rig import Rig, rig_of, stated_names
 from stiction.inference.simulated.plan import Plan
@@ -45,20 +44,32 @@ class Question(NamedTuple):
     record: Record | None
 
 
-def ask(rig: Rig | str | Path, record: Source | None, of: str, **given: Any) -> Question:
-    """Return what is asked, or every fault of rig, record and arguments at once."""
-    faults, known, seen = Faults(), None, None
+def ask(
+    rig: Rig | str | Path,
+    read_record: Callable[[], Record] | None,
+    of: str,
+    faults: Faults,
+    *,
+    changes: Mapping[str, Any] | None = None,
+    trust: bool = False,
+    **given: Any,
+) -> Question:
+    """Return what is asked, or every fault of rig, record and arguments beside those before.
+
+    `changes` and `trust` are for the file of a rig, as of `Rig.from_toml`.
+    """
+    known, seen = None, None
     with faults.of_part():
-        known = rig_of(rig)
+        known = rig_of(rig, changes, trust)
         check(known)
-    if record is not None:
+    if read_record is not None:
         with faults.of_part():
-            seen = record_from(record)
+            seen = read_record()
         if several(given["channels"]) != ("force",):
             with faults.of_part():
                 message = "are those of the record; leave them out, or the record"
                 raise DescriptionError.of("channels", message)
-    names = stated_names(rig) if known is None else known.priors
+    names = stated_names(rig, changes) if known is None else known.priors
     with faults.of_part():
         name, wanted = check_arguments(names, of, 0.0 if known is None else known.slider.phi, given)
     faults.refuse()

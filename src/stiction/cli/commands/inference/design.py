@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 from cyclopts import Parameter
 
@@ -17,6 +18,7 @@ from stiction.cli.options import (
     Trust,
     changes,
     library_or_cache,
+    record_in,
     record_or_none,
 )
 from stiction.cli.terminal import say
@@ -94,10 +96,10 @@ def design(
     """
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
-    from stiction.inference.next_test.design import design as find
+    from stiction.inference.next_test.design import answer
     from stiction.inference.next_test.further import ANGLES
-    from stiction.inference.next_test.question import check_arguments
-    from stiction.inference.rig import Rig, stated_names
+    from stiction.inference.next_test.question import ask
+    from stiction.inference.simulated.library import library_folder
 
     faults = Faults()
     altered = changes(set, faults)
@@ -106,36 +108,28 @@ def design(
 
         with faults.of_part():
             drawable(output)
-    known = None
     with faults.of_part():
-        known = Rig.from_toml(rig, altered, trust=trust)
-    with faults.of_part():
-        given = record_or_none(record, measured, trust)
-    tests: dict[str, Any] = {
-        "channels": channels or ("force",),
-        "angles": ANGLES if angles is None else angles,
-        "velocities": velocities,
-        "loads": loads,
-        "noise": noise,
-        "position_noise": position_noise,
-        "simulations": simulations,
-    }
-    if faults.found:  # without any, they are checked beside the rig
-        names = stated_names(rig, altered) if known is None else known.priors
+        library_folder(library)
+    if record is None:
         with faults.of_part():
-            check_arguments(names, of, 0.0 if known is None else known.slider.phi, tests)
-    faults.refuse()
-    assert known is not None
+            record_or_none(None, measured, trust)
+    question = ask(
+        rig,
+        None if record is None else partial(record_in, record, measured, trust),
+        of,
+        faults,
+        changes=altered,
+        trust=trust,
+        channels=channels or ("force",),
+        angles=ANGLES if angles is None else angles,
+        velocities=velocities,
+        loads=loads,
+        noise=noise,
+        position_noise=position_noise,
+        simulations=simulations,
+    )
     with progress("simulating and learning") as report:
-        found = find(
-            known,
-            given,
-            of=of,
-            **tests,
-            library=library_or_cache(library),
-            seed=seed,
-            progress=report,
-        )
+        found = answer(question, library_or_cache(library), seed, report)
     print_sections(str(rig), found.tables())
     if output is not None:
         from stiction.plotting.inference.design import plot_design
