@@ -5,8 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Sequence
 from keyword import iskeyword
-from traceback import extract_tb
-from types import ModuleType
 from typing import Any, NoReturn
 
 import cyclopts
@@ -20,7 +18,6 @@ from stiction.errors import (
     LONGEST_MESSAGE,
     LONGEST_PATH,
     StictionError,
-    one_line,
     visible,
     without_middle,
 )
@@ -125,10 +122,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except MemoryError as error:
         refuse(errors, "memory", f"there is not enough: {error}")
     except BaseException as error:
-        place = in_a_law(error)
-        if place is None:
+        from stiction.friction.user.source import raised_in_law
+
+        if (said := raised_in_law(error)) is None:
             raise
-        refuse(errors, "friction law", f"{place}: {one_line(error)}; correct it there")
+        refuse(errors, "friction law", said)
     sys.exit(code if isinstance(code, int) else 0)
 
 
@@ -143,13 +141,3 @@ def refuse(errors: Console, what: str, message: str) -> NoReturn:
     except OSError:  # nowhere to print
         give_up(sys.stderr)
     sys.exit(2)
-
-
-def in_a_law(error: BaseException) -> str | None:
-    """Return the place in a user's law that raised an error; None if it was elsewhere."""
-    from stiction.friction.user.source import TextLoader
-
-    modules = [vars(each) for each in list(sys.modules.values()) if isinstance(each, ModuleType)]
-    laws = {m.get("__file__") for m in modules if isinstance(m.get("__loader__"), TextLoader)}
-    frames = [each for each in extract_tb(error.__traceback__) if each.filename in laws]
-    return f"{frames[-1].filename}, line {frames[-1].lineno}" if frames else None

@@ -20,8 +20,10 @@ from stiction.cli import main
 from stiction.errors import echo
 from stiction.friction import has_state
 from stiction.friction.user.derivative import jump
-from stiction.friction.user.source import excerpt
+from stiction.friction.user.source import excerpt, raised_in_law
 from stiction.friction.user.validation import printing
+from stiction.study.execution import sweep
+from stiction.study.store.store import ERROR
 
 LAW = """
 from typing import NamedTuple
@@ -828,6 +830,29 @@ def test_what_a_law_raises_later_is_told_in_a_line(config, raised, capsys):
     said = capsys.readouterr().err
     assert f"mylaw.py, line 18: {raised.partition('(')[0]}: " in said
     assert "Traceback" not in said
+
+
+def test_a_study_says_where_a_law_raised(config, monkeypatch):
+    """It said what, and not where, as `stiction run` does."""
+    right = "return law.mu_0 / ratio(v, law.v_h)"
+    law = LAW.replace(right, f"if v > 2e-3: raise ValueError('no')\n        {right}")
+    (config.parent / "mylaw.py").write_text(law)
+    base = st.Description.from_toml(config)
+    study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "2 deg", 2)}, measures=["peak_force"])
+    monkeypatch.setattr(sweep, "observe_run", lambda one, *_: one.slider.law.coefficient(3e-3))
+    outcome = sweep.run_one(study, (), (0,), lambda: False)
+    told = f"{config.parent / 'mylaw.py'}, line 18: ValueError: no; correct it there"
+    assert (outcome.status, outcome.message) == (ERROR, told)
+
+
+@pytest.mark.parametrize("file", ["mylaw.py", "/elsewhere/mylaw.py", "<mylaw.py>", "other.py"])
+def test_machine_code_of_a_law_may_come_from_another_folder(config, file):
+    """Of a copy of a law, `stiction run` showed a traceback: the code named the first file."""
+    st.Description.from_toml(config)
+    with pytest.raises(ValueError, match="no") as error:
+        exec(compile("raise ValueError('no')", file, "exec"), {})
+    place = None if file == "other.py" else f"{config.parent / 'mylaw.py'}, line 1"
+    assert raised_in_law(error.value) == (place and f"{place}: ValueError: no; correct it there")
 
 
 def test_the_command_line(config, tmp_path, capsys):

@@ -14,8 +14,11 @@ from collections.abc import Iterator
 from importlib.abc import InspectLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
+from traceback import extract_tb
 from types import CodeType, ModuleType
 from typing import Any, NamedTuple
+
+from stiction.errors import one_line
 
 
 class Text(NamedTuple):
@@ -96,6 +99,31 @@ def _reduce(law: Any) -> tuple[Any, ...]:
 
 def _remake(text: Text, path: str, name: str, values: tuple[Any, ...]) -> Any:
     return member(module_of(text, path), name)._make(values)
+
+
+def raised_in_law(error: BaseException) -> str | None:
+    """Return what a user's law raised, and where; None if the error came from elsewhere.
+
+    Machine code names the file that it was compiled from, which another folder may have had.
+    """
+    modules = [vars(each) for each in list(sys.modules.values()) if isinstance(each, ModuleType)]
+    laws = {_base(m["__file__"]): m["__file__"] for m in modules if _is_of_text(m)}
+    others = {m.get("__file__") for m in modules if not _is_of_text(m)}
+    frames = [each for each in extract_tb(error.__traceback__) if each.filename not in others]
+    inside = [each for each in frames if _base(each.filename) in laws]
+    if not inside:
+        return None
+    place = f"{laws[_base(inside[-1].filename)]}, line {inside[-1].lineno}"
+    return f"{place}: {one_line(error)}; correct it there"
+
+
+def _is_of_text(module: dict[str, Any]) -> bool:
+    return isinstance(module.get("__loader__"), TextLoader)
+
+
+def _base(file: str) -> str:
+    """Return the name of a file without its folder, or the marks of a stored text."""
+    return Path(file.strip("<>")).name
 
 
 def member(module: ModuleType, name: str) -> Any:

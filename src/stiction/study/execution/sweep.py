@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.errors import STATUSES, DescriptionError
+from stiction.errors import STATUSES, DescriptionError, one_line
+from stiction.friction.user.source import raised_in_law
 from stiction.solver.integrate import Room
 from stiction.storage.files import folder_lock
 from stiction.study.execution.cores import Cores
@@ -120,7 +121,7 @@ def run_one(
     except DescriptionError as error:
         return StoredOutcome(REFUSED, "; ".join(map(str, error.faults)), ())
     except Exception as error:  # a user's law may raise anything
-        return StoredOutcome(ERROR, f"{type(error).__name__}: {error}", ())
+        return StoredOutcome(ERROR, raised_in_law(error) or one_line(error), ())
 
 
 class Tally(NamedTuple):
