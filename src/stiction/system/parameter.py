@@ -14,16 +14,18 @@ from collections.abc import Iterator, Mapping
 from typing import Any, TypeVar, cast, get_args
 
 from stiction.drive.pieces import LEVELS
-from stiction.drive.program import refuse_idle_base
+from stiction.drive.program import DriveProgram, refuse_idle_base
 from stiction.errors import DescriptionError, Fault, Faults, echo
-from stiction.friction import Anisotropic
-from stiction.system.description import Description
+from stiction.friction import LAWS, Anisotropic
+from stiction.system.description import Description, Settings
+from stiction.system.initial import Initial
 from stiction.system.slider import FROM_SPRINGS, Slider
-from stiction.text.paths import canonical
+from stiction.text.paths import canonical, keys_of
 from stiction.text.units import Quantity, hints_of, unit_of
 from stiction.text.validation import make, unknown_name
 
 Owner = TypeVar("Owner", Slider, Description)
+KINDS = {"slider": Slider, "drive": DriveProgram, "initial": Initial, "run": Settings}
 LEVEL_UNITS = {"drive": "m/s", "load": "N"}  # of pieces, whose quantity depends on their program
 
 
@@ -56,6 +58,24 @@ def unit(owner: Slider | Description, path: str) -> str:
         listed = ", ".join(f"{name} ({its or 'a number'})" for name, its in found.items())
         raise DescriptionError.of(path, f"cannot share one value: {listed}; name one of them")
     return next(iter(found.values()))
+
+
+def stated_unit(tables: Mapping[str, Any], name: str) -> str | None:
+    """Return the SI unit of a quantity by the kind of its table, which need not be valid.
+
+    None where that does not tell, as of a part of a program, or of a plain number.
+
+    >>> stated_unit({"friction": {"law": "stribeck"}}, "friction.v_s"), stated_unit({}, "V")
+    ('m/s', 'm/s')
+    """
+    try:
+        title, *keys = keys_of(tables, name)
+    except KeyError:
+        return None
+    law = tables.get("friction")
+    kinds = {**KINDS, "friction": LAWS.get(str(law.get("law")) if isinstance(law, Mapping) else "")}
+    kind = kinds.get(title)
+    return None if kind is None or len(keys) != 1 else _unit_in(hints_of(kind).get(keys[0])) or None
 
 
 def read(owner: Slider | Description, path: str) -> float:
@@ -182,10 +202,13 @@ def _unit(owner: Slider | Description, name: str) -> str:
 
 
 def _unit_of(part: Any, rooms: list[str], field: str) -> str:
-    hint = _hints(_holder(part, field)).get(field)
-    its = next((u for each in (hint, *get_args(hint)) if (u := unit_of(each))), "")
+    its = _unit_in(_hints(_holder(part, field)).get(field))
     room = next((each for each in rooms if each in LEVEL_UNITS), "")
     return its or (LEVEL_UNITS.get(room, "") if field in LEVELS else "")
+
+
+def _unit_in(hint: Any) -> str:
+    return next((u for each in (hint, *get_args(hint)) if (u := unit_of(each))), "")
 
 
 def _member(owner: Slider | Description, part: Any, key: str, name: str) -> Any:

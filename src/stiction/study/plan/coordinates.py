@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from math import radians
 from typing import Any, NamedTuple
 
@@ -38,7 +38,21 @@ def unit(base: Description, path: str) -> str:
     DescriptionError
         As of `stiction.system.parameter.unit`.
     """
-    its = parameter.unit(base, path)
+    return _with_degrees(parameter.unit(base, path))
+
+
+def stated_unit(tables: Mapping[str, Any], path: str) -> str | None:
+    """Return the unit as `unit` does, of tables that need not be valid; None if they do not tell.
+
+    >>> stated_unit({"slider": {"mass": "a pound"}}, "k_x, k_y"), stated_unit({}, "colour")
+    ('N/m', None)
+    """
+    found = {parameter.stated_unit(tables, name) for name in path.split(",")}
+    its = found.pop() if len(found) == 1 else None
+    return None if its is None else _with_degrees(its)
+
+
+def _with_degrees(its: str) -> str:
     return "deg" if its == "rad" else its
 
 
@@ -125,8 +139,14 @@ def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
     return made
 
 
-def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) -> Iterator[Fault]:
-    """Yield the faults of each axis by itself, below its path."""
+def coordinate_faults(
+    unit_at: Callable[[str], str | None], axes: Mapping[str, Axis], seed: int
+) -> Iterator[Fault]:
+    """Yield the faults of each axis by itself, and of those along one dimension, below its path.
+
+    `unit_at` is `unit` or `stated_unit` of the base; values in a unit that is not known are passed
+    over.
+    """
     taken: dict[str, str] = {}
     for place, (path, axis) in enumerate(axes.items()):
         for name in path.split(","):
@@ -145,9 +165,11 @@ def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) ->
                 f"is {echo(axis.along)}, which lies along {echo(other.along)} itself; write that",
             )
         try:
-            its = unit(base, path)
+            its = unit_at(path)
         except DescriptionError as error:
             yield from (Fault(path, fault.message) for fault in error.faults)
+            continue
+        if its is None:
             continue
         wrong = [*_unreadable(path, axis, its)]
         yield from wrong
@@ -157,6 +179,7 @@ def coordinate_faults(base: Description, axes: Mapping[str, Axis], seed: int) ->
                 values(axis.model_copy(update=short), its, place, seed)
             except ValueError as error:
                 yield Fault(path, str(error))
+    yield from zip_faults(axes)
 
 
 def _unreadable(path: str, axis: Axis, its: str) -> Iterator[Fault]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from functools import cached_property, lru_cache
+from functools import cached_property, lru_cache, partial
 from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, ClassVar, Self
@@ -15,14 +15,15 @@ from stiction.drive.recorded.reading import Locate, locate_nothing, locator
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.names import old_method
-from stiction.study.plan.axes import axis_table
+from stiction.study.plan.axes import Axis, axis_table
 from stiction.study.plan.coordinates import (
     Coordinate,
     coordinate_faults,
     coordinates,
+    stated_unit,
+    unit,
     values_at,
     vary,
-    zip_faults,
 )
 from stiction.study.plan.layout import Index, Layout, axis_faults, layout_of, run_faults
 from stiction.study.plan.reading import (
@@ -89,8 +90,7 @@ class Study(Described):
 
     @model_validator(mode="after")
     def _can_be_laid_out(self) -> Self:
-        found = [*coordinate_faults(self.base, self.axes, self.seed), *zip_faults(self.axes)]
-        found = [Fault(f"axes.{fault.path}", fault.message) for fault in found]
+        found = _faults_of_axes(partial(unit, self.base), self.axes, self.seed)
         found += [] if found else self._too_large()
         found += [] if found else self._check_endpoints()
         if found:
@@ -222,11 +222,12 @@ class Study(Described):
         try:
             base = Description.from_dict(rest, find=find, locate=locate, known=waits)
         except DescriptionError as error:
-            told = dict.fromkeys([*found, *error.faults, *lost])
+            also = _faults_of_axes(partial(stated_unit, rest), readable_axes(axes))
+            told = dict.fromkeys([*found, *error.faults, *lost, *also])
             raise DescriptionError([*told]) from None
         if found:
-            also = coordinate_faults(base, readable_axes(axes), 0)
-            raise DescriptionError([*found, *(Fault(f"axes.{x.path}", x.message) for x in also)])
+            also = _faults_of_axes(partial(unit, base), readable_axes(axes))
+            raise DescriptionError([*found, *also])
         return cls._make(own, axes, base)
 
     @classmethod
@@ -278,6 +279,13 @@ class Study(Described):
     def __reduce__(self) -> tuple[Callable[[str], Study], tuple[str]]:
         """Pickle as text, which other processes can read, including users' laws."""
         return _from_text, (self.to_json(),)
+
+
+def _faults_of_axes(
+    unit_at: Callable[[str], str | None], axes: Mapping[str, Axis], seed: int = 0
+) -> list[Fault]:
+    found = coordinate_faults(unit_at, axes, seed)
+    return [Fault(f"axes.{fault.path}", fault.message) for fault in found]
 
 
 @lru_cache(maxsize=4)
