@@ -17,7 +17,7 @@ from stiction.inference.learning.calibration import Learned
 from stiction.inference.learning.regression_abc import Sample, quantiles
 from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import TREND, Observation, Trend, sign_seen, steadiness
-from stiction.inference.rig import Rig
+from stiction.inference.rig import Rig, stored_text
 from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import Plan
 from stiction.inference.simulated.synthetic import NOT_OF_THE_SLIDER
@@ -309,13 +309,13 @@ class Fit(Report):
     def save(self, path: str | Path, **groups: xr.Dataset) -> Path:
         """Write the posterior as NetCDF, the prior in its group ``prior``; return the path.
 
-        Attributes hold the description of the rig with its priors, what speaks against the
-        estimates, and the version of this package.
+        Attributes hold the description of the rig with its priors and the text of a user's law,
+        what speaks against the estimates, and the version of this package.
 
         Further datasets become groups of their name: ``fit.save("fit.nc", mechanism=odds.data)``.
         """
         about = {
-            "rig": self.rig.to_toml(),
+            "rig": stored_text(self.rig),
             "doubts": "\n".join(self.doubts),
             "simulations": self.simulations,
         }

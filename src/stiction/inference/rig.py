@@ -14,7 +14,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, StictionError, echo
-from stiction.friction import read_law
+from stiction.friction import law_table, read_law
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.inference.priors import Normal, Prior, Uniform, middle, prior_table, read_prior
 from stiction.inference.simulated.restriction import is_allowed_somewhere
@@ -147,6 +147,16 @@ def rig_of(source: Any, changes: Mapping[str, Any] | None = None, trust: bool = 
     if isinstance(source, str | Path):
         return Rig.from_toml(source, changes, trust=trust)
     return Rig(slider_of(source), {})
+
+
+def stored_text(rig: Rig) -> str:
+    """Return a description as TOML for a file, with the text of a user's law, as results hold it.
+
+    `Rig.from_toml` reads it: it runs that text only with `trust`.
+    """
+    tables, law = rig._tables(), law_table(rig.slider.law)
+    text = {key: law[key] for key in law.keys() & {"source"}}
+    return toml_text({**tables, "friction": {**tables["friction"], **text}})
 
 
 def stated_names(source: Any, changes: Mapping[str, Any] | None = None) -> list[str]:

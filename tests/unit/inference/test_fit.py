@@ -1,6 +1,7 @@
 """A fit from end to end: records of known rigs, a small library."""
 
 import shutil
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -12,6 +13,9 @@ from tests.uncertain import SIMULATIONS, TEXT, record_of
 import stiction as st
 from stiction.analysis.signals.robust import block_means
 from stiction.errors import DescriptionError, ResultError
+from stiction.friction import read_law
+from stiction.friction.user.loading import finder_for_descriptions
+from stiction.friction.user.source import text_of
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features, of_trend
 from stiction.inference.fit import check, plan_for
@@ -30,6 +34,20 @@ from stiction.inference.simulated.synthetic import draw, synthesise
 from stiction.recording import stored
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result import fit_file
+
+WORN = """
+from typing import NamedTuple
+
+class Worn(NamedTuple):
+    mu_0: float
+    mu_inf: float
+
+    def coefficient(law, v):
+        return law.mu_inf + (law.mu_0 - law.mu_inf) / (1.0 + 20.0 * v)
+
+    def slope(law, v):
+        return -20.0 * (law.mu_0 - law.mu_inf) / (1.0 + 20.0 * v) ** 2
+"""
 
 
 @pytest.fixture(scope="module")
@@ -73,6 +91,21 @@ def test_the_file_tells_what_was_fitted_and_what_speaks_against_it(found, tmp_pa
     assert again.priors.keys() == found.rig.priors.keys()  # the jitter is no value of the rig
     assert again.slider.mass == found.plan.slider.mass
     assert st.check(path).ok
+
+
+def test_the_file_holds_the_text_of_a_user_s_law(found, tmp_path, monkeypatch):
+    """It held the name alone: of a fit whose law had been edited nobody knew what was fitted."""
+    (tmp_path / "worn.py").write_text(WORN)
+    table = {"law": "worn.py:Worn", "mu_0": 0.625, "mu_inf": 0.375}
+    law = read_law(table, finder_for_descriptions(tmp_path))
+    plan = found.plan._replace(slider=found.plan.slider.replace(friction=law))
+    text = xr.open_dataset(replace(found, plan=plan).save(tmp_path / "fit.nc")).attrs["rig"]
+    assert st.Rig.from_toml(text).slider.law == law  # loaded from the same text
+    monkeypatch.delitem(sys.modules, type(law).__module__)
+    with pytest.raises(DescriptionError, match="not run without permission"):
+        st.Rig.from_toml(text)
+    again = st.Rig.from_toml(text, trust=True).slider.law
+    assert (text_of(type(again)).text, again) == (WORN, law)
 
 
 @pytest.mark.parametrize("place", [0.2, 0.5, 0.8, 1.0])
