@@ -14,12 +14,14 @@ from stiction.errors import DescriptionError, Fault, ResultError, echo, visible
 from stiction.formats import TEXTS, TextLayout, format_of, read_tables
 from stiction.formats.channels import CHANNELS, plain
 from stiction.formats.table import FileColumn, FileTable
+from stiction.formats.text.dialect import UnclearCommas
 from stiction.formats.text.heading import COMMENT
 from stiction.formats.units import split_unit
 from stiction.text.samples import FrozenColumn
 from stiction.text.units import to_si
 
 LARGEST = 2**26  # bytes of text: more than a million rows of two columns
+PLAIN = "write points as decimal signs, no sign between thousands, and tabs between columns"
 FIRST = ("time", "t")  # of several names of times
 # a unit that is none stands in brackets, too
 BRACKETS = re.compile(r"(.*?)\s*[\[(]\s*([^\[\]()]*?)\s*[\])]")
@@ -67,6 +69,9 @@ def _table(path: Path) -> FileTable:
         tables = read_tables(path, TextLayout(columns=2, largest=LARGEST))
     except OSError as error:
         raise _fault(f"{path.name}: {error.strerror or error}") from None
+    except UnclearCommas as error:
+        unclear = error.unclear.removeprefix(f"{path}: ")
+        raise _fault(f"{path.name}: {unclear}; {PLAIN}") from None
     except ResultError as error:
         lines = (line.removeprefix(visible(f"{path}: ")) for line in str(error).splitlines())
         raise DescriptionError([Fault("file", f"{path.name}: {line}") for line in lines]) from None

@@ -108,6 +108,15 @@ def _split_quoted(line: str, separator: str) -> list[str]:
     return re.split(f'{re.escape(separator)}(?=(?:[^"]*"[^"]*")*[^"]*$)', line)
 
 
+class UnclearCommas(ResultError):
+    """What is `unclear` about commas or points, and the remedy where a record is read."""
+
+    def __init__(self, unclear: str, remedy: str) -> None:
+        """Join both into the message."""
+        super().__init__(f"{unclear}; {remedy}")
+        self.unclear = unclear
+
+
 def find_dialect(path: object, lines: Sequence[str], layout: TextLayout) -> Dialect:
     """Return separator and decimal sign with which most lines are samples.
 
@@ -198,10 +207,11 @@ def _settle(
             return commas[0]
         half = not points and layout.columns <= headed and 2 * headed == width[chosen]
         if (commas and headed != width[chosen]) or half:
-            raise ResultError(
+            raise UnclearCommas(
                 f"{path}: in {samples[:60]!r} commas separate {width[chosen]} columns, or are "
-                f"decimal signs; if they separate, say {Suggestion('decimal', 'point')}; if not, "
-                f"{_remedy(commas)}"
+                "decimal signs",
+                f"if they separate, say {Suggestion('decimal', 'point')}; if not, "
+                f"{_remedy(commas)}",
             )
     if layout.decimal is None and not chosen.groups:
         _refuse_thousands(path, chosen, rows)
@@ -230,9 +240,9 @@ def _refuse_thousands(path: object, dialect: Dialect, rows: Sequence[Sequence[st
         bare = not everywhere and hundreds < THOUSANDTHS * len(column)
         everywhere = False
         if cells and not bare and all(GROUPED.fullmatch(cell) for cell in cells):
-            raise ResultError(
-                f"{path}: in {echo(cells[0])} the {name} is a decimal sign, or groups thousands; "
-                f"say {Suggestion('decimal', name)} or {Suggestion('decimal', other)}"
+            raise UnclearCommas(
+                f"{path}: in {echo(cells[0])} the {name} is a decimal sign, or groups thousands",
+                f"say {Suggestion('decimal', name)} or {Suggestion('decimal', other)}",
             )
 
 

@@ -173,6 +173,13 @@ HEAD = "time [ms],velocity [mm/s]\n"
         (HEAD + "# a\n# b\n1,1\n2,2\nstop\n3,2\n# end\n4,3", {}, "line 6: 'stop' is not a row"),
         (HEAD + "1,1\n2,2\nx [s],F [N]\n3,2\n4,3", {}, "holds 2 tables, the second from line 5"),
         (HEAD + rows(",") + "\n1001,nan\n", {}, "line 103: nan is not a number"),
+        (
+            "0;1,200\n1;2,300\n2;3,400",
+            {},
+            "stage.csv: in '1,200' the comma is a decimal sign, or "
+            "groups thousands; write points as decimal signs, no sign between thousands, and tabs",
+        ),
+        (HEAD + "0,5,1,2\n1,5,2,3\n2,5,3,4", {}, "or are decimal signs; write points"),
         (HEAD + rows(",") + "\n999,1\n1000,1\n", {}, "line 103: 0.999 s comes after 1 s"),
         ("run time [s],step time [s],load [N]\n1,2,3\n", {}, "may be any of run time [s], step"),
         (HEAD + rows(","), {"velocity": "speed"}, "no column 'speed'"),
