@@ -1,6 +1,7 @@
 """Messages: values in them are shortened, however large they are."""
 
 import ast
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -123,5 +124,29 @@ def test_messages_print_values_by_echo():
         if not path.is_relative_to(source / "solver")
         for value in values_by_repr(ast.parse(path.read_text(encoding="utf-8")))
         if value not in short and not value.isupper() and ":" not in value
+    ]
+    assert wrong == []
+
+
+def texts_of(tree: ast.AST) -> list[str]:
+    """Return the texts of a module, without docstrings."""
+    bodies = [getattr(node, "body", None) for node in ast.walk(tree)]
+    firsts = [body[0] for body in bodies if isinstance(body, list) and body]
+    docs = {id(each.value) for each in firsts if isinstance(each, ast.Expr)}
+    texts = (x for x in ast.walk(tree) if isinstance(x, ast.Constant) and id(x) not in docs)
+    return [x.value for x in texts if isinstance(x.value, str)]
+
+
+def test_an_argument_that_a_message_suggests_is_no_option_to_everybody():
+    """`Suggestion` writes it as whoever called does; only whole commands stand in a message."""
+    source, option = Path(st.__file__).parent, re.compile(r"(?<![\w-])--[a-z]")
+    files = (each for each in source.rglob("*.py") if not each.is_relative_to(source / "cli"))
+    modules = {each: each.read_text(encoding="utf-8") for each in files}
+    wrong = [
+        f"{path.relative_to(source)}: {text}"
+        for path, module in modules.items()
+        if option.search(module)
+        for text in texts_of(ast.parse(module))
+        if option.search(text) and not re.search("stiction fit|uv run|^ --", text)
     ]
     assert wrong == []
