@@ -22,6 +22,7 @@ from stiction.errors import DescriptionError, StictionError, one_line
 from stiction.explorer.answers import ANSWERS, Request, answer
 from stiction.explorer.motion import Reply
 from stiction.explorer.source import Opened
+from stiction.friction.user.source import raised_in_law
 
 Send = Callable[[bytes], Awaitable[None]]
 STILL = 0.12  # s without a newer request before the slower part of an answer is computed
@@ -90,8 +91,9 @@ class Lane:
         except StictionError as error:
             await self._send(encode({**about, "error": str(error)}, {}))
         except Exception as error:  # the page stays as it is, and says so
-            print_exc(file=sys.stderr)
-            await self._send(encode({**about, "error": one_line(error)}, {}))
+            if (said := raised_in_law(error)) is None:
+                print_exc(file=sys.stderr)
+            await self._send(encode({**about, "error": said or one_line(error)}, {}))
 
 
 def following(replies: Iterator[Reply], check: Callable[[], None]) -> Reply | None:

@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import sys
 
 import pytest
 from tests.explored import an_opened, decode
@@ -9,6 +10,7 @@ from tests.explored import an_opened, decode
 from stiction.explorer import answers, session
 from stiction.explorer.answers import tables_of
 from stiction.explorer.session import Session, Superseded
+from stiction.friction.user.source import Text, module_of
 
 
 class Page:
@@ -181,6 +183,17 @@ def test_an_error_of_the_program_leaves_the_session(monkeypatch, capsys):
     (head,) = replies(do="broken")
     assert head["error"] == "ZeroDivisionError: a mistake"
     assert "a mistake" in capsys.readouterr().err
+
+
+def test_what_a_law_raises_is_told_with_its_place(monkeypatch, capsys):
+    """It was told without, and a traceback filled the terminal."""
+    text = Text("mylaw.py", "def fail(*_):\n    raise ValueError('no')\n    yield\n")
+    law = module_of(text, "there/mylaw.py")
+    monkeypatch.setitem(answers.ANSWERS, "broken", law.fail)
+    (head,) = replies(do="broken")
+    del sys.modules[law.__name__]
+    assert head["error"] == "there/mylaw.py, line 2: ValueError: no; correct it there"
+    assert capsys.readouterr().err == ""
 
 
 def test_there_are_two_lanes():
