@@ -260,7 +260,7 @@ def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings, read: Float
 
 def _frequency_of_falls(record: Record, found: Swings) -> list[float]:
     """Return the mean frequency (Hz) of quick falls beside swings that do not stick, if any."""
-    if is_stick_slip(found.table):
+    if not len(found.table) or is_stick_slip(found.table):
         return []
     falls = quick_falls(record.force)
     return [falls.number / record.duration] if falls.clearness > EVEN else []
