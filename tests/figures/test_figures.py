@@ -20,6 +20,7 @@ from matplotlib.patches import FancyArrowPatch
 from matplotlib.path import Path as Outline
 from PIL import Image
 from tests.drawn import inside
+from tests.rigs import SOFT_TESTER
 
 import stiction as st
 from stiction import theory
@@ -959,6 +960,19 @@ def test_laws_that_swing_too_fast_for_the_panel_are_bands(slider: st.Slider) -> 
     force = np.asarray(panels["force"].lines[0].get_ydata(), dtype=float)
     assert np.ptp(force[len(force) // 2 :]) < 0.1 * np.ptp(force)
     assert len(panels["force"].collections) == 1
+
+
+def test_creep_that_oscillates_is_one_line_in_the_phase_portrait() -> None:
+    run = st.simulate(SOFT_TESTER, "3.2 s", sample_rate="2 kHz")
+    [line] = plot_comparison({"own": run}, {"portrait": new_figure(3, 3).subplots()})[
+        "portrait"
+    ].lines
+    force, speed = (np.asarray(each, dtype=float) for each in line.get_data())
+    top = int(np.nanargmax(speed))  # of the first slip, which is left as it is
+    assert speed[top] == pytest.approx(run.samples["slip_speed"].max(), rel=0.02)
+    assert speed[top - 20] == pytest.approx(speed[top + 20], rel=0.2)
+    loading = (force > 0.4) & (force < 0.62) & (np.arange(len(force)) < top - 300)
+    assert (np.fmax.accumulate(speed[loading]) < 1.15 * speed[loading]).all()
 
 
 def test_speeds_about_a_millimetre_a_second_are_labelled_alike() -> None:

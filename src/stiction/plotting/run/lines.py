@@ -190,7 +190,45 @@ def _draw_range(
     ax: Axes, time: Floats, values: Floats, found: list[Oscillation], color: str
 ) -> Floats:
     """Draw the range of oscillations as a band; return the values with their mean in its place."""
-    bins = min(BINS, len(time) // 2)
+    starts, low, high, shown = _ranges(time, values, found, min(BINS, len(time) // 2))
+    middle = 0.5 * (time[starts] + time[np.r_[starts[1:], len(time)] - 1])
+    band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
+    band.set_facecolor((color, BAND))
+    return shown
+
+
+def mean_course(
+    time: Floats, speeds: Floats, highest: Floats, longest: float
+) -> tuple[Floats, Floats]:
+    """Return mean and highest speed of each fast oscillation that a logarithmic axis shows.
+
+    Elsewhere, as in a slip, they stay what they are.
+
+    Parameters
+    ----------
+    time, speeds, highest : ndarray
+        (n,).
+    longest : float
+        Period of the slowest of the oscillations, s.
+    """
+    decades = np.log10(np.where(speeds > 0.0, speeds, np.nan))
+    height = np.fmax.reduce(decades) - np.fmin.reduce(decades)
+    found = oscillations(time, decades, longest, THIN * height)
+    if not found:
+        return speeds, highest
+    starts, low, _, shown = _ranges(time, speeds, found, len(time) // 2)
+    _, _, high, _ = _ranges(time, highest, found, len(time) // 2)
+    low, high = (np.repeat(each, np.diff(starts, append=len(time))) for each in (low, high))
+    return np.where(np.isfinite(low), shown, speeds), np.fmax(highest, high)
+
+
+def _ranges(
+    time: Floats, values: Floats, found: list[Oscillation], bins: int
+) -> tuple[Indices, Floats, Floats, Floats]:
+    """Return first samples of bins, low and high of oscillations there, values with their mean.
+
+    Low and high are NaN where there is no oscillation, and in a slip.
+    """
     starts = _bin_starts(len(time), bins)
     step = (time[-1] - time[0]) / bins
     low, high, shown = np.full(bins, np.nan), np.full(bins, np.nan), values.copy()
@@ -203,10 +241,7 @@ def _draw_range(
         low[within][apart] = high[within][apart] = np.nan
         mean = np.where(apart, short, mean)
         shown[samples] = np.repeat(mean, np.diff(inner, append=samples.stop - samples.start))
-    middle = 0.5 * (time[starts] + time[np.r_[starts[1:], len(time)] - 1])
-    band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
-    band.set_facecolor((color, BAND))
-    return shown
+    return starts, low, high, shown
 
 
 def _smooth(values: Floats, starts: Indices, period: float) -> tuple[Floats, ...]:
@@ -253,7 +288,7 @@ def _course(
     count = np.maximum(np.add.reduceat(known.astype(np.float64), starts), TINY)
     own = np.add.reduceat(np.where(known, values, 0.0), starts) / count
     short = uniform_filter1d(own, max(round(period), 1), mode="nearest")
-    swing = median_filter(np.abs(np.diff(values[turns])), BESIDE, mode="nearest")  # no slip is one
+    swing = median_filter(np.abs(np.diff(values[turns])), BESIDE, mode="mirror")  # no slip is one
     far = np.abs(short - mean) > FAR * np.interp(starts, turns[1:], swing)
     return short, np.asarray(maximum_filter1d(far, 1 + 2 * MARGIN))
 

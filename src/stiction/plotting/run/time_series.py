@@ -16,7 +16,7 @@ from stiction.analysis.slip import Slip, averaged_slip
 from stiction.arrays import Floats
 from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
-from stiction.plotting.run.lines import BAND, EDGE, FEW, draw_line
+from stiction.plotting.run.lines import BAND, EDGE, FEW, draw_line, mean_course
 from stiction.text.quantity_text import metric_prefix, percent
 from stiction.trajectory import Trajectory
 
@@ -230,11 +230,17 @@ def set_speed_limits(ax: Axes, slips: Sequence[tuple[Slip, float]]) -> bool:
 
 
 def average_slip(run: Trajectory) -> Slip:
-    """Average slip over a 500th of the time, or less to resolve a rapid slip."""
+    """Average slip over a 500th of the time, or less to resolve a rapid slip.
+
+    The mean of oscillations within the time of a slip is theirs as a whole: near slip they are
+    slower than that average, and how far each falls is not a speed of the system.
+    """
     times, slider = run.samples["time"], run.slider
     rapid = 0.5 / slider.natural_frequencies[0]
     parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
-    return averaged_slip(run, int(parts))
+    slip = averaged_slip(run, int(parts))
+    mean, high = mean_course(slip.time, slip.mean, slip.high, rapid)
+    return slip._replace(mean=mean, high=high)
 
 
 def draw_time_stuck(ax: Axes, run: Trajectory, bins: int = 300) -> StepPatch:
