@@ -350,6 +350,12 @@ def test_a_mass_at_rest_has_no_creep_by_rounding_and_one_sample_has_its_speed(
     assert outcome(one).creep == one.samples["slip_speed"][0] > 0.0
 
 
+def test_the_speed_at_the_release_is_not_the_slowest_slip(slider: st.Slider) -> None:
+    """It is the description's epsilon V, 1 nm/s."""
+    law = st.laws.LuGre(0.15, 0.2, "10 mm/s", sigma_0=1e5, sigma_1=316.0)
+    assert outcome(st.simulate(slider.replace(friction=law), 0.2, sample_rate=1e3)).slowest > 1e-6
+
+
 @pytest.mark.parametrize("rate", [500.0, 700.0, 1e3, 1e4])
 def test_the_median_creep_does_not_depend_on_the_samples(slider: st.Slider, rate: float) -> None:
     """At 1 kHz, the frequency of the oscillation, it was 23 % too large; 93 % on a random rig."""

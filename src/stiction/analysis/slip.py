@@ -133,8 +133,8 @@ class Outcome(NamedTuple):
     fastest : float
         Largest slip speed of the samples, m/s.
     slowest : float
-        Smallest slip speed of the samples during the first loading, m/s; zero if the mass rests
-        then, however shortly.
+        Smallest mean speed over a hundredth of the first loading, m/s, so that the speed at the
+        release does not count; zero if the mass rests during the loading, however shortly.
     creep : float
         Median over hundredths of the first loading of the distance between their ends over their
         time, m/s: zero only if the mass rests for half of it. Places are exact however few samples
@@ -162,6 +162,7 @@ def outcome(run: Trajectory) -> Outcome:
     places = [run.samples[name][ends] for name in ("X", "Y", "u_x", "u_y")]
     moved = np.hypot(*map(np.diff, places[:2]))
     moved[moved < ROUNDED * np.abs(places).max()] = 0.0
+    means = moved / np.diff(times[ends]) if len(moved) else loading[:1]
     rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
     return Outcome(
@@ -170,7 +171,7 @@ def outcome(run: Trajectory) -> Outcome:
         statistics.time_stuck,
         largest_coefficient(run),
         float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
-        0.0 if rests else float(np.fmin.reduce(loading)),
-        float(np.median(moved / np.diff(times[ends])) if len(moved) else loading[0]),
+        0.0 if rests else float(means.min()),
+        float(np.median(means)),
         statistics.steps,
     )

@@ -56,7 +56,7 @@ def table(found: Table, room: int = 80) -> Grid:
     if None in wide and len(columns) > 2:
         return cells_in_lines(found, room)
     for heading, side, width in zip(found.headings, found.sides(), wide, strict=True):
-        shown.add_column(plain(heading), justify=side, overflow="fold", width=width)
+        shown.add_column(in_lines(heading, width), justify=side, overflow="fold", width=width)
     for row in found.rows:
         shown.add_row(*map(in_lines, row, wide))
     return shown

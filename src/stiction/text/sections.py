@@ -105,10 +105,13 @@ def as_text(parts: Iterable[Section]) -> str:
 def join_units(text: str) -> str:
     """Return a text whose numbers keep their unit, and a "~" before them, on the same line.
 
-    >>> join_units("about ~ 2 N")
-    'about ~\xa02\xa0N'
+    So does a product of symbols with subscripts.
+
+    >>> join_units("about ~ 2 N for k_x u_x")
+    'about ~\xa02\xa0N for k_x\xa0u_x'
     """
-    return re.sub(r"(?<=\d) (?=\S)| (?=s/m\b)|(?<=~) (?=\d)", "\N{NO-BREAK SPACE}", text)
+    together = r"(?<=\d) (?=\S)| (?=s/m\b)|(?<=~) (?=\d)|(?<=\b\w_\w) (?=\w_\w\b)"
+    return re.sub(together, "\N{NO-BREAK SPACE}", text)
 
 
 def html(text: str) -> str:
