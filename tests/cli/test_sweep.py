@@ -172,7 +172,7 @@ def test_a_map_says_why_kinds_of_motion_are_not_known(tmp_path, capsys, duration
     capsys.readouterr()
     assert inside("map", store) == 0
     told = capsys.readouterr().out
-    assert ("runs: most of such runs end before some whole cycles" in told) is said
+    assert ("runs: as a rule these end before some whole cycles" in told) is said
     unclear = int((kinds(st.open_study(store)) == UNDETERMINED).sum())
     assert (unclear > 1) is said
     assert not said or f"undetermined in {unclear} of 4 runs" in told

@@ -14,6 +14,7 @@ from stiction.cli.terminal import note
 
 PATIENCE = 1.0  # seconds of silence before a bar appears
 FIRST, EVERY = 5.0, 60.0  # seconds before the first line, and between lines
+WATCHED = 0.1  # of the time so far: the pace of a shorter while says little of the time left
 
 
 @contextmanager
@@ -78,7 +79,8 @@ def line(
 ) -> str:
     """Return the progress in words; the time left is that at the pace since a fraction and a time.
 
-    What comes before the first fraction, such as compilation, comes once.
+    What comes before the first fraction, such as compilation, comes once. Without a time left where
+    that pace is known for a short while only.
 
     Examples
     --------
@@ -90,7 +92,8 @@ def line(
     if fraction <= 0.0:
         return f"{title}: begun {in_time(seconds)} ago"
     done, spent = fraction - since[0], seconds - since[1]
-    left = f", about {in_time(spent * (1.0 - fraction) / done)} left" if done > 0.0 else ""
+    known = done > 0.0 and spent > WATCHED * seconds
+    left = f", about {in_time(spent * (1.0 - fraction) / done)} left" if known else ""
     return f"{title}: {100 * fraction:.0f} % after {in_time(seconds)}{left}"
 
 

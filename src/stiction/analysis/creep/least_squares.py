@@ -27,9 +27,8 @@ def used_bins(curve: xr.Dataset, low: float, high: float) -> Bins:
         if longest < high:
             remedy = f"the longest stick phase takes {in_words(longest, 's')} only"
         raise ResultError(
-            f"not determined: {inside.sum()} bins of the creep curve lie between "
-            f"{in_words(low, 's')} and {in_words(high, 's')} before slip and {FEWEST_USED} are "
-            f"needed; {remedy}"
+            f"not determined: between {in_words(low, 's')} and {in_words(high, 's')} before slip "
+            f"the creep curve has {inside.sum()} of the {FEWEST_USED} bins that are needed; {remedy}"
         )
     error = np.hypot(np.nan_to_num(bins.error), THEORY * np.abs(bins.velocity))
     return bins._replace(error=error).some(inside)

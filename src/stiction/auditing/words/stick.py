@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
 from stiction.analysis.motion.rest import HELD, share_held
+from stiction.arrays import Floats, Indices
 from stiction.auditing.simulated_test import CALM, SimulatedTest, end_of_loading, relative_speed
 from stiction.friction import has_state
 from stiction.text.quantity_text import percent
@@ -75,7 +76,7 @@ def _why(found: Audit, inertia: float) -> str:
     if has_state(found.slider.law) and seen.shares.creep > 0.0:
         return (
             "Friction with internal state creeps by itself. An audit of the same apparatus with "
-            "phi = 0 shows how much the misalignment adds."
+            "phi=0deg shows how much the misalignment adds."
             if misaligned
             else "The creep is due to the law of friction."
         )
@@ -87,7 +88,11 @@ def _why(found: Audit, inertia: float) -> str:
             if isfinite(distance)
             else f"{in_words(_moved_while_loaded(seen), 'm')} while the force rises"
         )
-        creep = "mostly creep" if seen.shares.creep > seen.shares.rest else "creep with short rests"
+        creep = "creep with short rests"
+        if seen.shares.creep > seen.shares.rest:
+            creep = "mostly creep"
+        elif _long_rest(seen):
+            creep = "rest, then creep with short rests,"
         return (
             f"The apparent stick is {creep} under a turning friction force: an artefact "
             f"of the misalignment. {moments}The mass covers {far}. The largest force shows how far "
@@ -112,21 +117,39 @@ def _rests_for_moments(seen: SimulatedTest) -> str:
     begin, end = loadings["start"], loadings["peak_time"]
     way = float((end - begin).sum()) * seen.run.slider.motion.rate(0.0)[0]
     way *= seen.run.slider.direction[1]
-    rests = seen.run.stick_intervals
-    of = np.searchsorted(begin, rests[:, 0], side="right") - 1
-    inside = (of >= 0) & (rests[:, 1] <= end[of])
-    if inside.sum() <= FEW * len(loadings):
+    of, lengths = _rests_while_loaded(seen)
+    if len(of) <= FEW * len(loadings):
         return ""
     time, u_y = (seen.run.samples[name] for name in ("time", "u_y"))
     stretched = float((np.interp(end, time, u_y) - np.interp(begin, time, u_y)).sum())
     if share_held(stretched, way) >= HELD:
         return ""
-    each = float(f"{inside.sum() / len(loadings):.2g}")
-    lasts = float(np.median(np.diff(rests[inside], axis=1)))
+    each = float(f"{len(of) / len(loadings):.2g}")
+    lasts, long = float(np.median(lengths)), _long_rest(seen)
+    once = f"once for {in_words(long, 's')}, and then " if long else ""
     return (
-        f"The mass rests {each:g} times while the spring is loaded, typically for "
+        f"The mass rests {once}{each:g} times while the spring is loaded, typically for "
         f"{in_words(lasts, 's')}, and follows the drive across by small slips in between. "
     )
+
+
+def _rests_while_loaded(seen: SimulatedTest) -> tuple[Indices, Floats]:
+    """Return the loading in which each rest ends, by its number, and how long it lasts, s."""
+    begin, end, rests = seen.table["start"], seen.table["peak_time"], seen.run.stick_intervals
+    of = np.searchsorted(begin, rests[:, 1], side="right") - 1
+    inside = (of >= 0) & (rests[:, 1] <= end[of])
+    return of[inside], np.diff(rests[inside], axis=1)[:, 0]
+
+
+def _long_rest(seen: SimulatedTest) -> float:
+    """Return the longest rest of the loadings on average, s; zero where that is negligible."""
+    loadings = seen.table
+    if not len(loadings):
+        return 0.0
+    longest = np.zeros(len(loadings))
+    np.maximum.at(longest, *_rests_while_loaded(seen))
+    least = HARDLY * (loadings["peak_time"] - loadings["start"]).mean()
+    return float(longest.mean()) if longest.mean() > least else 0.0
 
 
 def _following(seen: SimulatedTest) -> float:

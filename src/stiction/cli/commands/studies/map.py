@@ -73,6 +73,6 @@ def map(
     say(f"wrote {written}")
     if REGIME in found.measures and (unclear := int((kinds(found.data) == UNDETERMINED).sum())):
         say(
-            f"undetermined in {unclear} of {found.data['status'].size} runs: most of such runs end "
-            "before some whole cycles; a longer duration shows them"
+            f"the kind of motion is undetermined in {unclear} of {found.data['status'].size} runs: "
+            "as a rule these end before some whole cycles, which a longer duration shows"
         )
