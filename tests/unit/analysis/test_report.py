@@ -81,6 +81,13 @@ def test_the_first_peak_of_a_vibration_is_not_taken_for_static_friction(fast):
     )
 
 
+@pytest.mark.parametrize(("speed", "verb"), [(0.8, "moves"), (0.2, "creeps")])
+def test_a_mass_nearly_as_fast_as_the_drive_does_not_creep(speed, verb):
+    """A brake pad at 1 m/s was said to creep at 911 mm/s."""
+    last = {"velocity": np.float64(speed), "velocity_error": np.float64(0.0)}
+    assert creep._creeping(last, 1.0, 1.0, creep.RESTING).startswith(f"it {verb} at ")
+
+
 def test_a_single_cycle_has_no_spread():
     time = np.arange(0.0, 2.8, 1e-3)
     found = st.analyse(st.Record(time=time, force=1.0 + (time + 0.4) % 1.2))

@@ -30,6 +30,7 @@ RESTING, UNKNOWN = "it rests", "its creep is not determined"
 # By `REST_SPEED`: a law with states never rests
 BARELY = "it creeps at less than a millionth of the drive's velocity"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
+RAPID = 0.5  # of the drive's velocity: a mass so fast does not creep, it gains speed
 EXCLUDED = 9.0  # sum of squares, in standard errors, by which presliding alone fits worse
 
 
@@ -193,7 +194,7 @@ def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
             return UNKNOWN
         return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
     known = with_error(value, error if error > SLIGHT * abs(value) else 0.0, "m/s")
-    return f"it creeps at {known}"
+    return f"it {'moves' if value > RAPID * V > 0.0 else 'creeps'} at {known}"
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
