@@ -36,6 +36,7 @@ CONTRADICTS = 0.01  # p-value below which records of one rig contradict each oth
 RARE = 0.05  # share of simulations below which a record is not like them
 NEAR_AN_END = 2.0  # normal score beyond which 5 % of a prior lie
 TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
+PRIOR = 3  # digits of the ends of its interval
 NARROWER = 0.75  # of the prior's standard deviation, as normal scores: what counts as identified
 STATE_DRIFT = (
     "A zero of the load cell that drifts can be stated, as a record without contact shows it, in "
@@ -190,8 +191,9 @@ class Fit(Report):
         sentences.append(f"Compared with {self.simulations} simulated records.")
         sentences += self.disturbances
         sentences.append(
-            "Experimental. Coverage: the share of such 95 % intervals that hold the truth, of "
-            "simulated records that were left out. It says nothing of what no simulation contains."
+            "Experimental. Width: that of the posterior over that of the prior. Coverage: the "
+            "share of such 95 % intervals that hold the truth, of simulated records that were left "
+            "out. It says nothing of what no simulation contains."
         )
         own = [x.name for x in self.estimates if x.name in MEANINGS]
         sentences += [f"{name} is the {MEANINGS[name]}." for name in own]
@@ -199,7 +201,7 @@ class Fit(Report):
         remarks |= dict.fromkeys(self.beyond, "beyond its prior")
         short = short_names(x.name for x in self.estimates)  # the sentences have the whole name
         rows = [row(x, short[x.name], remarks.get(x.name, "")) for x in self.estimates]
-        headings = ("parameter", "posterior", "its 95 %", "prior", "its 95 %", "width", "coverage")
+        headings = ("parameter", "posterior", "its 95 %", "95 % of prior", "width", "coverage")
         return [Section("Fit", sentences, Table(headings, rows))]
 
     @property
@@ -406,6 +408,5 @@ def words(x: Estimate) -> str:
 def row(x: Estimate, short: str, remark: str) -> tuple[str, ...]:
     """Return a row of the report; a remark stands in place of the value, if there is one."""
     after = remark or in_words(x.median, x.unit)
-    between, before = span(x.low, x.high, x.unit), span(x.prior_low, x.prior_high, x.unit)
-    shares = percent(x.narrower), percent(x.coverage)
-    return (short, after, between, in_words(x.prior_median, x.unit), before, *shares)
+    between, before = span(x.low, x.high, x.unit), span(x.prior_low, x.prior_high, x.unit, PRIOR)
+    return short, after, between, before, percent(x.narrower), percent(x.coverage)

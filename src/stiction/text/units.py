@@ -375,13 +375,13 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
     return f"{plain} {name}".rstrip()
 
 
-def span(low: float, high: float, unit: str) -> str:
+def span(low: float, high: float, unit: str, digits: int = DIGITS) -> str:
     """Return two values in an SI unit as text, with the unit once where both have the same.
 
     >>> span(2285.0, 2315.0, "N/m"), span(900.0, 1100.0, "N/m"), span(0.2, 0.3, "")
     ('2.285 to 2.315 kN/m', '900 N/m to 1.1 kN/m', '0.2 to 0.3')
     """
-    begin, end = in_words(low, unit), in_words(high, unit)
+    begin, end = (in_words(value, unit, digits) for value in (low, high))
     number, _, name = begin.partition(" ")
     return f"{number if end.endswith(f' {name}') else begin} to {end}"
 

@@ -34,6 +34,7 @@ from stiction.inference.simulated.synthetic import draw, synthesise
 from stiction.recording import stored
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result import fit_file
+from stiction.text.sections import Section
 
 WORN = """
 from typing import NamedTuple
@@ -174,6 +175,10 @@ def test_coverage_is_measured_on_records_left_out_and_reported(found, tmp_path):
     stored = xr.open_dataset(found.save(tmp_path / "fit.nc"))["phi"].attrs
     assert stored["coverage_of_95_percent_intervals"] == found["phi"].coverage
     assert "Experimental" in str(found.tables()[0])
+    shown = found.tables()[0].table
+    known = [row for row in shown.rows if row[1] != "not identifiable"]
+    upright = str(Section("", [], shown._replace(rows=known))).splitlines()
+    assert max(map(len, upright)) < 80  # no line of a usual terminal is folded
 
 
 def test_a_stored_library_is_used_again(found, rig, record, copied):

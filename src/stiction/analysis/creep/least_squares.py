@@ -28,7 +28,7 @@ def used_bins(curve: xr.Dataset, low: float, high: float) -> Bins:
             remedy = f"the longest stick phase takes {in_words(longest, 's')} only"
         raise ResultError(
             f"not determined: between {in_words(low, 's')} and {in_words(high, 's')} before slip "
-            f"the creep curve has {inside.sum()} of the {FEWEST_USED} bins that are needed; {remedy}"
+            f"the creep curve has {inside.sum()} of the {FEWEST_USED} bins needed; {remedy}"
         )
     error = np.hypot(np.nan_to_num(bins.error), THEORY * np.abs(bins.velocity))
     return bins._replace(error=error).some(inside)
