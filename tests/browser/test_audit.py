@@ -29,3 +29,10 @@ def test_on_paper_figures_of_a_column_stand_side_by_side(printed, paper):
     figures = printed.evaluate(FIGURES)
     creep, damping, *_ = (each for each in figures if each["width"] < 0.6 * width)
     assert creep["top"] == damping["top"]
+
+
+@pytest.mark.parametrize("paper", ["A4", "Letter"])
+def test_on_paper_two_rows_of_figures_may_part(printed, paper):
+    """They went to the next page together, and left half of one empty: five pages."""
+    margin = dict.fromkeys(("top", "bottom", "left", "right"), "1cm")
+    assert printed.pdf(format=paper, margin=margin).count(b"/Type /Page\n") <= 4

@@ -51,12 +51,13 @@ DRAWN: dict[str, tuple[tuple[Callable[[Audit], Figure | None], str], ...]] = {
     ),
     "Fit": (
         (figures.posterior, "Prior (grey) and posterior (blue), with its 95 % interval."),
-        (figures.corner, "All pairs of what the record identifies: 50 % and 95 %."),
         (
             figures.ranks,
             "Calibration: ranks of the truth of simulated records, each left out. Even ranks "
             "mean true intervals; grey is where 95 % of the counts lie then.",
         ),
+        # the largest stands last, so that on paper the text goes on below it
+        (figures.corner, "All pairs of what the record identifies: 50 % and 95 %."),
     ),
     tolerance.TITLE: ((figures.tolerance, "What tests read over the uncertain misalignment."),),
     "What to change": (
