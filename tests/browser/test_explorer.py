@@ -610,7 +610,7 @@ def test_it_fits_a_small_projector(page):
     assert [each for each in small if not each.startswith("<sub")] == []
 
 
-@pytest.mark.parametrize("size", [(1366, 620), (1024, 600), (390, 844)])
+@pytest.mark.parametrize("size", [(1366, 620), (1060, 700), (1024, 600), (390, 844)])
 def test_a_smaller_window_scrolls_and_keeps_its_curves(page, size):
     """In 1024 x 600 px five strips shared 40 px; on a phone half the page lay beside the screen."""
     width, height = size
@@ -621,6 +621,14 @@ def test_a_smaller_window_scrolls_and_keeps_its_curves(page, size):
     page.tab.click("#pin")  # with one more button beside the status
     status = "document.querySelector('#status')"
     assert page.value(f"{status}.scrollHeight <= {status}.clientHeight")  # nothing is cut off
+    long = page.value(f"""((its) => {{
+      const said = its.textContent;
+      its.textContent = said.padEnd(110, ' and more words');
+      const heights = [its.scrollHeight, its.clientHeight];
+      its.textContent = said;
+      return heights;
+    }})({status})""")
+    assert long[0] <= long[1]  # nor of a message, for which there is a line of its own
     assert page.value(f"{status}.title === {status}.textContent")
     beside = page.value(
         """[...document.querySelectorAll('header *, #transport *, .row *, canvas')]
@@ -1034,3 +1042,26 @@ def test_closing_the_page_ends_its_computation(browser, explorer):
     made.value(f"stictionPage.link.ask({{do: 'zoom', tables: {tables}, window: [0, 1]}}, () => 0)")
     tab.close()
     until(lambda: len(explorer._pages) == others, "what was computed for the page")
+
+
+def test_the_words_beside_the_apparatus_have_no_rounding(modules):
+    """At the start of a rig turned by 2 deg, they were ψ = -4.441e-16° and < 0.001 nN."""
+    said = modules.value(
+        module(
+            "scene.js",
+            """({ Scene }) => {
+          const context = document.createElement("canvas").getContext("2d"), said = [];
+          context.fillText = (words) => said.push(words);
+          const own = Object.create(Scene.prototype);
+          own.scene = { phi: Math.PI / 90, k: [2300, 9e5] };
+          own.lengths = { x: 1e-3, y: 1e-6 };
+          own.factors = () => "";
+          own.words(context, 900, 300, {
+            slip_x: 1e-9, slip_y: 0, friction: 2.4, theta: 2 + 4e-16, u_x: 7.5e-37, sticking: false,
+          }, {});
+          return said.join("|");
+        }""",
+        )
+    )
+    assert "2.4 N, ψ = 0°" in said
+    assert "0 N" in said.split("|")

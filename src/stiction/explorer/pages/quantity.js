@@ -14,6 +14,9 @@ export function plain(value, digits = 4) {
   return text.includes("e") ? text.replace("e+", "e") : text;
 }
 
+// A value without its rounding error: zero, beside the size of others.
+export const unrounded = (value, size) => (Math.abs(value) < 1e-9 * size ? 0 : value);
+
 // A quantity in words, with no more digits than a field has room for.
 export function brief(words) {
   const [, number, unit] = /^([-+]?[\d.]+(?:e[-+]?\d+)?)([^\d,]*)$/i.exec(words) ?? [];

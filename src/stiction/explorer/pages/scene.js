@@ -5,7 +5,7 @@
 // that the picture states.
 
 import { BLUE, FLOOR, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SERIF, SOFT, arrow, line, symbols, text } from "./drawing.js";
-import { plain, quantity } from "./quantity.js";
+import { plain, quantity, unrounded } from "./quantity.js";
 
 const BLOCK = 27; // half side of the mass, px
 const PIXEL = 0.0254 / 96; // m, of CSS
@@ -177,11 +177,12 @@ export class Scene {
 
   words(context, width, height, s, M) {
     this.ways(context, height);
-    const speed = Math.hypot(s.slip_x, s.slip_y), psi = s.theta - (this.scene.phi * 180) / Math.PI;
+    const speed = Math.hypot(s.slip_x, s.slip_y), u = unrounded(s.u_x, this.lengths.x);
+    const psi = unrounded(s.theta - (this.scene.phi * 180) / Math.PI, 1);
     const rows = [
       ["slip speed", s.sticking ? "0 (at rest)" : quantity(speed, "m/s"), GREEN],
       ["friction F", `${quantity(s.friction, "N")}, ψ = ${plain(psi, 4)}°`, PURPLE],
-      ["k_x u_x", quantity(this.scene.k[0] * s.u_x, "N"), RED],
+      ["k_x u_x", quantity(this.scene.k[0] * u, "N"), RED],
     ];
     context.fillStyle = FLOOR; // a wall may be there
     context.globalAlpha = 0.85;

@@ -5,6 +5,7 @@ import { BLUE, GREEN, GREY, INK, Layers, ORANGE, PURPLE, RED, SKY, SOFT, curve, 
 import { quantity } from "./quantity.js";
 
 const LEFT = 62, RIGHT = 12, TOP = 22, BOTTOM = 34, GAP = 5;
+const PALE = 0.3; // of what reaches down to rest
 const STRIPS = [
   { name: "force", unit: "N", share: 1.5, curves: [["spring_y", ORANGE, "k_y u_y"], ["spring_x", RED, "k_x u_x"]] },
   { name: "F", unit: "N", share: 0.8, curves: [["friction", PURPLE, "F"]] },
@@ -106,10 +107,13 @@ export class Series {
         const values = answer.arrays[name];
         if (!values) continue;
         const at = (i) => x(low + ((places[i >> 2] + 0.5) / columns) * (high - low));
-        context.globalAlpha = part === "a" ? 0.55 : 1;
+        const opaque = part === "a" ? 0.55 : 1, wide = part === "measured" ? 1.6 : 1.2;
         context.setLineDash(part === "a" ? [5, 3] : []);
         const shade = part === "b" ? color : part === "a" ? "#444b53" : SKY;
-        curve(context, 4 * places.length, (i) => [at(i), y(values[i])], shade, part === "measured" ? 1.6 : 1.2);
+        context.globalAlpha = opaque * (strip.log ? PALE : 1);
+        curve(context, 4 * places.length, (i) => [at(i), y(values[i])], shade, wide);
+        context.globalAlpha = opaque; // of slips between rests, each column is full: a line has their largest
+        if (strip.log) curve(context, places.length, (i) => [at(4 * i), y(values[4 * i + 2])], shade, wide);
         context.globalAlpha = 1;
         context.setLineDash([]);
       }
