@@ -23,7 +23,7 @@ from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
 from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
-from stiction.plotting.run.lines import envelope
+from stiction.plotting.run.lines import BAND, draw_line, envelope
 from stiction.plotting.run.time_series import STILL, say_only
 from stiction.result.table import ColumnTable, sample_table
 from stiction.simulation import automatic_times, solve_coarsely
@@ -40,6 +40,7 @@ LENGTH, LONGEST_FILM = 10.0, 300.0  # s of film
 PERIODS = 4  # of the fast oscillation under the microscope
 FINE = 2_000  # samples of these
 IN_WINDOW = 20_000  # samples of the time series, at least
+WIDTH = 0.8  # pt, of lines over time
 TICKS = 5  # of a time axis, at most: more run into one another
 NAMES = ("u_x", "u_y", "slip_x", "slip_y", "slip_speed", "friction", "psi", "X", "normal_load",
          "spring_x", "sticking")  # fmt: skip
@@ -298,7 +299,10 @@ def series(figure: Figure, run: ColumnTable, times: Floats) -> list[Line2D]:
     for number, (label, factor, curves) in enumerate(rows):
         ax = figure.add_axes((0.06 + 0.32 * number, 0.08, 0.265, 0.27))
         for name, words, color in curves:
-            ax.plot(*envelope(run["time"], factor * run[name]), color=color, lw=0.8, label=words)
+            if name == "slip_speed":
+                draw_speed(ax, run["time"], run[name])
+            else:
+                draw_line(ax, run["time"], factor * run[name], color, WIDTH).set_label(words)
         if len(curves) > 1:
             ax.legend(loc="lower right", bbox_to_anchor=(1.0, 1.0), ncols=2, fontsize=9)
         if name == "slip_speed" and not (run[name] > slow).any():
@@ -314,6 +318,15 @@ def series(figure: Figure, run: ColumnTable, times: Floats) -> list[Line2D]:
         label_axes(ax, "time $t$ (s)", label)
         cursors.append(ax.axvline(times[0], color=BLACK, linewidth=1.0))
     return cursors
+
+
+def draw_speed(ax: Axes, time: Floats, speed: Floats) -> None:
+    """Draw the slip speed over time: where it swings too fast, a line above a pale range."""
+    times, values = envelope(time, speed)
+    whole = len(values) == len(speed)
+    ax.plot(times, values, color=GREEN, lw=WIDTH, alpha=1.0 if whole else BAND)
+    if not whole:
+        ax.plot(times[1::2], values[1::2], color=GREEN, lw=WIDTH)
 
 
 def microscope(figure: Figure, fine: ColumnTable, length: float) -> Line2D:
@@ -354,9 +367,11 @@ def time_in_digits(time: float, window: float) -> str:
     Examples
     --------
     >>> time_in_digits(1.25, 5.0), time_in_digits(0.0674213, 12e-6)
-    ('1.250 s', '0.0674213 s')
+    ('1.25 s', '0.0674213 s')
+    >>> time_in_digits(79730.4, 172800.0)
+    '79730 s'
     """
-    return f"{time:.{max(3, ceil(-log10(window)) + 2)}f} s"
+    return f"{time:.{max(0, ceil(-log10(window)) + 2)}f} s"
 
 
 def label_axes(ax: Axes, along: str, up: str) -> None:

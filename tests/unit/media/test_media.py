@@ -348,3 +348,17 @@ def test_walls_lie_in_the_picture(turn):
         way = np.array([np.cos(angle), np.sin(angle)])
         assert (np.abs(HOME + wall_distance(way, 3.1) * way) <= 0.5 * np.array(ROOM)).all()
     assert wall_distance(np.array([1.0, 0.0]), 3.1) == pytest.approx(3.1)
+
+
+def test_a_vibration_of_many_swings_is_a_band_in_a_film():
+    """Forces, direction and slip speed were filled areas."""
+    fast = st.presets.nakano_popov_2020().replace(drive=st.ConstantVelocity("30 mm/s"), k_x=1e5)
+    description = st.simulate(fast, 2.0).description
+    times = np.linspace(0.0, 2.0, 10)
+    figure = Figure(figsize=(12.8, 7.2), dpi=100)
+    series(figure, in_window(description, times), times)
+    force, _, speed = figure.axes
+    assert len(force.collections) > 0
+    pale, largest, _ = speed.lines
+    assert pale.get_alpha() < 0.5
+    assert (largest.get_ydata()[1:] > 1e-3).all()

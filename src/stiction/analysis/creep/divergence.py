@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.least_squares import best_fit, used_bins
+from stiction.analysis.creep.least_squares import UNLIKE, best_fit, used_bins
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 
@@ -131,6 +131,6 @@ def fit_divergence(
         found, errors = (*fit.values, lag), (*fit.errors, 0.0)
     (a, n, late), (a_error, n_error, late_error) = found, errors
     if not low_n[1] + EDGE < n < high_n[1] - EDGE:
-        raise ResultError("the creep curve does not have the shape that is fitted")
+        raise ResultError(UNLIKE)
     n_error = float(np.hypot(n_error, WEAKENED))
     return Divergence(n, n_error, a, a_error, late, late_error, loading_time)

@@ -14,6 +14,7 @@ from stiction.errors import ResultError
 from stiction.text.units import in_words
 
 FEWEST_USED = 5  # bins of a fit, which has two or three unknowns
+UNLIKE = "not determined: the creep curve does not have the shape that is fitted"
 THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 
 
@@ -105,5 +106,5 @@ def _minimise(
                 max_nfev=2000,
             )
     except RuntimeError:
-        raise ResultError("the creep curve does not have the shape that is fitted") from None
+        raise ResultError(UNLIKE) from None
     return found, covariance

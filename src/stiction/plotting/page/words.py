@@ -167,7 +167,7 @@ def scales_in_words(slider: Slider) -> list[str]:
     V, phi = slider.drive_speed, abs(slider.misalignment)
     if V > 0 and sin(phi) > 0:
         A = theory.damping_number_of(slider, V)
-        zeta = plain(A * sin(phi) ** 3, 2)
+        zeta = plain(A * sin(phi) ** 3)
         lines.append(rf"$A$ = {plain(A)}, $\zeta(\theta=\varphi)$ = {zeta}")
     return lines
 
