@@ -71,6 +71,8 @@ class Comparison(Report, dict[str, Trajectory]):
             for label, run in self.items()
             if not run.status.ok
         ]
+        if any(cell.startswith("> ") for each in rows for cell in each):
+            early.append("> marks slips that are faster still, between samples: take more of them.")
         force = next((cell_symbol(run.slider) for run in self.values()), "")
         headings = tuple(each.format(force) for each in HEADINGS)
         return [Section("Friction laws", early, Table(headings, rows))]
@@ -88,7 +90,8 @@ def row(label: str, run: Trajectory) -> tuple[str, ...]:
     release = ROUNDED * initial.epsilon if initial.v_x is None else 0.0
     least = drive * (REST if o.fastest > release * drive else release)  # it sticks at once
     shown = (v if v > least else 0.0 for v in (o.fastest, o.slowest, o.creep))
-    speeds = (in_words(v, "m/s", 3) for v in shown)
+    speeds = [in_words(v, "m/s", 3) for v in shown]
+    speeds[0] = f"> {speeds[0]}" if o.hidden else speeds[0]
     return label, str(o.sticks), in_words(o.time_stuck, "s", 3), f"{o.peak:.4f}", *speeds
 
 

@@ -10,7 +10,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.analysis.record import cell_axis
-from stiction.arrays import Floats
+from stiction.arrays import Floats, Indices
 from stiction.errors import Status
 from stiction.result.peak import largest_between
 from stiction.result.table import largest
@@ -21,6 +21,7 @@ FINE = 8  # bins in each time that is averaged over
 SEEN = 4  # samples for each stick: with fewer, what lies between two sticks is not seen
 OF_A_SLIP = 2  # nor with fewer in each slip
 HUNDREDTHS = 100  # of the first loading
+FASTER = 1.01  # times the speed at samples: less is rounding
 ROUNDED = 1e-14  # of the travel of drive or mass: places are known to some roundings
 
 
@@ -43,6 +44,15 @@ class Slip(NamedTuple):
     mean: Floats
     high: Floats
     rest: Floats
+
+
+def _mean_speeds(run: Trajectory, at: Indices) -> Floats:
+    """Return the mean speeds (m/s) of the mass from one to the next of some samples, by places."""
+    places = [run.samples[name][at] for name in ("X", "Y", "u_x", "u_y")]
+    moved = np.hypot(*map(np.diff, places[:2]))
+    moved[moved < ROUNDED * np.abs(places).max()] = 0.0
+    speeds: Floats = moved / np.diff(run.samples["time"][at])
+    return speeds
 
 
 def cell_force(run: Trajectory) -> Floats:
@@ -131,7 +141,10 @@ class Outcome(NamedTuple):
         Largest ratio of the load cell's force, in either direction, to the normal load at the same
         instant; NaN without a load. Under a load that falls it comes later than the largest force.
     fastest : float
-        Largest slip speed of the samples, m/s.
+        Largest slip speed of the samples, m/s; or of the means between two of them, where one of
+        those is larger.
+    hidden : bool
+        Whether it is a mean: then the mass is faster still, between two samples.
     slowest : float
         Smallest mean speed over a hundredth of the first loading, m/s, so that the speed at the
         release does not count; zero if the mass rests during the loading, however shortly.
@@ -148,6 +161,7 @@ class Outcome(NamedTuple):
     time_stuck: float
     peak: float
     fastest: float
+    hidden: bool
     slowest: float
     creep: float
     steps: int
@@ -159,10 +173,10 @@ def outcome(run: Trajectory) -> Outcome:
     end = first_slip_time(run)
     loading = speed[: np.searchsorted(times, end) + 1]
     ends = np.unique(np.linspace(0, len(loading) - 1, HUNDREDTHS + 1).astype(np.intp))
-    places = [run.samples[name][ends] for name in ("X", "Y", "u_x", "u_y")]
-    moved = np.hypot(*map(np.diff, places[:2]))
-    moved[moved < ROUNDED * np.abs(places).max()] = 0.0
-    means = moved / np.diff(times[ends]) if len(moved) else loading[:1]
+    means = _mean_speeds(run, ends) if len(ends) > 1 else loading[:1]
+    sampled = float(np.fmax.reduce(speed))  # ignores NaN at the end of a run
+    between = float(_mean_speeds(run, np.arange(len(times))).max(initial=0.0))
+    hidden = between > FASTER * sampled
     rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
     return Outcome(
@@ -170,7 +184,8 @@ def outcome(run: Trajectory) -> Outcome:
         statistics.stick_count,
         statistics.time_stuck,
         largest_coefficient(run),
-        float(np.fmax.reduce(speed)),  # ignores NaN at the end of a run
+        between if hidden else sampled,
+        hidden,
         0.0 if rests else float(means.min()),
         float(np.median(means)),
         statistics.steps,

@@ -103,14 +103,14 @@ def as_text(parts: Iterable[Section]) -> str:
 
 
 def join_units(text: str) -> str:
-    """Return a text whose numbers keep their unit, and a "~" before them, on the same line.
+    """Return a text whose numbers keep their unit, and a "~" or ">" before them, on the same line.
 
     So does a product of symbols with subscripts.
 
     >>> join_units("about ~ 2 N for k_x u_x")
     'about ~\xa02\xa0N for k_x\xa0u_x'
     """
-    together = r"(?<=\d) (?=\S)| (?=s/m\b)|(?<=~) (?=\d)|(?<=\b\w_\w) (?=\w_\w\b)"
+    together = r"(?<=\d) (?=\S)| (?=s/m\b)|(?<=[~>]) (?=\d)|(?<=\b\w_\w) (?=\w_\w\b)"
     return re.sub(together, "\N{NO-BREAK SPACE}", text)
 
 

@@ -47,7 +47,7 @@ MANY, LAST = 8, 5  # cycles: of a run with more than the first, only the last on
 NOTE = (
     "Broad line: the described law. Pale bands: the",
     "range of fast swings about their mean (line); of",
-    "the slip speed, from its mean up to its maximum.",
+    "creep, from its mean up to its largest speed.",
     f"Loops: of more than {MANY} cycles the last {LAST}.",
     "Rows below: share of time at zero slip.",
 )
