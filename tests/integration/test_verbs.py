@@ -255,6 +255,8 @@ def test_set_reaches_every_command_that_reads_a_description(config, tmp_path, ca
     ("text", "words"),
     [
         ("ph=3deg", "ph: unknown parameter 'ph'; did you mean 'phi'?"),
+        ("mu=3", "did you mean 'friction.mu_0'?"),
+        ("load=3N", "did you mean 'normal_load'?"),
         ("drive.program.7.to=3", "'7' is not an element of a list of 1; elements count from 1"),
         ("phi.to=3", "phi.to: has no part 'to': it is '1 deg'"),
         ("phi", "--set 'phi' is not NAME=VALUE"),

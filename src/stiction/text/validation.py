@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from difflib import get_close_matches
 from functools import cache, partial
@@ -336,8 +337,14 @@ def _is_positive(value: object) -> bool:
 def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
     """Return the message for a name that is not `known`, with the nearest known one."""
     known = sorted(known)
-    longer = [each for each in known if len(name) >= LEAST and each.startswith(name)]
-    longer += [each for each in known if each.endswith(f".{name}")]  # its path is lacking
+    longer = [
+        each
+        for each in known
+        if (len(name) >= LEAST and each.startswith(name))
+        or each.endswith(f".{name}")  # its path is lacking
+        or name in re.split("[._]", each)  # or an index, or a word before it: mu, load
+    ]
+    longer = [each for each in longer if "." not in each or each.split(".")[-1] not in longer]
     near = longer if 0 < len(longer) <= MOST else get_close_matches(name, known, 1)
     meant = " or ".join(filter(None, (", ".join(map(repr, near[:-1])), *map(repr, near[-1:]))))
     remedy = f"did you mean {meant}?" if near else f"known: {', '.join(known)}"

@@ -527,6 +527,8 @@ def test_what_vibrates_does_not_creep():
     assert "it never rests" in text
     assert "creeps for" not in text
     assert "During creep" not in text
+    assert "hardly creeps" not in text  # a press did before its first slip, by 53 µm
+    assert "creeps at most until it vibrates" in text
 
 
 def test_creep_shorter_than_a_transverse_period_shows_no_oscillation():

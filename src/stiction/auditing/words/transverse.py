@@ -52,8 +52,11 @@ def _without_creep(found: Audit) -> str:
             f"be seen in a run sampled at {rate}: stiction analyse."
         )
     if seen.motion in VIBRATES or seen.shares.creep < HARDLY:
+        hardly = "hardly creeps"
+        if seen.motion in VIBRATES:
+            hardly = "creeps at most until it vibrates"
         return (
-            f"{natural} A transverse oscillation needs creep, and this mass hardly creeps. What "
+            f"{natural} A transverse oscillation needs creep, and this mass {hardly}. What "
             f"remains of it can be seen in a run sampled at {rate}."
         )
     swings, decay = oscillation(found.slider)
