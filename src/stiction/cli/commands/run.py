@@ -103,7 +103,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     peak = largest_spring_force(result.samples, result.slider.k_x)
     load = float(result.samples["normal_load"][peak.sample])
     then = "" if result.slider.load is None else " at that time"
-    mapped = f", {statistics.mapped} intervals without any" if statistics.mapped else ""
+    mapped = f", {statistics.mapped} of them by a return map" if statistics.mapped else ""
     count = len(result.samples["time"])
     sampled = " at start and end (sample_rate = 0)" if count <= 2 else ""
     seen = "" if peak.shown else ", at least"
@@ -111,7 +111,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     lines += [
         f"{output}: {count} samples, stick intervals: "
         f"{statistics.stick_count}, {in_words(statistics.time_stuck, 's')} in all"
-        f"{share(result)}; {statistics.steps} steps{mapped}",
+        f"{share(result)}{mapped}; {statistics.steps} steps",
         f"largest force of the spring along x, k_x u_x{sampled or seen}: "
         f"{in_words(peak.force, 'N')}"
         f"{f', {peak.force / load:.4g} of the normal load{then}' if load > 0.0 else ''}",
