@@ -1092,3 +1092,24 @@ def test_rows_of_parameters_are_as_long_as_each_other(count: int, across: int) -
     assert len(panels) == count
     places = [ax.get_subplotspec() for ax in panels]
     assert {each.get_gridspec().ncols for each in places if each is not None} == {across}
+
+
+def test_times_to_a_slip_of_less_than_two_decades_do_not_touch() -> None:
+    """A brake pad's 6 x 10^-4, 5 x 10^-4, ... of a second ran into one another."""
+    pad = st.Slider(
+        mass="350 g", k_x="1.8 MN/m", k_y="45 MN/m", phi="3 deg", normal_load="1.5 kN",
+        c_x="20 N s/m", c_y="60 N s/m", drive=st.ConstantVelocity("1 m/s"),
+        friction=st.ExponentialWeakening(0.45, 0.32, "0.5 m/s"),
+    )  # fmt: skip
+    found = st.analyse(st.simulate(pad, "50 ms", sample_rate="50 kHz"))
+    assert found.curves is not None
+    ax = st.plotting.plot_creep(found.curves, found.creep, V=1.0)
+    low, high = sorted(ax.get_xlim())
+    assert 10.0 < high / low < 100.0
+    ax.figure.draw_without_rendering()
+    ticks = [*ax.xaxis.get_major_ticks(), *ax.xaxis.get_minor_ticks()]
+    seen = [each.label1 for each in ticks if low <= each.get_loc() <= high]
+    boxes = [each.get_window_extent() for each in seen if each.get_text()]
+    boxes.sort(key=lambda box: box.x0)
+    assert len(boxes) > 1
+    assert all(left.x1 < right.x0 for left, right in pairwise(boxes))

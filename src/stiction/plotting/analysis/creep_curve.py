@@ -12,7 +12,7 @@ from matplotlib.ticker import LogLocator
 from stiction import theory
 from stiction.arrays import Floats, xr
 from stiction.plotting.page.canvas import panel
-from stiction.plotting.page.parameter import PLAIN
+from stiction.plotting.page.parameter import PLAIN, label_decades
 from stiction.plotting.page.style import BLACK, GREY, LINES, style
 
 Line = Callable[[Floats], Any]  # time to slip (s) to velocity (m/s)
@@ -105,6 +105,7 @@ def plot_creep(
             drawn = np.asarray(line(to_slip), dtype=np.float64) / V
             ax.plot(to_slip, drawn, color=color, linestyle=dashes, linewidth=1.2, label=label)
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
+        label_decades(ax.xaxis, to_slip[0], to_slip[-1])
         if (value > 2.0 * error).all():
             ax.set(yscale="log", ylim=(0.5 * value.min() / V, 1.5))
             if 0.5 * value.min() / V > 0.05:  # less than two decades: write all labels

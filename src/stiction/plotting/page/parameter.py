@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import degrees
+from math import ceil, degrees, floor, log10
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -49,8 +49,12 @@ def sparse(least: float) -> FuncFormatter:
 
 
 def label_decades(axis: Axis, low: float, high: float) -> None:
-    """Label the decades of a logarithmic axis; if it has few, close ticks within them too."""
-    few = high < FEW_DECADES * low
+    """Label the decades of a logarithmic axis; if it has few, close ticks within them too.
+
+    A single label would tell no scale.
+    """
+    powers = floor(log10(high)) - ceil(log10(low)) + 1
+    few = high < FEW_DECADES * low or powers < 2
     axis.set_minor_formatter(sparse(low) if few else NullFormatter())
     if few:
         axis.set_major_formatter(sparse(low))
