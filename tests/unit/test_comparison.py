@@ -303,7 +303,7 @@ def test_every_wrong_law_is_reported(described: st.Description, tmp_path: Path) 
         [
             "did you mean 'coulomb'?",
             "mu_0: must not be below 0, is -1",
-            "mu: unknown key 'mu'; did you mean 'mu_0'?",
+            "mu: unknown key 'mu'; did you mean 'mu_0' or 'mu_static'?",
             "write for example '{law = ",
             "No such file",
             "has no table [friction]",
