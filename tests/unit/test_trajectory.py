@@ -251,7 +251,7 @@ def test_the_largest_force_is_that_of_either_direction(slider, velocity, tmp_pat
         time = run.samples["time"][force.argmax()]
         when = in_words(time, "s")
         page = re.sub("<.+?>", " ", run._repr_html_())
-        assert f" largest k_x u_x{extent}  {join_units(told)} " in page
+        assert f" {join_units(f'largest k_x u_x{extent}')}  {join_units(told)} " in page
         assert f" at  {join_units(when)} " in page
         assert f"k_x u_x{extent}: {told}, " in "\n".join(report_lines(run, tmp_path / "run.nc"))
         solution, table = motion.simulate(run.description, run.samples["time"], lambda: None)
