@@ -35,8 +35,8 @@ def test_errors_of_bins_include_that_of_the_theory():
 @pytest.mark.parametrize(
     ("low", "high", "remedy"),
     [
-        (0.5, 5.5, "4 bins .* between 500 ms and 5.5 s before slip and 5 .* narrower bins"),
-        (5.5, 10.5, "4 bins .* the longest stick phase takes 10 s only"),
+        (0.5, 5.5, "between 500 ms and 5.5 s before slip .* 4 of the 5 bins .* narrower bins"),
+        (5.5, 10.5, "4 of the 5 bins .* the longest stick phase takes 10 s only"),
     ],
 )
 def test_too_few_bins_are_refused_with_the_remedy(low, high, remedy):
