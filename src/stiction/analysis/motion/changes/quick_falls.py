@@ -13,12 +13,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.signals.robust import uniform_mean
 from stiction.analysis.signals.turning_points import surprise, without_spikes
 from stiction.arrays import TINY, Floats, Indices
 
 FEWEST_PARTS = 32  # of a force, of the length over which its changes are looked at
 LARGER = 1.25  # times a rise: the samples of a vibration can be off its crests by so much
 NEARLY_ALL = 0.9  # of the largest changes are falls
+NEAR = 16  # lengths over which the mean change is taken off: what a slow wave adds to each
+SMALL = 1 / 3  # of the median fall: what is less is not counted
 AS_GOOD = 0.9  # of the clearest: of two lengths as good, more of a fall ends within the longer one
 # The clearness at which slips are as likely as noise. Of 10 000 records of noise (white, filtered,
 # of heavy tails), vibration, settling and loading, 4 have more than 4, the most 4.9.
@@ -69,9 +72,13 @@ def quick_falls(force: Floats) -> QuickFalls:
 
 
 def changes(sums: Floats, length: int) -> Floats:
-    """Return by how much each mean over a length exceeds the one before, from sums (n + 1,)."""
+    """Return by how much each mean over a length exceeds the one before, from sums (n + 1,).
+
+    What the loading and a slow wave add is taken off: the mean nearby, and the median.
+    """
     jumps = (sums[2 * length :] - 2.0 * sums[length:-length] + sums[: -2 * length]) / length
-    return np.asarray(jumps - np.median(jumps))
+    near = jumps - uniform_mean(jumps, min(NEAR * length, len(jumps)))
+    return np.asarray(near - np.median(near))
 
 
 def _clearest(sums: Floats, length: int) -> QuickFalls:
@@ -84,9 +91,11 @@ def _clearest(sums: Floats, length: int) -> QuickFalls:
         return NONE
     best = int(np.argmax(worth))
     its = order[: best + 1]
-    height = float(np.median(size[its[falls[its]]]))
+    heights = size[its[falls[its]]]
+    height = float(np.median(heights))
+    number = int(np.count_nonzero(heights > SMALL * height))
     wander = float(np.std(sums[length:] - sums[:-length])) / length
-    return QuickFalls(int(found[best]), height, height / max(wander, TINY), float(worth[best]))
+    return QuickFalls(number, height, height / max(wander, TINY), float(worth[best]))
 
 
 def extremes(jumps: Floats) -> tuple[Floats, NDArray[np.bool_]]:

