@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.assessment import assess_record, assess_run
+from stiction.analysis.creep.curve import stick_phases
 from stiction.analysis.creep.divergence import Divergence
 from stiction.analysis.creep.findings import attempt, find_creep
 from stiction.analysis.creep.misalignment import Misalignment
@@ -190,8 +191,8 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     width = _free_of_hum(oscillation, sticking) if run is None else None
     creep = find_creep(source, record, sticking, width)
     phases = None
-    if run is not None and oscillation is not None and creep.curves is not None:
-        phases = oscillation_by_phase(oscillation, run, _phases(run, creep.curves, sticking))
+    if run is not None and oscillation is not None:
+        phases = oscillation_by_phase(oscillation, run, stick_phases(run, sticking))
     analysis = Analysis(
         source, record, regime, its.cycles.as_dataset(), summary(its.usual.as_dataset()),
         creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
@@ -252,9 +253,3 @@ def _above(record: Record, cycles: xr.Dataset) -> float:
     """Return the frequency (Hz) above which an oscillation is sought."""
     fastest = cycles["period"].values.min() if cycles.sizes["cycle"] else record.duration / 10.0
     return HARMONICS / max(float(fastest), TINY)
-
-
-def _phases(run: Trajectory, curves: xr.Dataset, cycles: xr.Dataset) -> np.ndarray:
-    """Return start and end (s) of each stick phase of a run, the first loading among them."""
-    starts = np.concatenate([[float(run.samples["time"][0])], cycles["start"].values])
-    return np.column_stack([starts, curves["slip_time"].values])

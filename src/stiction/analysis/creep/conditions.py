@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
-from stiction.arrays import Floats, xr
+from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 from stiction.recording.noise import white_noise
 from stiction.text.quantity_text import percent
-from stiction.trajectory import Trajectory
 
 PARTS = 16  # of a stick phase, over each of which the load is averaged: their changes are its own
 # Largest change of the load in a stick phase, as a share of it: for the exponent of the divergence,
@@ -38,31 +37,28 @@ def at_one_load(curves: xr.Dataset, record: Record) -> xr.Dataset:
     return curves.assign(force=curves["force"] / load)
 
 
-def driven_steadily(
-    source: Trajectory | Record, record: Record, begin: Floats, end: Floats
-) -> NDArray[np.bool_]:
+def driven_steadily(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:
     """Return in which stick phases the drive goes on at its velocity, (n,).
 
     `begin` and `end` (s) are those of the phases. The drive is that of the run, that which was
-    measured, or that which loads the spring, X + F/k_x. Of a force alone pauses are seen.
+    measured, either way, or that which loads the spring, X + F/k_x. Of a force alone pauses are
+    seen.
     """
-    known: float | None = record.drive_velocity
-    if not len(begin):
-        return np.ones(0, bool)
-    if isinstance(source, Trajectory):
-        drive = np.hypot(source.samples["drive_X"], source.samples["drive_Y"])
-        known, way = source.slider.drive_speed, _integral(record.time, drive)
-    elif record.drive_position is not None:
+    known, way = record.drive_velocity, record.drive_travel
+    if not len(begin) or (record.slider is not None and way is None):
+        return np.ones(len(begin), bool)
+    if way is None:
         way = record.drive_position
-    elif record.position is not None and record.stiffness is not None:
+    if way is None and record.position is not None and record.stiffness is not None:
         known, way = None, record.position + record.force / record.stiffness
-    else:
+    if way is None:
         return ~_pauses(record, begin, end)
     lasts = end - begin
-    speed = np.diff(np.interp([begin, end], record.time, way), axis=0)[0] / lasts
-    usual = known or (float(np.median(speed)) if len(speed) else 0.0)
-    noise = NOISE * white_noise(np.asarray(way)) / lasts
-    return np.asarray(np.abs(speed - usual) <= PAUSED * abs(usual) + noise)
+    passed = np.abs(np.diff(np.interp([begin, end], record.time, way), axis=0)[0])
+    speeds = passed / np.maximum(lasts, TINY)
+    usual = lasts * (known or np.quantile(speeds, 0.5, method="higher"))  # a pause makes it less
+    noise = NOISE * white_noise(way)
+    return np.asarray(np.abs(passed - usual) <= PAUSED * usual + noise)
 
 
 def _pauses(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:
@@ -73,9 +69,11 @@ def _pauses(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:
     load both are in proportion.
     """
     none = np.zeros(len(begin), bool)
-    rises = [record.force[i:j] for i, j in np.searchsorted(record.time, [begin, end]).T]
-    if len(rises) < FEWEST_RISES or min(map(len, rises)) < 2:
+    inside = [slice(*each) for each in np.searchsorted(record.time, [begin, end]).T]
+    if len(inside) < FEWEST_RISES or min(each.stop - each.start for each in inside) < 2:
         return none
+    step = 1.0 / record.sample_rate
+    rises = [_evenly(record.time[each], record.force[each], step) for each in inside]
     peaks = np.array([each.max() for each in rises])
     high = float(np.median(peaks))
     if not peaks.min() > 0.0:
@@ -91,6 +89,11 @@ def _pauses(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:
     noise = NOISE * white_noise(record.force) / (levels[1] - levels[0]) * usual
     most = PAUSED * float(np.median([*map(len, rises)])) + noise
     return np.asarray((stays - usual > most).any(axis=1))
+
+
+def _evenly(time: Floats, values: Floats, step: float) -> Floats:
+    """Return values so often as they last: at times a `step` (s) apart, straight in gaps."""
+    return np.interp(np.arange(time[0], time[-1] + 0.5 * step, step), time, values)
 
 
 def _integral(time: Floats, values: Floats) -> Floats:

@@ -89,11 +89,26 @@ def creep_curves(
             f"width must be above 0 s, is {echo(width)}; leave it out for one that suits"
         )
 
-    record = as_record(source)
-    position = _position(record)
+    return curves_of(source, stick_phases(source, cycles), width)
+
+
+def stick_phases(source: Trajectory | Record, cycles: xr.Dataset) -> Floats:
+    """Return start and end of each stick phase (s), (n, 2); of a run the first loading among them.
+
+    A record's are those of its cycles; a run's are these after the first loading.
+    """
     phases = np.column_stack([cycles["start"].values, cycles["peak_time"].values])
     if isinstance(source, Trajectory):
-        phases = np.vstack([[record.time[0], creep_end(source)], phases])
+        phases = np.vstack([[source.samples["time"][0], creep_end(source)], phases])
+    return phases
+
+
+def curves_of(
+    source: Trajectory | Record, phases: Floats, width: float | None = None
+) -> xr.Dataset:
+    """Return the creep curves of stick phases from a start to an end (s), (n, 2)."""
+    record = as_record(source)
+    position = _position(record)
     length = phases[:, 1] - phases[:, 0]
     least = width or _least_width(record, position, length, isinstance(source, Trajectory))
     edges = bin_edges(least, float(length.max(initial=0.0)))

@@ -17,7 +17,7 @@ from stiction.analysis.creep.conditions import (
     load_change,
     refuse_change,
 )
-from stiction.analysis.creep.curve import creep_curves, mean_creep
+from stiction.analysis.creep.curve import curves_of, mean_creep, stick_phases
 from stiction.analysis.creep.divergence import Divergence, fit_divergence
 from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.force_curve import misalignment_from_force
@@ -55,8 +55,8 @@ SCATTER = 2.0  # standard errors, root mean square: nor those that deviate by mo
 # angle comes out up to 10 % low; a jerk that is slow beside what friction weakens by does no harm
 JERKS, LOST = 0.2, 0.02
 PAUSES = (
-    "not determined: the drive pauses, or changes its velocity, in every stick phase, and creep "
-    "goes with it; let it go on steadily through some cycles"
+    "not determined: in every stick phase the drive pauses, or goes at another velocity than "
+    "stated, and creep goes with it; let it go on steadily, as is stated, through some cycles"
 )
 AT_ONCE = 0.1  # of a stick phase: a longer rest is none between jerks
 
@@ -94,17 +94,21 @@ def find_creep(
     """
     missing: dict[str, str] = {}
     run = source if isinstance(source, Trajectory) else None
+    phases = stick_phases(source, cycles)
+    steady = driven_steadily(record, *phases.T)
+    if len(steady) and not steady.any():
+        return CreepFound(None, None, None, None, dict.fromkeys(("creep", "misalignment"), PAUSES))
+    driven = cycles.isel(cycle=steady[len(steady) - cycles.sizes["cycle"] :])
     by_force = None
-    begin, end = (cycles[name].values for name in ("start", "peak_time"))
-    driven = cycles.isel(cycle=driven_steadily(source, record, begin, end))
     if record.position is None:
-        by_force = attempt(missing, "misalignment", lambda: _by_force(record, cycles, driven))
+        by_force = attempt(missing, "misalignment", lambda: misalignment_from_force(record, driven))
     known = calibrate(record, driven, by_force)
-    curves = attempt(missing, "creep", lambda: creep_curves(run or known, cycles, width))
+    curves = attempt(missing, "creep", lambda: curves_of(run or known, phases, width))
     mean = None
     if curves is not None:
-        curves = _without_pauses(curves, source, record)
-        mean = attempt(missing, "creep", lambda: _mean(curves, known, record))
+        curves = curves.where(xr.DataArray(steady, dims="phase"))
+        curves.attrs["left_out"] = int((~steady).sum())
+        mean = attempt(missing, "creep", lambda: mean_curve(curves, known, record))
     if mean is not None:
         mean = with_base(mean, known, record) if by_force is None else mean
         mean = with_rounding(mean, known, driven)
@@ -118,37 +122,6 @@ def find_creep(
     if run is not None and run.slider.misalignment == 0.0:
         return found
     return _with_fits(found, run, record, stiffness, V)
-
-
-def _by_force(record: Record, cycles: xr.Dataset, driven: xr.Dataset) -> Misalignment:
-    """Return the misalignment that the force implies in those cycles that are driven steadily."""
-    if cycles.sizes["cycle"] and not driven.sizes["cycle"]:
-        raise ResultError(PAUSES)
-    return misalignment_from_force(record, driven)
-
-
-def _without_pauses(curves: xr.Dataset, source: Trajectory | Record, record: Record) -> xr.Dataset:
-    """Return creep curves without those of phases in which the drive pauses: their values NaN.
-
-    Their number is the attribute ``left_out``.
-    """
-    end = curves["slip_time"].values
-    begin = end - np.fmax.reduce(curves["begin"].values, axis=1, initial=np.nan)
-    seen = np.isfinite(begin)
-    paused = seen.copy()
-    paused[seen] = ~driven_steadily(source, record, begin[seen], end[seen])
-    its = curves.copy(deep=True)
-    for name in its.data_vars:
-        its[name].values[paused] = np.nan
-    its.attrs["left_out"] = int(paused.sum())
-    return its
-
-
-def _mean(curves: xr.Dataset, known: Record, record: Record) -> xr.Dataset:
-    """Return the mean creep curve, or refuse one of which the drive pauses in every phase."""
-    if curves.attrs["left_out"] and not np.isfinite(curves["velocity"].values).any():
-        raise ResultError(PAUSES)
-    return mean_curve(curves, known, record)
 
 
 def _with_divergence(found: CreepFound, rate: float) -> CreepFound:
@@ -174,9 +147,7 @@ def _with_fits(
     assert mean is not None
     loading = float(np.nanmax(mean["force"].values)) / stiffness / V
     ends = curves["slip_time"].values
-    lasts = np.fmax.reduce(curves["begin"].values, axis=1)
-    seen = np.isfinite(lasts)
-    change = load_change(record, (ends - lasts)[seen], ends[seen])
+    change = load_change(record, ends - np.fmax.reduce(curves["begin"].values, axis=1), ends)
     ends_in_slip = run is None or slips(run)
 
     def diverging() -> Divergence:

@@ -79,7 +79,7 @@ def section(found: Analysis) -> Section:
         lines = [f"{UNKNOWN.capitalize()}.{several}"]
     if found.curves is not None and (left_out := found.curves.attrs.get("left_out", 0)):
         said = "1 stick phase, in which" if left_out == 1 else f"{left_out} stick phases, in which"
-        lines.append(f"Left out: {said} the drive pauses or changes its velocity.")
+        lines.append(f"Left out: {said} the drive pauses or goes at another velocity.")
     d, phi = found.divergence, found.misalignment
     if found.record.position is None and phi is None:
         lines.append("Creep is counted from the even loading in the first half of each rise.")

@@ -1,5 +1,6 @@
 """Misalignments by creep under a load that varies, and a drive that pauses."""
 
+from dataclasses import replace
 from math import degrees
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 import stiction as st
 from stiction.analysis.creep.conditions import driven_steadily, load_change, typical_load
+from stiction.analysis.creep.curve import stick_phases
 from stiction.analysis.record import record_of
 
 PAPER = st.presets.nakano_popov_2020()
@@ -120,7 +122,10 @@ def test_creep_leaves_out_stick_phases_in_which_the_drive_pauses(holds):
     its = found.misalignment
     assert abs(its.phi - PAPER.phi) < 2.0 * its.phi_error < 0.2 * PAPER.phi
     assert found.curves.attrs["left_out"] == 4
+    assert np.isnan(found.curves["velocity"]).all("bin").sum() == 4
     assert "Left out: 4 stick phases, in which the drive pauses" in str(found)
+    one = found._replace(curves=found.curves.assign_attrs(left_out=1))
+    assert "Left out: 1 stick phase, in which the drive pauses" in str(one)
 
 
 @pytest.mark.parametrize("channels", [("force",), ("force", "position"), ("force", "drive")])
@@ -139,6 +144,14 @@ def test_so_do_records_of_which_only_the_force_shows_the_pauses(holds, channels)
     assert abs(its.phi - PAPER.phi) < 2.0 * its.phi_error
 
 
+def test_samples_that_a_failed_run_lacks_are_left_out(holds):
+    """Its analysis ended in a traceback."""
+    X = holds.samples.columns["X"]
+    failed = X._replace(values=np.where(holds.samples["time"] < 16.9, X.values, np.nan))
+    table = replace(holds.samples, columns={**holds.samples.columns, "X": failed})
+    assert st.analyse(replace(holds, arrays=lambda: table)).curves.attrs["left_out"] == 4
+
+
 def test_a_drive_that_pauses_in_every_stick_phase_determines_no_creep():
     steps = [p.Constant("1 mm/s", "0.45 s"), p.Hold("0.4 s")] * 14
     slider = PAPER.replace(drive=p.DriveProgram(program=steps))
@@ -153,6 +166,14 @@ def test_no_pause_is_seen_where_the_drive_goes_on():
         assert st.analyse(source).curves.attrs["left_out"] == 0
 
 
+def test_a_run_knows_its_drive():
+    """Force over stiffness is no elongation where the springs turn away from the load cell."""
+    slider = PAPER.replace(phi="24 deg", k_y="11.5 kN/m", normal_load="4 N", cell_angle="42 deg")
+    run = st.simulate(slider, "2 s", sample_rate="1 kHz")
+    phases = stick_phases(run, st.analysis.find_cycles(run))
+    assert driven_steadily(record_of(run), *phases.T).all()
+
+
 @pytest.mark.parametrize("second", ["4 N", "25 N"])
 def test_under_another_load_no_drive_pauses(second):
     """A rise takes longer under more load, and its levels are others."""
@@ -164,6 +185,104 @@ def test_under_another_load_no_drive_pauses(second):
     begin, end = cycles["start"].values, cycles["peak_time"].values
     assert len(begin) > 8
     changes = np.searchsorted(end, 14.0), np.searchsorted(begin, 14.5)  # in between the load moves
-    driven = driven_steadily(record, record, begin, end)
+    driven = driven_steadily(record, begin, end)
     assert driven[: changes[0]].all()
     assert driven[changes[1] :].all()
+
+
+def sawtooth(pauses, rate=300.0, noise=0.0, left=slice(None), at=0.5, **channels):
+    """Return a record of rises by 1 N in 1 s, each with a pause (s) at a share, and their ends.
+
+    `left` are its samples; the channels are the drive's way, by a factor, or that of the mass.
+    """
+    lasts = 1.0 + np.array(pauses)
+    end = np.cumsum(lasts)
+    begin, goes_on = end - lasts, end - (1.0 - at)
+    knots = np.stack([begin, goes_on - pauses, goes_on, end - 1e-6]).T.ravel()
+    time = np.arange(0.0, end[-1], 1.0 / rate)[left]
+    force = np.interp(time, knots, np.tile([1.0, 1.0 + at, 1.0 + at, 2.0], len(end)))
+    way = np.interp(time, knots, 1e-3 * np.cumsum(np.tile([0.0, at, 0.0, 1.0 - at], len(end))))
+    random = noise * np.random.default_rng(1).standard_normal((2, len(time)))
+    ways = {"drive_position": way, "position": way - 1e-3 * force}
+    its = {name: factor * (ways[name] + 1e-3 * random[0]) for name, factor in channels.items()}
+    known = {"stiffness": "1 kN/m", "drive_velocity": "1 mm/s", "normal_load": "10 N"}
+    return st.Record(time=time, force=force + random[1], **known, **its), begin, end - 0.01
+
+
+CHANNELS = [{}, {"drive_position": 1.0}, {"drive_position": -1.0}, {"position": 1.0}]
+
+
+@pytest.mark.parametrize("channels", CHANNELS)
+def test_pauses_of_a_tenth_are_seen_by_a_displacement_either_way_and_by_a_force(channels):
+    """A sensor that counts backwards made every stick phase one with a pause; the limit is 10 %."""
+    pauses = 0.0, 0.0, 0.0, 0.0, 0.08, 0.15, 0.3, 1.0
+    assert driven_steadily(*sawtooth(pauses, **channels)).tolist() == [True] * 5 + [False] * 3
+    assert len(driven_steadily(sawtooth(pauses, **channels)[0], *np.empty((2, 0)))) == 0
+
+
+@pytest.mark.parametrize(
+    ("channels", "pause"), [*zip(CHANNELS, (0.9, 0.5, 0.5, 0.65), strict=True)]
+)
+def test_noise_is_not_taken_for_pauses(channels, pause):
+    driven = driven_steadily(*sawtooth([0.0] * 40 + [pause], 30.0, 0.05, **channels))
+    assert driven.tolist() == [True] * 40 + [False]
+
+
+def test_another_rate_of_samples_is_not_taken_for_a_pause():
+    """Samples were counted: a rise with more of them, as others are, seemed to pause."""
+    number = np.arange(8 * 300)
+    often = number[(number % 5 == 0) | (number // 300 == 4)]
+    assert driven_steadily(*sawtooth(np.zeros(8), left=often)).all()
+    gap = number[np.abs(number - 4.5 * 300) > 60]
+    assert driven_steadily(*sawtooth(np.zeros(8), left=gap)).all()
+
+
+def test_of_two_stick_phases_one_may_pause():
+    """Compared with their mean, both did; a stated stiffness may be wrong."""
+    record, begin, end = sawtooth([0.0, 0.5], position=1.0)
+    record = record.model_copy(update={"stiffness": 800.0})
+    assert driven_steadily(record, begin, end).tolist() == [True, False]
+
+
+def test_four_rises_of_a_force_show_a_pause_but_at_the_peak():
+    assert driven_steadily(*sawtooth([0.0, 0.0, 0.0, 1.0])).tolist() == [True] * 3 + [False]
+    assert driven_steadily(*sawtooth([0.0, 0.0, 1.0])).all()
+    assert driven_steadily(*sawtooth([0.0, 0.0, 0.0, 1.0], at=0.92)).all()
+
+
+def test_rises_from_other_heights_are_compared_where_most_are():
+    record, begin, end = sawtooth(np.zeros(9))
+    assert driven_steadily(record, begin + 0.5 * (np.arange(9) > 3), end).all()
+
+
+def test_a_pause_under_another_load_is_seen():
+    record, begin, end = sawtooth([0.0] * 7 + [0.5])
+
+    def later(time):
+        return np.where(time < begin[4], time, begin[4] + 0.4 * (time - begin[4]))
+
+    force = np.where(record.time < begin[4], record.force, 0.4 * record.force)
+    record = record.model_copy(update={"time": later(record.time), "force": force})
+    driven = driven_steadily(record, later(begin), later(end))
+    assert driven.tolist() == [True] * 7 + [False]
+
+
+def test_rises_that_cannot_be_compared_show_no_pause():
+    record, begin, end = sawtooth(np.zeros(6))
+    assert driven_steadily(record, begin, np.where(begin > 3.0, end, begin)).all()
+    for force in (record.force * (record.time < 3.0), np.full(len(record), 1.0)):
+        assert driven_steadily(record.model_copy(update={"force": force}), begin, end).all()
+
+
+def test_a_drive_is_not_said_to_pause_where_another_velocity_is_stated():
+    record, *_ = sawtooth(np.zeros(6), drive_position=1.0)
+    record = record.model_copy(update={"drive_velocity": 0.8e-3})
+    assert "or goes at another velocity than stated" in str(st.analyse(record))
+    still = record.model_copy(update={"force": np.full(len(record), 1.0)})
+    assert "pauses" not in str(st.analyse(still))
+
+
+def test_creep_is_counted_from_the_loading_of_rises_without_a_pause():
+    """A stiffness half-way between those with and without a pause makes creep of rest."""
+    record, *_ = sawtooth([0.0, 0.6] * 4, at=0.2)
+    assert np.abs(st.analyse(record).creep["velocity"]).max() < 1e-3 * record.drive_velocity
