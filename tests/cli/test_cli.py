@@ -450,12 +450,15 @@ def test_ctrl_c_while_it_loads_is_no_traceback(monkeypatch, capsys):
     assert capsys.readouterr().err == "interrupted\n"
 
 
-def test_ctrl_c_is_the_end_of_the_explorer(monkeypatch, capsys):
+@pytest.mark.parametrize("source", [[], ["my.toml"], ["MY.TOML"]])
+def test_ctrl_c_is_the_end_of_the_explorer(monkeypatch, capsys, source):
+    """A description in capitals was read as a record."""
+
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("stiction.explorer.door.explore", interrupted)
-    assert inside("explore") == 0
+    assert inside("explore", *source) == 0
     assert "closed" in capsys.readouterr().err
 
 

@@ -11,11 +11,15 @@ import stiction as st
 from stiction.cli.commands.run import report_lines
 from stiction.explorer import motion
 from stiction.result.peak import UNSEEN, largest_spring_force
+from stiction.result.rest import rest_in_words
 from stiction.result.table import VARIABLES
 from stiction.simulation import automatic_times
 from stiction.text.sections import join_units
 from stiction.text.units import in_words
 
+PAPER = st.presets.nakano_popov_2020()
+STIFF = st.laws.LuGre(0.15, 0.2, "10 mm/s", sigma_0="1 EN/m", sigma_1="1 N s/m")
+TO_AND_FRO = st.protocols.DriveProgram(along=st.protocols.Modulation("1 um/s", "1 kHz"))
 
 @pytest.fixture(scope="module")
 def run(slider):
@@ -310,3 +314,24 @@ def test_a_largest_force_that_samples_cannot_show_is_a_lower_bound():
     assert (found.sample, found.shown) == (3, True)
     samples["u_x"] = samples["u_x"] + np.where(time == 2.0, 5e-3, 0.0)
     assert not largest_spring_force(samples, 2.0).shown
+
+
+@pytest.mark.parametrize(
+    ("changes", "remedy"),
+    [
+        ({}, "after some 2 s; set a longer duration"),
+        ({"friction": STIFF}, "after some 1.995 s; set a longer duration"),
+        ({"drive": st.ConstantVelocity(0.0)}, "the drive is at rest; give it a velocity"),
+        ({"drive": TO_AND_FRO}, "held all the time; run it longer"),
+    ],
+)
+def test_a_remedy_suits_a_mass_that_never_slips(changes, remedy):
+    run = st.simulate(PAPER.replace(**changes), "5 ms", sample_rate="1 kHz")
+    assert rest_in_words(run.slider, run.samples, run.statistics.steps).endswith(remedy)
+
+
+@pytest.mark.parametrize("rate", ["0.5 Hz", "0.09 Hz"])
+def test_a_mass_that_slips_between_samples_slips(rate):
+    """It moved by 8 mm, and it was said that it never slipped."""
+    run = st.simulate(PAPER.replace(phi="0 deg"), "10 s", sample_rate=rate)
+    assert rest_in_words(run.slider, run.samples, run.statistics.steps) == ""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from stiction.text.units import in_words
 
 if TYPE_CHECKING:
@@ -17,7 +19,7 @@ def rest_in_words(slider: Slider, samples: ColumnTable, steps: int) -> str:
     """Return that a run never slipped, and the remedy; nothing where it slipped.
 
     A law with internal state does not allow true rest: there the samples tell, in which the first
-    has the slip of the start.
+    has the slip of the start. Between them, too, the mass must not have moved.
 
     Examples
     --------
@@ -26,8 +28,9 @@ def rest_in_words(slider: Slider, samples: ColumnTable, steps: int) -> str:
     >>> rest_in_words(run.slider, run.samples, run.statistics.steps).split(";")[0]
     'it never slipped: friction held all the time'
     """
-    V, slip = slider.drive_speed, samples["slip_speed"]
-    if steps and not (V > 0.0 and (slip[1:] < REST * V).all()):
+    time, X, slip = (samples[name][1:] for name in ("time", "X", "slip_speed"))
+    V = slider.drive_speed
+    if steps and not (len(time) and (slip < REST * V).all() and np.ptp(X) <= REST * V * time[-1]):
         return ""
     still = not any(samples[name].any() for name in ("drive_X", "drive_Y"))
     remedy = "the drive is at rest; give it a velocity" if still else longer(slider)

@@ -45,7 +45,7 @@ def explore(
     from stiction.explorer.door import explore as open_explorer
 
     said = (measured or RecordOptions()).arguments()
-    records = [each for each in source if each.suffix != ".toml" and not is_run(each)]
+    records = [each for each in source if each.suffix.lower() != ".toml" and not is_run(each)]
     read = {each: read_source(each, **said) for each in records}
     if not records:
         record_or_none(None, measured, trust, "name its file")
