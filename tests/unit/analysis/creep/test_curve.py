@@ -803,3 +803,49 @@ def test_when_the_mass_slips_is_unsure_only_in_the_bin_next_to_it(paper_run):
     np.testing.assert_array_equal(unsure[1:], own[1:])
     later = mean.isel(bin=slice(1, None))
     assert with_slip_time(later, record).equals(later)
+
+
+def test_errors_that_are_stated_too_small_make_no_finding_surer():
+    """Deviations are compared with their own scatter: the sums of squares grow with both."""
+    curve = exact_curve(0.05, bin_edges(0.05, 1.95))
+    random = np.random.default_rng(1).standard_normal(curve.sizes["bin"])
+    velocity = curve["velocity"] * (1.0 + 0.05 * random)
+    found, same = (
+        st.analysis.fit_misalignment(
+            curve.assign(velocity=velocity, velocity_error=share * curve["velocity"]), V, K
+        )
+        for share in (0.025, 0.01)
+    )
+    assert same.F_0_error == pytest.approx(found.F_0_error, rel=0.1)
+    assert same.worse == pytest.approx(found.worse, rel=0.1)
+
+
+def test_creep_against_the_drive_has_an_angle_below_zero_by_one_spring_alone():
+    """With two springs it has none: the fit is poor."""
+    curve = exact_curve(0.05, bin_edges(0.05, 1.95))
+    error = 0.02 * curve["velocity"]
+    back = curve.assign(velocity=-0.1 * curve["velocity"], velocity_error=error)
+    one, two = (
+        st.analysis.fit_misalignment(back, V, K, stiffness_across=k_y, weakenings=CONSTANT)
+        for k_y in (np.inf, 1e7)
+    )
+    assert one.phi < -0.005
+    assert two.phi >= 0.0
+    assert two.misfit > MISSED > one.misfit
+
+
+@pytest.mark.parametrize(("creeps", "enough"), [(5, False), (6, True)])
+def test_with_the_spring_across_bins_are_fitted_in_which_no_rest_is(creeps, enough):
+    """The first bin in which a mass creeps has rest, too."""
+    curve = exact_curve(0.05, bin_edges(0.05, 1.95))
+    seen = curve["begin"] <= np.sort(curve["begin"][curve["end"] >= 0.1])[creeps - 1]
+    rests = curve.assign(
+        velocity=curve["velocity"].where(seen, 0.0), velocity_error=0.0 * curve["velocity"] + 1e-6
+    )
+    one = st.analysis.fit_misalignment(rests, V, K, weakenings=CONSTANT)
+    assert one.misfit > MISSED
+    if enough:
+        st.analysis.fit_misalignment(rests, V, K, stiffness_across=1e7, weakenings=CONSTANT)
+        return
+    with pytest.raises(st.ResultError, match="creeps in only 4 bins"):
+        st.analysis.fit_misalignment(rests, V, K, stiffness_across=1e7)
