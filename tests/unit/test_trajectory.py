@@ -21,6 +21,7 @@ PAPER = st.presets.nakano_popov_2020()
 STIFF = st.laws.LuGre(0.15, 0.2, "10 mm/s", sigma_0="1 EN/m", sigma_1="1 N s/m")
 TO_AND_FRO = st.protocols.DriveProgram(along=st.protocols.Modulation("1 um/s", "1 kHz"))
 
+
 @pytest.fixture(scope="module")
 def run(slider):
     return st.simulate(slider, "50 ms", sample_rate="10 kHz")

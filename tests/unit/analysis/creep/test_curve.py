@@ -849,3 +849,9 @@ def test_with_the_spring_across_bins_are_fitted_in_which_no_rest_is(creeps, enou
         return
     with pytest.raises(st.ResultError, match="creeps in only 4 bins"):
         st.analysis.fit_misalignment(rests, V, K, stiffness_across=1e7)
+
+
+def test_no_creep_is_implied_beyond_the_force_at_which_the_mass_slips():
+    found = st.analysis.fit_misalignment(exact_curve(0.05, bin_edges(0.05, 1.95)), V, K)
+    implied = implied_velocity(found, found.F_0 * np.array([0.5, 1.1]))
+    assert np.isnan(implied).tolist() == [False, True]
