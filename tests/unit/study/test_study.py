@@ -20,6 +20,7 @@ AXES = {
     "phi": st.Grid("1 deg", "5 deg", 5),
     "drive.velocity": st.Grid("1 mm/s", "100 mm/s", 3, spacing="log"),
 }
+AXIS = "[axes.phi]\nvalues = ['2 deg']\n"
 MEASURES = ("peak_force", "stick_count", "time_stuck")
 
 
@@ -191,6 +192,36 @@ def test_an_unknown_key_is_told_beside_the_keys_of_its_table():
         "study.measurs: unknown key 'measurs'; did you mean 'measures'?",
         "study.colour: unknown key 'colour'; known: measures, seed, trace_samples, traces",
     ]
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "faults"),
+    [
+        ("study = 3\n", AXIS, ["study: must be a table [study], is 3"]),
+        ("", "", ["axes: missing; write for example a table [axes.phi]"]),
+        (
+            "",
+            "[study]\naxes = 1\nbase = 2\n",
+            [
+                "study.axes: is not a key of this table; write [axes.phi]",
+                "study.base: is not a key of this table; write [slider], [friction], [drive] and "
+                "[run]",
+            ],
+        ),
+        (
+            "",
+            f"[study]\nmeasurs = []\nseed = -1\n{AXIS}",
+            [
+                "study.measurs: unknown key 'measurs'; did you mean 'measures'?",
+                "study.seed: must not be below 0, is -1",
+            ],
+        ),
+    ],
+)
+def test_a_study_s_own_table_has_the_faults_of_its_own(before, after, faults):
+    with pytest.raises(st.DescriptionError) as error:
+        st.Study.from_toml(before + BASE.to_toml() + after)
+    assert [str(fault) for fault in error.value.faults] == faults
 
 
 def test_an_invalid_value_is_a_fault_of_its_own_axis_alone():
