@@ -245,3 +245,11 @@ def test_no_more_is_looked_at_than_what_is_beside_joined_legs(seed):
     far[: 2 * hesitations.AROUND + 2] = far[-2 * hesitations.AROUND - 2 :] = False
     assert far.sum() > 500
     assert not beside[far].any()
+
+
+@pytest.mark.parametrize(("high", "far"), [(2.9, False), (3.1, True), (-2.1, True), (-1.9, False)])
+def test_a_leg_far_above_is_three_times_as_large_as_the_others(high, far):
+    """It goes up and down again, or down and up."""
+    values = np.tile([0.0, 1.0], 40)
+    values[41 if high > 0.0 else 40] = high
+    assert hesitations.largest_leg(values) == (1.0 if far else np.inf)
