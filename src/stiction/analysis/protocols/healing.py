@@ -119,8 +119,8 @@ class Healing(SectionReport):
 def decimals(error: float) -> int:
     """Return how many decimals a coefficient has with this error: to its first digit, or four.
 
-    >>> decimals(0.0021), decimals(0.03), decimals(nan), decimals(2e-6)
-    (3, 2, 4, 4)
+    >>> [decimals(error) for error in (0.0021, 0.03, 30.0, 2e-6, 0.0, nan, inf)]
+    [3, 2, 0, 4, 4, 4, 4]
     """
     if not 0.0 < error < inf:
         return DECIMALS

@@ -52,6 +52,12 @@ def test_where_errors_are_stated_half_as_large_the_safe_error_holds_as_a_small_s
     assert gated.mean() > 2.0 * expected  # by which a rig as stated was called stiffer
 
 
+@pytest.mark.parametrize("values", [[7.0, 7.0], [7.0, 7.5], [7.0]])
+def test_values_that_agree_have_no_smaller_error_than_theirs(values):
+    found = common_mean(np.array(values), np.ones(len(values)))
+    assert found.safe_error == found.error == pytest.approx(len(values) ** -0.5)
+
+
 def test_a_value_without_error_has_the_weight():
     found = common_mean(np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.0, 0.1]))
     assert found.value == pytest.approx(2.0, abs=1e-9)
