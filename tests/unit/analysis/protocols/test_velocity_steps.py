@@ -233,6 +233,15 @@ def test_steps_are_late_by_more_than_a_sample_and_their_scatter(delays, error, n
     assert bool(say_rig_and_clock([STEP] * len(fits), fits, "the program")) is named
 
 
+def test_what_a_fit_knows_of_rig_and_clock_is_said_with_its_error():
+    late = step_of(SLIP, MU + 0.02 * (SLIP > 10e-6))
+    fit = unknown(3)._replace(D_c=D, stiffer=log(1.5), stiffer_error=0.02)
+    fit = fit._replace(delay=4e-7, delay_error=1e-7)
+    stiffer, delay = say_rig_and_clock([late], [fit], "the program")
+    assert "the rig is 50 % stiffer than stated, ± 3 %" in stiffer
+    assert delay == "The steps come 400 ms later than the program has them, ± 100 ms."
+
+
 def test_of_steps_that_are_sampled_differently_the_longest_interval_counts():
     fit = unknown(3)._replace(D_c=D, stiffer_error=1.0, delay=3e-7, delay_error=1e-9)
     coarse = step_of(SLIP[::4], np.where(SLIP[::4] < 0.0, MU, MU + 0.02))
