@@ -18,8 +18,8 @@ PARTS = 16  # of a stick phase, over each of which the load is averaged: their c
 # oscillations: with twice as much, one in ten values is more than three errors off
 CHANGED, FOLLOWED, TURNED = 0.25, 0.4, 0.2
 # Of the drive's velocity: a stick phase in which its mean differs by more has a pause in it, or is
-# of another velocity. Creep differs by as much
-PAUSED = 0.1
+# of another velocity. Creep differs by as much. In a run, whose drive is known, by less
+PAUSED, KNOWN = 0.1, 0.02
 NOISE = 4.3  # standard deviations of a sample: three of a difference of two
 # Fewer rises are not compared; the quantile of their beginnings, and the share of a rise before its
 # peak, between which there are so many levels
@@ -57,8 +57,8 @@ def driven_steadily(record: Record, begin: Floats, end: Floats) -> NDArray[np.bo
     passed = np.abs(np.diff(np.interp([begin, end], record.time, way), axis=0)[0])
     speeds = passed / np.maximum(lasts, TINY)
     usual = lasts * (known or np.quantile(speeds, 0.5, method="higher"))  # a pause makes it less
-    noise = NOISE * white_noise(way)
-    return np.asarray(np.abs(passed - usual) <= PAUSED * usual + noise)
+    most = KNOWN * usual if record.slider is not None else PAUSED * usual + NOISE * white_noise(way)
+    return np.asarray(np.abs(passed - usual) <= most)
 
 
 def _pauses(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:
