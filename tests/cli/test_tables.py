@@ -53,11 +53,14 @@ def test_a_line_ends_between_a_number_and_its_unit_nowhere(width, capsys, monkey
 
 
 def test_a_table_is_turned_only_where_words_would_be_broken():
-    wide = Table(HEADINGS, [("coulomb", "152", "0.0993", "0.000392", "2.11e-05")] * 2)
-    upright, turned = text_of(wide, 80), text_of(wide, 30)
-    assert upright.count("sticks") == 1
-    assert turned.count("sticks") == 2  # with each row
-    assert "0.000392" in turned.split("fastest slip")[1].split("slowest")[0]
+    rows = [(law, "152", "0.0993", "0.000392", "2.11e-05") for law in ("coulomb", "lugre")]
+    wide = Table(HEADINGS, rows)
+    upright, turned, narrow = (text_of(wide, width) for width in (80, 45, 30))
+    assert upright.count("sticks") == turned.count("sticks") == 1
+    assert turned.splitlines()[1].split() == ["law", "coulomb", "lugre"]
+    assert turned.splitlines()[3].split() == ["sticks", "152", "152"]
+    assert narrow.count("sticks") == 2  # with each row
+    assert "0.000392" in narrow.split("fastest slip")[1].split("slowest")[0]
 
 
 def test_a_line_does_not_end_within_a_word_that_has_a_hyphen():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from textwrap import wrap
 
 from rich.box import SIMPLE_HEAD
@@ -48,13 +48,16 @@ def in_lines(text: str, width: int | None) -> Text:
 
 
 def table(found: Table, room: int = 80) -> Grid:
-    """Return a table for the terminal, as wide as its text or the available `room`."""
+    """Return a table for the terminal, as wide as its text or the available `room`.
+
+    One that is too wide is turned, with a column for each of its rows.
+    """
+    wide = widths(found, room)
+    if None in wide and len(wide) > 2:
+        other = transpose(found)
+        fits = len(found.rows) > 1 and None not in widths(other, room)
+        return table(other, room) if fits else cells_in_lines(found, room)
     shown = Grid(box=SIMPLE_HEAD, header_style="bold", padding=(0, 1, 0, 0), pad_edge=False)
-    columns = list(zip(found.headings, *found.rows, strict=True))
-    inside = room - 1 - 2 * len(columns)  # rules and padding take the rest
-    wide = widths(columns, inside)
-    if None in wide and len(columns) > 2:
-        return cells_in_lines(found, room)
     for heading, side, width in zip(found.headings, found.sides(), wide, strict=True):
         shown.add_column(in_lines(heading, width), justify=side, overflow="fold", width=width)
     for row in found.rows:
@@ -76,17 +79,25 @@ def cells_in_lines(found: Table, room: int) -> Grid:
     return shown
 
 
-def widths(columns: Sequence[Sequence[str]], room: int) -> list[int | None]:
-    """Return the widths of columns in letters; None if words must be broken too."""
+def transpose(found: Table) -> Table:
+    """Return a table whose rows are the columns of another."""
+    headings, *rows = zip(found.headings, *found.rows, strict=True)
+    return Table(headings, rows)
+
+
+def widths(found: Table, room: int) -> list[int | None]:
+    """Return the widths of a table's columns in letters; None if words must be broken too."""
+    columns = list(zip(found.headings, *found.rows, strict=True))
+    room -= 1 + 2 * len(columns)  # rules and padding take the rest
     least = [narrowest(cells) for cells in columns]
     wanted = [max(map(len, cells), default=0) for cells in columns]
     if sum(least) > room:
         return [None for _ in columns]  # words must be broken too
     widest = max(wanted, default=0)
     while True:  # the widest columns give way first
-        found = [max(low, min(high, widest)) for low, high in zip(least, wanted, strict=True)]
-        if sum(found) <= room:
-            return [*found]
+        tried = [max(low, min(high, widest)) for low, high in zip(least, wanted, strict=True)]
+        if sum(tried) <= room:
+            return [*tried]
         widest -= 1
 
 
