@@ -89,6 +89,10 @@ class Uniform:
 Prior = Normal | Uniform
 
 
+# Standard deviation of friction from cycle to cycle, over its mean
+JITTER = Uniform(1e-3, 0.05, "log")
+
+
 def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:
     """Return the prior that a table states, in SI.
 

@@ -106,6 +106,15 @@ def test_what_differs_within_a_record_explains_that_it_is_unlike():
     assert "(begin, end of st.read_record)" in said
 
 
+def test_friction_that_differs_more_than_any_that_is_simulated_is_named():
+    heights = 1.0 + 0.12 * np.tile([-1.0, 1.0, 0.3, -0.3], 6)
+    (differs,) = observe(record(*(CYCLE * height for height in heights)), RIG.slider).changes
+    assert differs.startswith("Peaks differ from cycle to cycle by 8.")
+    assert differs.endswith("of simulated friction is 0.1 % to 5 %.")
+    alike = 1.0 + 0.05 * np.tile([-1.0, 1.0, 0.3, -0.3], 6)
+    assert observe(record(*(CYCLE * height for height in alike)), RIG.slider).changes == ()
+
+
 def test_what_comes_after_the_cycles_that_are_used_explains_nothing():
     late = record(*[CYCLE] * 45, np.full(1000, 1.4), *[CYCLE] * 5)
     assert observe(late, RIG.slider).changes == ()

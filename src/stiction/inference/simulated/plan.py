@@ -12,11 +12,10 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.observation import Conditions
-from stiction.inference.priors import Normal, Prior, Uniform
+from stiction.inference.priors import JITTER, Normal, Prior
 from stiction.inference.simulated.restriction import is_allowed, is_restricted
 from stiction.system.slider import Slider
 
-JITTER = Uniform(1e-3, 0.05, "log")  # of friction from cycle to cycle, unless the rig says
 MOST_DRAWS = 10_000  # of one set of parameters, where the priors are restricted
 FORMAT = 8  # of stored simulations and of what is learned from them
 
