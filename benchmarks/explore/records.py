@@ -321,6 +321,15 @@ def irregular_few_samples(random: np.random.Generator) -> Labelled:
     return st.Record(time=time, force=force), None, (STICK_SLIP, TRANSITIONAL)
 
 
+def irregular_in_steps(random: np.random.Generator) -> Labelled:
+    """Return irregular stick-slip whose drops are 3 to 20 steps of a converter."""
+    corners = sawtooth(random, int(random.integers(12, 80)), 1.0, random.uniform(0.1, 0.5))
+    time, force, count = between(corners, 10 ** random.uniform(1.5, 2.7))
+    force += 10 ** random.uniform(-3, -1.5) * random.normal(size=len(time))
+    step = 10 ** random.uniform(-1.3, -0.5)
+    return st.Record(time=time, force=step * np.rint((2.0 + force) / step)), count, (STICK_SLIP,)
+
+
 def brief_sliding(random: np.random.Generator) -> Labelled:
     """Return 64 to 500 samples of steady sliding under white or filtered noise."""
     size = int(10 ** random.uniform(1.8, 2.7))
@@ -335,7 +344,7 @@ LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
     sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
     hum_over_loading, random_times, on_a_wave, irregular_on_a_wave, in_noise,
-    irregular_in_noise, irregular_few_samples,
+    irregular_in_noise, irregular_few_samples, irregular_in_steps,
 )  # fmt: skip
 
 

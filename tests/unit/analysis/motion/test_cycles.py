@@ -7,7 +7,9 @@ from math import pi
 import numpy as np
 import pytest
 from benchmarks.explore.records import (
+    between,
     hum_over_loading,
+    irregular_in_steps,
     irregular_on_a_wave,
     judge,
     on_a_wave,
@@ -674,6 +676,24 @@ def test_stick_slip_that_a_larger_wave_carries_has_all_its_cycles(number: int) -
 def test_irregular_stick_slip_that_a_wave_carries_is_no_vibration() -> None:
     found = [judge(irregular_on_a_wave, 3, number) for number in range(20)]
     assert sum(each.right for each in found) >= 18
+
+
+@pytest.mark.parametrize("number", [40, 42])
+def test_no_wave_carries_irregular_slips_of_few_steps(number: int) -> None:
+    record, count, _ = irregular_in_steps(np.random.default_rng([1, number]))
+    found = swings(record)
+    assert abs(len(found.lasting) - (count or 0)) <= 1
+    assert found.wave == 0.0
+    assert found.table["hesitations"].max() <= 1.0
+
+
+def test_steps_of_a_converter_are_no_slips_beside_irregular_ones() -> None:
+    """Without the mean over a period the slow loadings turn back at each step."""
+    random = np.random.default_rng([7, 14])
+    time, force, count = between(sawtooth(random, 30, 1.0, 0.45), 60.0)
+    force += 2.0 + 0.01 * random.normal(size=len(time))
+    found = swings(st.Record(time=time, force=0.19 * np.rint(force / 0.19)))
+    assert len(found.lasting) <= count
 
 
 @pytest.mark.parametrize("steps", [28.7, 40.0, 100.0])
