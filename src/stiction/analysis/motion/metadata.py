@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITI
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import (
+    ERRORS_95,
     ERRORS_997,
     correlation_time,
     error_of_few,
@@ -146,10 +147,7 @@ def _loading_rates(
     stated = record.loading_rate or nan
     # a drift of the load cell seems to load the spring; one of friction does not
     off = 0.0 if drift is None else abs(drift.rate)
-    found, error = _typical(slopes)
-    whole = StatedQuantity(
-        LOADING_RATE, "N/s", found, hypot(error, off), stated, SLOWER, FASTER, BY_RISE
-    )
+    whole = _loading_rate(slopes, stated, off)
     places = parts_of(cycles["period"])
     if len(places) < 2:
         if steady_change(slopes) is None:
@@ -160,10 +158,8 @@ def _loading_rates(
     at = [-inf, *(float(starts[place.start]) for place in places[1:]), inf]
     parts = []
     for place, begin, end in zip(places, at[:-1], at[1:], strict=True):
-        found, error = _typical(slopes[place])
-        when = _part_in_words(begin, end)
-        error = hypot(error, off)
-        parts.append(whole._replace(found=found, error=error, part=when, begin=begin, end=end))
+        its = _loading_rate(slopes[place], stated, off)
+        parts.append(its._replace(part=_part_in_words(begin, end), begin=begin, end=end))
     agree = [each for each in parts if each.is_same] or [x for x in parts if x.agrees]
     if not agree:
         return parts
@@ -179,9 +175,16 @@ def _part_in_words(begin: float, end: float) -> str:
     return f"from {in_words(begin, 's')} to {in_words(end, 's')}"
 
 
-def _typical(values: Floats) -> tuple[float, float]:
-    """Return the median of some values, and its error."""
-    return float(np.median(values)), _error(values)
+def _loading_rate(slopes: Floats, stated: float, off: float) -> StatedQuantity:
+    """Return the median rate of loading of some cycles, with a further error `off`, N/s.
+
+    It contradicts the stated one where it does so by more than two standard errors.
+    """
+    error = hypot(_error(slopes), off)
+    within = ERRORS_95 * float(np.nan_to_num(error)) / stated  # a single cycle tells no error
+    low, high = SLOWER - within, FASTER + within
+    found = float(np.median(slopes))
+    return StatedQuantity(LOADING_RATE, "N/s", found, error, stated, low, high, BY_RISE)
 
 
 def other_velocity(stated: Sequence[StatedQuantity], cycles: CycleTable) -> NDArray[np.bool_]:

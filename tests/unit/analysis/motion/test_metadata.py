@@ -3,12 +3,15 @@
 import numpy as np
 import pytest
 from benchmarks.explore.draw import Draw
+from benchmarks.explore.records import between
+from benchmarks.explore.records import sawtooth as sawtooth_of
 from scipy.signal import lfilter
 from tests.drawn import SEED, inside
 from tests.measured import read_measured
 from tests.parts import assess
 
 import stiction as st
+from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.metadata import SWING, _drive_velocity, compare_metadata
 from stiction.presets.preset import on_a_line
 
@@ -97,6 +100,21 @@ def test_a_wrong_description_is_contradicted(wrong, quantity, ratio):
     assert its[quantity].agrees is False
     assert its[quantity].ratio == pytest.approx(ratio, rel=0.2)
     assert "contradicts" in said
+
+
+@pytest.mark.parametrize(("faster", "agrees"), [(1.13, True), (1.5, False)])
+def test_a_rate_of_loading_contradicts_by_more_than_its_errors(faster, agrees):
+    """Where loadings differ, few of them tell the rate to some percent only."""
+    random = np.random.default_rng(4)
+    time, force, _ = between(sawtooth_of(random, 14, 1.0, 0.4), 300.0)
+    force += 0.02 * random.standard_normal(len(time))
+    found = swings(st.Record(time=time, force=force)).lasting["stick_slope"]
+    stated = float(np.median(found)) / faster
+    its, _ = compare(force, time, stiffness=100.0, drive_velocity=stated / 100.0)
+    rate = its["stiffness times drive velocity"]
+    assert rate.ratio == pytest.approx(faster)
+    assert rate.error > 0.03 * rate.found
+    assert rate.agrees is agrees
 
 
 def test_the_rest_in_a_vibration_is_not_taken_for_a_heavier_mass():
