@@ -53,6 +53,15 @@ def correlation_time(values: Floats) -> float:
     return max(2.0 * float(share[: ends[0] if len(ends) else None].sum()) - 1.0, 1.0)
 
 
+def whole_correlation_time(deviations: Floats) -> float:
+    """Return the same for deviations from straight lines, with what they do not show of it.
+
+    A line follows a part of noise that lasts.
+    """
+    seen = correlation_time(deviations)
+    return seen * (1.0 + UNSEEN * seen / len(deviations))
+
+
 def mean_and_spread(values: Floats) -> tuple[float, float]:
     """Return mean and standard deviation of values."""
     return float(values.mean()), float(values.std(ddof=1)) if len(values) > 1 else np.nan
@@ -108,8 +117,7 @@ def noise_about(parts: Sequence[Floats]) -> CorrelatedNoise:
     count = len(left)
     if count < FEWEST:
         return CorrelatedNoise()
-    samples = correlation_time(left)
-    samples *= 1.0 + UNSEEN * samples / count
+    samples = whole_correlation_time(left)
     free = count / samples - 2.0 * len(parts)
     # parts of few independent values deviate less from their own lines
     deviation = sqrt(float(left @ left) / count * (1.0 + 2.0 * len(parts) / max(free, 1.0)))

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.correlated_noise import correlation_time, error_of_few
+from stiction.analysis.signals.correlated_noise import error_of_few, whole_correlation_time
 from stiction.arrays import Floats
 
 
@@ -39,9 +39,9 @@ class StraightLine(NamedTuple):
     def correlated_error(self, x: Floats, y: Floats) -> float:
         """Return the standard error of the slope where neighbours deviate alike.
 
-        As many points count as one as `correlation_time` returns.
+        As many points count as one as `whole_correlation_time` returns.
         """
-        alike = correlation_time(self.deviations(x, y))
+        alike = whole_correlation_time(self.deviations(x, y))
         return error_of_few(self.slope_error * alike**0.5, len(x) / alike - 2.0)
 
 

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.signal import lfilter
 
-from stiction.analysis.signals.correlated_noise import correlation_time
+from stiction.analysis.signals.correlated_noise import correlation_time, whole_correlation_time
 from stiction.analysis.signals.straight_line import line
 
 
@@ -31,6 +32,18 @@ def test_alike_neighbours_make_the_error_larger():
     x = np.linspace(-1.0, 1.0, 4000)
     y = np.repeat(values, 10)
     found = line(x, y)
-    alike = correlation_time(found.deviations(x, y))
-    assert alike == pytest.approx(10.0, rel=0.1)
+    assert correlation_time(found.deviations(x, y)) == pytest.approx(10.0, rel=0.1)
+    alike = whole_correlation_time(found.deviations(x, y))
     assert found.correlated_error(x, y) == pytest.approx(found.slope_error * alike**0.5)
+
+
+@pytest.mark.parametrize("count", [12, 50])
+def test_the_errors_of_a_few_alike_neighbours_hold_the_slope(count):
+    """A line follows a part of what lasts, so that its deviations seem to last for less."""
+    noise = np.random.default_rng(count).standard_normal((1000, 100 + count))
+    values = lfilter([1.0], [1.0, -0.7], noise)[:, 100:]
+    x = np.arange(float(count))
+    lines = [(line(x, y), y) for y in values]
+    off = np.array([abs(found.slope) / found.correlated_error(x, y) for found, y in lines])
+    assert np.mean(off < 2.0) > 0.88  # 0.75 and 0.86 by `correlation_time`
+    assert np.mean(off > 4.0) < 0.02
