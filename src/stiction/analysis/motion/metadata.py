@@ -211,10 +211,15 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
     a longer period, but its force falls for T/2 (`stiction.analysis.motion.rest.rest_share`). A
     slip under constant friction takes T/2 too, and one under friction that weakens takes longer. A
     slip whose fall begins or ends far more slowly, as under rate-and-state friction or in a
-    dashpot, does not last as mass and stiffness have it.
+    dashpot, does not last as mass and stiffness have it. Nor does a fall in which the force
+    hesitates, and under much noise nothing shows when a slip begins and ends.
     """
     if not len(cycles) or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
+    plain = cycles["hesitations"] == 0.0
+    if not np.median(plain):
+        return None
+    cycles = cycles.part(plain)
     falls = cycles["trough_time"] - cycles["peak_time"]
     if float(np.median(falls)) * record.sample_rate < FEWEST_PER_FALL:
         return None
@@ -226,7 +231,7 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
     swing = float(np.median(swings))
     lowest, highest, off = HEAVIER, LIGHTER, SWINGS
     if kind != HARMONIC:
-        if _main_part(record, cycles) < DRAWN_OUT:
+        if _main_part(record, cycles) < DRAWN_OUT or _hidden_end(record, cycles) > MOST_HIDDEN:
             return None
         longer, shorter = _unseen_ends(record, cycles)
         lowest, highest = SLOW_SLIP * shorter**2, LIGHTER * longer**2
@@ -264,12 +269,17 @@ def _unseen_ends(record: Record, cycles: CycleTable) -> tuple[float, float]:
     A force that is within noise, or a step of its converter, of a peak or a trough may have left
     it. Half a cosine begins and ends so, and the spring is loaded as slowly before and after it.
     """
-    reach = REACH * white_noise(record.force) + resolution(record.force)
-    falls = cycles["trough_time"] - cycles["peak_time"]
-    share = min(reach / float(np.median(cycles["drop"])), MOST_HIDDEN)
+    share, falls = _hidden_end(record, cycles), cycles["trough_time"] - cycles["peak_time"]
+    reach = share * cycles.median("drop")
     hidden = 2.0 * float(np.arccos(1.0 - 2.0 * share)) / pi  # of a slip, at both ends
     rate = max(float(np.median(cycles["stick_slope"])), TINY)
     return 1.0 / (1.0 - hidden), max(1.0 - reach / rate / float(np.median(falls)), 0.0)
+
+
+def _hidden_end(record: Record, cycles: CycleTable) -> float:
+    """Return the share of a fall's height within noise, or a step, of its peak, or its trough."""
+    reach = REACH * white_noise(record.force) + resolution(record.force)
+    return reach / cycles.median("drop")
 
 
 def _error(values: np.ndarray) -> float:

@@ -12,6 +12,7 @@ from tests.entry import plain
 from tests.systems import STEADY
 
 import stiction as st
+from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.metadata import LOADING_RATE, compare_metadata
 from stiction.drive.program import nominal_velocity
 from stiction.solver.problem import Bend, Bends
@@ -307,7 +308,7 @@ def test_analyses_take_the_drive_velocity_from_the_table():
     assert velocity == pytest.approx(V, rel=0.02)
     found = st.analyse(run)
     assert found.regime.kind == "stick-slip"
-    its = compare_metadata(found.record, found.regime.kind, found.cycles, None, ())
+    its = compare_metadata(found.record, found.regime.kind, table_of(found.cycles), None, ())
     (rate,) = (each for each in its if each.quantity == LOADING_RATE)
     assert rate.agrees
     assert rate.stated == pytest.approx(slider.k_x * velocity, rel=1e-12)
