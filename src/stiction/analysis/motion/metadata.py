@@ -50,6 +50,7 @@ ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated 
 STARTS = 3.0  # times what noise alone may move by: a drive that rests between its motions
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
 AT_REST, ROUNDING = 0.02, 1e-12  # of the largest force: a reading at rest, and one of zero
+OF_MEDIAN = 1.22  # standard error of a median, over that of the mean without a tenth at each end
 LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
 BY_RISE, BY_SLIPS = "rate at which the force rises", "duration of its slips"
 
@@ -180,7 +181,7 @@ def _loading_rate(slopes: Floats, stated: float, off: float) -> StatedQuantity:
 
     It contradicts the stated one where it does so by more than two standard errors.
     """
-    error = hypot(_error(slopes), off)
+    error = hypot(_median_error(slopes), off)
     within = ERRORS_95 * float(np.nan_to_num(error)) / stated  # a single cycle tells no error
     low, high = SLOWER - within, FASTER + within
     found = float(np.median(slopes))
@@ -239,7 +240,7 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
         off = 0.5 * float(np.hypot(unseen, 2.0 / (record.sample_rate * swing)))  # or a sample
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
-    scatter = _error(swings) / swing if len(swings) > 1 else 0.0
+    scatter = _median_error(swings) / swing if len(swings) > 1 else 0.0
     error = 2.0 * found * float(np.hypot(scatter, off))
     return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, highest, how)
 
@@ -282,9 +283,9 @@ def _hidden_end(record: Record, cycles: CycleTable) -> float:
     return reach / cycles.median("drop")
 
 
-def _error(values: np.ndarray) -> float:
-    error = trimmed_mean(np.asarray(values, dtype=np.float64)).error
-    return error_of_few(error, len(values) - 1.0)
+def _median_error(values: Floats) -> float:
+    """Return the standard error of the median of some values."""
+    return error_of_few(OF_MEDIAN * trimmed_mean(values).error, len(values) - 1.0)
 
 
 def _drive_velocity(record: Record) -> StatedQuantity | None:

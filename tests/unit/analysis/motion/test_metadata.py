@@ -13,7 +13,12 @@ from tests.parts import assess
 import stiction as st
 from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.metadata import SWING, _drive_velocity, compare_metadata
+from stiction.analysis.motion.metadata import (
+    SWING,
+    _drive_velocity,
+    _median_error,
+    compare_metadata,
+)
 from stiction.presets.preset import on_a_line
 
 RATE = 2000.0
@@ -121,7 +126,14 @@ def test_a_wrong_description_is_contradicted(wrong, quantity, ratio):
     assert "contradicts" in said
 
 
-@pytest.mark.parametrize(("faster", "agrees"), [(1.13, True), (1.5, False)])
+def test_the_error_of_a_median_is_its_own():
+    """Of normal values that of their trimmed mean holds 90 % only."""
+    values = np.random.default_rng(6).standard_normal((1000, 40))
+    off = [abs(np.median(each)) / _median_error(each) for each in values]
+    assert np.mean(np.array(off) < 2.0) == pytest.approx(0.954, abs=0.015)
+
+
+@pytest.mark.parametrize(("faster", "agrees"), [(1.13, True), (2.0, False)])
 def test_a_rate_of_loading_contradicts_by_more_than_its_errors(faster, agrees):
     """Where loadings differ, few of them tell the rate to some percent only."""
     random = np.random.default_rng(4)
