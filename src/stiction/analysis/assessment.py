@@ -11,7 +11,11 @@ from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import without_cut_off
-from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
+from stiction.analysis.motion.doubts.sampling import (
+    hidden_way,
+    with_smear,
+    with_supposed_filter,
+)
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
     turns_round,
@@ -33,6 +37,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
 from stiction.recording.noise import rounding_error
+from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
@@ -178,7 +183,13 @@ def _meaningless(
     if any(each.agrees is False for each in rates) and record.position is None:
         return dict.fromkeys(BY_STIFFNESS, "stiffness or drive velocity contradict the force")
     known = cycles["creep_distance"][~np.isnan(cycles["creep_distance"])]
-    if not len(known) or not np.median(known) < 0.0:
+    if not len(known):
+        return {}
+    hidden = hidden_way(record, cycles)
+    if 0.0 <= np.median(known) < hidden:
+        why = f"noise and the time between samples hide about {in_words(hidden, 'm')} of it"
+        return {"creep_distance": why}
+    if not np.median(known) < 0.0:
         return {}
     if any(each.agrees for each in rates):
         agreeing = "the force rises as fast as the stated stiffness and drive velocity allow"

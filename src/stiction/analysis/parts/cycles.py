@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.analysis.motion.cycle_columns import table_of
+from stiction.analysis.motion.doubts.sampling import hidden_way
 from stiction.analysis.parts.wording import SHOWN, number, with_spread
 from stiction.arrays import xr
 from stiction.text.columns import Quantity, grid
@@ -29,6 +31,7 @@ COLUMNS = {
     "slip_distance": "slip",
 }
 LATE = 100.0  # of the time of all cycles: four digits do not tell starts so late apart
+WAYS, HIDDEN = ("creep_distance", "slip_distance"), 0.1  # a share of them that is worth a word
 UNLESS_NONE = ("hesitations",)
 
 
@@ -51,12 +54,25 @@ def section(found: Analysis) -> Section:
     lines = [
         *_hesitations(found.cycles),
         f"{count} cycle{'s' * (count > 1)}, from trough to trough{less}.",
+        *_hidden_ways(found),
     ]
     unknown = [name for name in COLUMNS if name in found.missing]
     for why in dict.fromkeys(found.missing[name] for name in unknown):
         columns = ", ".join(COLUMNS[name] for name in unknown if found.missing[name] == why)
         lines.append(f"Not given: {columns}; {why}.")
     return Section("Cycles", lines, table)
+
+
+def _hidden_ways(found: Analysis) -> list[str]:
+    """Return how much of the ways noise and samples hide, if that is worth a word."""
+    hidden = hidden_way(found.record, table_of(found.cycles))
+    known = (float(found.cycles[name].mean()) for name in WAYS if name not in found.missing)
+    if not any(hidden > HIDDEN * way for way in known):
+        return []
+    return [
+        "Noise and the time between samples hide when a slip begins: creep may be up to "
+        f"{in_words(hidden, 'm', 2)} longer, and slip as much shorter."
+    ]
 
 
 def _hesitations(table: xr.Dataset) -> list[str]:

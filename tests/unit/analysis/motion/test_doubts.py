@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from benchmarks.explore.numbers import slips
+from benchmarks.explore.records import between
+from benchmarks.explore.records import sawtooth as irregular
 from tests.drawn import inside
 from tests.parts import assess
 
@@ -13,7 +16,12 @@ import stiction as st
 from stiction.analysis.export import write
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.doubts.sampling import _usual_fall, with_smear, with_supposed_filter
+from stiction.analysis.motion.doubts.sampling import (
+    _usual_fall,
+    hidden_way,
+    with_smear,
+    with_supposed_filter,
+)
 from stiction.analysis.motion.friction import Friction, Measured, friction_of
 from stiction.analysis.motion.metadata import BY_SLIPS, StatedQuantity
 from stiction.presets.preset import on_a_line
@@ -437,6 +445,39 @@ def test_a_force_that_rises_as_fast_as_stated_leaves_no_creep_to_be_seen() -> No
     text = " ".join(str(st.analyse(record)).split())
     assert "creep; the force rises as fast as the stated stiffness" in text
     assert "faster than the stated" not in text
+
+
+@pytest.mark.parametrize("number", [3, 5, 9, 12, 15])
+def test_noise_and_samples_hide_so_much_of_the_creep(number: int) -> None:
+    known = slips(np.random.default_rng([3, number]), creep=0.8)
+    table = swings(known.record).lasting
+    ends = table["start"][0], table["trough_time"][-1]
+    inside = (known.peak_time > ends[0]) & (known.peak_time < ends[1])
+    less = float(known.crept[inside].mean()) - table.mean("creep_distance")
+    assert 0.2 < less / hidden_way(known.record, table) < 1.3
+
+
+@pytest.mark.parametrize(("number", "given"), [(3, True), (5, False)])
+def test_creep_that_noise_and_samples_hide_is_not_given(number: int, given: bool) -> None:
+    record = slips(np.random.default_rng([3, number]), creep=0.8).record
+    found = st.analyse(record)
+    assert ("creep_distance" not in found.missing) is given
+    if not given:
+        assert found.missing["creep_distance"].startswith("noise and the time between samples hide")
+    assert "hide when a slip begins: creep may be up to" in str(found)
+    bare = record.model_copy(update={"stiffness": None})
+    assert hidden_way(bare, swings(record).lasting) == 0.0
+
+
+@pytest.mark.parametrize(("noise", "named"), [(0.05, True), (1e-4, False)])
+def test_a_spread_of_peaks_that_noise_makes_is_named_so(noise: float, named: bool) -> None:
+    random = np.random.default_rng(8)
+    corners = irregular(random, 20, 1.0)
+    corners[1][::2] += 0.01 * random.normal(size=20)
+    time, force, _ = between(corners, 200.0)
+    force += 2.0 + noise * random.normal(size=len(time))
+    said = str(st.analyse(st.Record(time=time, force=force)))
+    assert ("The spread of the peaks contains that of noise" in said) is named
 
 
 def test_a_first_loading_is_no_drift():

@@ -1,0 +1,166 @@
+"""``python -m benchmarks.explore.numbers``: whether two standard errors hold the truth.
+
+Irregular stick-slip, whose drops differ by up to 50 % each way, under a drive of known velocity:
+each number of its analysis that has an error is compared with the true one, and its warnings are
+counted. Deterministic in its seed.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections import Counter
+from collections.abc import Callable, Iterator
+from functools import partial
+from math import nan, pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.console import Console
+from rich.table import Table
+from scipy.signal import lfilter  # type: ignore[attr-defined]
+from scipy.special import ndtr
+
+import stiction as st
+from stiction.analysis.motion.cycle_columns import table_of
+from stiction.analysis.motion.doubts.sampling import hidden_way
+
+Floats = NDArray[np.float64]
+LOAD = 10.0  # N
+BEGINNING = 17  # characters of a warning, by which it is counted
+
+
+class Known(NamedTuple):
+    """A record, and the truth: of each cycle (n,), and of the apparatus."""
+
+    record: st.Record
+    peak: Floats
+    trough: Floats
+    peak_time: Floats
+    crept: Floats
+    drift: float
+
+
+class Compared(NamedTuple):
+    """A quantity as it was found, with its standard error, and as it is."""
+
+    quantity: str
+    found: float
+    error: float
+    true: float
+
+
+def alike(random: np.random.Generator, count: int, correlation: float) -> Floats:
+    """Return values between -1 and 1 of which neighbours are correlated."""
+    noise = random.normal(size=count + 100)
+    walk = lfilter([(1.0 - correlation**2) ** 0.5], [1.0, -correlation], noise)
+    return np.asarray(2.0 * ndtr(walk[100:]) - 1.0)
+
+
+def slips(
+    random: np.random.Generator, *, cycles: tuple[int, int] = (12, 80), creep: float = 0.0,
+    correlation: float = 0.0, drift: float = 0.0, step: float = 0.0,
+) -> Known:  # fmt: skip
+    """Return irregular stick-slip of 20 to 1000 samples a cycle in noise of 1 to 30 % of a drop.
+
+    At its peak a force creeps at a share `creep` of the drive's velocity. Drift over the record,
+    and steps of a converter, are shares of the mean drop.
+    """
+    count, differ, at_peak = int(random.integers(*cycles)), *random.uniform((0.1, 0), (0.5, 0.7))
+    stiffness, velocity = 10 ** random.uniform((2, -5), (4, -2.5))
+    rate, drop = stiffness * velocity, 10 ** random.uniform(-1, 0.3)
+    each = differ * drop * np.array([alike(random, count + 1, correlation) for _ in range(2)])
+    peak, trough = 4.0 + at_peak * each[0], 4.0 - drop + (1.0 - at_peak) * each[1]
+    rise, bend = peak[1:] - trough[:-1], random.uniform(0.05, 0.3) * drop
+    # from dF/dt = k V (1 - creep exp((F - peak)/bend))
+    loads = bend / rate * np.log((np.exp(rise / bend) - creep) / (1.0 - creep))
+    fall = drop / rate * random.uniform(0.02, 0.1)
+    ends = np.cumsum(loads + fall)
+    mean = ends[-1] / count
+    begin = 0.25 * loads[0]
+    time = np.arange(begin, ends[-1] - fall - begin, mean / 10 ** random.uniform(1.3, 3))
+    at = np.searchsorted(ends, time)
+    since = time - (ends - loads - fall)[at]
+    rest = creep + (np.exp(rise / bend) - creep)[at] * np.exp(-rate * since / bend)
+    falls = 0.5 + 0.5 * np.cos(pi * np.clip((since - loads[at]) / fall, 0.0, 1.0))
+    low, high = trough[1:][at], peak[1:][at]
+    loading = high - bend * np.log(np.maximum(rest, 1.0))
+    force = np.where(since < loads[at], loading, low + (high - low) * falls)
+    force += drop * 10 ** random.uniform(-2, -0.52) * random.normal(size=len(time))
+    drifts = drift * drop * random.choice([-1.0, 1.0]) / time[-1]
+    force += drifts * (time - begin)
+    if step:
+        force = step * drop * np.rint(force / step / drop)
+    known = {"stiffness": stiffness, "drive_velocity": velocity, "normal_load": LOAD}
+    record = st.Record(time=time, force=force, mass=stiffness * (fall / pi) ** 2, **known)
+    crept = velocity * loads - rise / stiffness
+    return Known(record, peak[1:], trough[1:], ends - fall, crept, drifts)
+
+
+FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
+    "straight": slips,
+    "creeping": partial(slips, creep=0.8),
+    "few": partial(slips, cycles=(6, 14)),
+    "neighbours alike": partial(slips, correlation=0.7),
+    "drifting": partial(slips, drift=1.0),
+    "in steps": partial(slips, step=0.1),
+}
+
+
+def compare(known: Known, found: st.analysis.Analysis) -> Iterator[Compared]:
+    """Compare each number that has a standard error with the truth, over the cycles found."""
+    ends, record = found.cycles, known.record
+    if ends.sizes["cycle"] < 3 or not found.regime.loads:
+        return
+    first, last = float(ends["start"][0]), float(ends["trough_time"][-1])
+    inside = (known.peak_time > first) & (known.peak_time < last)
+    static, middle = known.peak[inside], 0.5 * (known.peak + known.trough)[inside]
+    for name, true in (("static", static), ("kinetic", middle)):
+        measured = getattr(found.friction, name)
+        if measured is not None:
+            mu, error = measured.coefficient, measured.coefficient_error
+            yield Compared(f"µ {name}", mu, error, float(true.mean()) / LOAD)
+    if "creep_distance" not in found.missing:
+        hidden, crept = hidden_way(record, table_of(ends)), float(known.crept[inside].mean())
+        yield Compared(
+            "creep, by what is hidden", float(ends["creep_distance"].mean()), hidden, crept
+        )
+    true_ones = {
+        "stiffness times drive velocity": record.loading_rate or nan,
+        "stiffness over mass": (record.stiffness or nan) / (record.mass or nan),
+        "drift of the force": known.drift,
+    }
+    for each in found.parts["metadata"]:
+        if each.quantity in true_ones:
+            yield Compared(each.quantity, each.found, each.error, true_ones[each.quantity])
+
+
+def main() -> None:
+    """Print how often two errors hold the truth, and how often each warning is given."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.explore.numbers")
+    parser.add_argument("--records", type=int, default=200, help="of each family")
+    parser.add_argument("--only", nargs="+", default=[*FAMILIES], choices=[*FAMILIES])
+    parser.add_argument("--seed", type=int, default=1)
+    options = parser.parse_args()
+    table = Table("records", "quantity", "of", "within two errors", "within four")
+    warned = Table("records", "warning", "given in")
+    for name in options.only:
+        off: dict[str, list[float]] = {}
+        warnings: Counter[str] = Counter()
+        for number in range(options.records):
+            known = FAMILIES[name](np.random.default_rng([options.seed, number]))
+            found = st.analyse(known.record)
+            warnings.update({each[:BEGINNING] for each in found.warnings})
+            for each in compare(known, found):
+                apart = abs(each.found - each.true) / each.error
+                off.setdefault(each.quantity, []).append(apart)
+        for quantity, errors in off.items():
+            shares = (f"{np.mean(np.array(errors) < most):.0%}" for most in (2.0, 4.0))
+            table.add_row(name, quantity, f"{len(errors)}", *shares)
+        for warning, count in warnings.most_common():
+            warned.add_row(name, warning, f"{count} of {options.records}")
+    Console().print(table, warned)
+
+
+if __name__ == "__main__":
+    main()
