@@ -687,6 +687,16 @@ def test_no_wave_carries_irregular_slips_of_few_steps(number: int) -> None:
     assert found.table["hesitations"].max() <= 1.0
 
 
+def test_a_first_loading_is_no_wave() -> None:
+    record, _, _ = irregular_in_steps(np.random.default_rng([1, 42]))
+    step = np.median(np.diff(record.time))
+    loading = np.arange(0.0, record.force[0], record.force[0] * step / 3.0)
+    force = np.concatenate([loading, record.force])
+    found = swings(st.Record(time=step * np.arange(len(force)), force=force))
+    assert len(found.lasting) > 50
+    assert found.wave == 0.0
+
+
 def test_steps_of_a_converter_are_no_slips_beside_irregular_ones() -> None:
     """Without the mean over a period the slow loadings turn back at each step."""
     random = np.random.default_rng([7, 14])
