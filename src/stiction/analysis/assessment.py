@@ -112,7 +112,8 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     other = other_velocity(stated, cycles)
     if other.any() and record.position is None:
         cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
-    sticking = cycles.part(~(other | apart)) if regime.loads else none
+    halting = cycles["hesitations"] > 0.0 if record.position is None else other
+    sticking = cycles.part(~(other | apart | halting)) if regime.loads else none
     missing = _meaningless(record, cycles, regime, stated)
     if (turns or unreal) and len(cycles):
         names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)

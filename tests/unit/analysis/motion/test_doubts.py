@@ -469,6 +469,19 @@ def test_creep_that_noise_and_samples_hide_is_not_given(number: int, given: bool
     assert hidden_way(bare, swings(record).lasting) == 0.0
 
 
+def test_a_rise_in_which_the_force_hesitates_shows_no_creep() -> None:
+    """It dips in every second rise: a small slip, and no creep, makes it longer."""
+    time = np.arange(0.0, 15.9, 1e-3)
+    corners = np.cumsum([0.0, *np.tile([0.45, 0.03, 0.49, 0.03], 16)])
+    levels = np.tile([0.0, 0.45, 0.45, 1.0, 0.0, 0.5, 0.3, 1.0], 8)
+    force = 2.0 + np.interp(time, corners, np.append(levels, 0.0))
+    force += 1e-3 * np.random.default_rng(2).standard_normal(len(time))
+    its = assess(st.Record(time=time, force=force))
+    assert len(its.cycles) > 12
+    assert 0 < len(its.sticking) < len(its.cycles)
+    assert its.sticking["hesitations"].max() == 0.0
+
+
 @pytest.mark.parametrize(("noise", "named"), [(0.05, True), (1e-4, False)])
 def test_a_spread_of_peaks_that_noise_makes_is_named_so(noise: float, named: bool) -> None:
     random = np.random.default_rng(8)
