@@ -55,9 +55,11 @@ def section(found: Analysis) -> Section | None:
 
 def _is_rough(each: StatedQuantity) -> bool:
     """Return whether a value is, or may be, farther from the truth than its error says."""
+    apart = each.stated - each.found
+    if each.how == BY_RISE and apart < 0.0:
+        return False  # creep does not make the force rise faster
     if verdict(each) in ((ALLOWED,) if each.part else (ALLOWED, "")):
         return True
-    apart = each.stated - each.found
     return each.how == BY_RISE and each.agrees is True and apart > ERRORS_997 * each.error
 
 

@@ -14,11 +14,15 @@ import stiction as st
 from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.metadata import (
+    BY_RISE,
+    LOADING_RATE,
     SWING,
+    StatedQuantity,
     _drive_velocity,
     _median_error,
     compare_metadata,
 )
+from stiction.analysis.parts.metadata import _is_rough
 from stiction.presets.preset import on_a_line
 
 RATE = 2000.0
@@ -146,6 +150,14 @@ def test_a_rate_of_loading_contradicts_by_more_than_its_errors(faster, agrees):
     assert rate.ratio == pytest.approx(faster)
     assert rate.error > 0.03 * rate.found
     assert rate.agrees is agrees
+
+
+@pytest.mark.parametrize(("found", "rough"), [(0.8, True), (1.11, False)])
+def test_creep_is_no_reason_why_a_force_rises_faster(found, rough):
+    rate = StatedQuantity(LOADING_RATE, "N/s", found, 0.01, 1.0, 0.48, 1.12, BY_RISE)
+    assert rate.agrees
+    assert not rate.is_same
+    assert _is_rough(rate) is rough
 
 
 def test_the_rest_in_a_vibration_is_not_taken_for_a_heavier_mass():
