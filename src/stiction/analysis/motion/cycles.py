@@ -261,7 +261,7 @@ def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings, read: Float
             among = (record.time >= its["start"][0]) & (record.time <= its["trough_time"][-1])
             low, high = np.percentile(wave[among], (1.0, 99.0))  # the first loading makes no wave
             seen = high - low > HIGH * np.percentile(its["drop"], LARGEST)
-            return carried._replace(wave=float(high - low) * seen, lines=found.lines)
+            return carried._replace(wave=float(high - low) if seen else 0.0, lines=found.lines)
     return None
 
 
