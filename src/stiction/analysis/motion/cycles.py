@@ -269,7 +269,7 @@ def _frequency_of_falls(record: Record, found: Swings) -> list[float]:
     """Return the mean frequency (Hz) of quick falls beside swings that do not stick, if any."""
     if not len(found.table) or is_stick_slip(found.table):
         return []
-    falls = quick_falls(record.force)
+    falls = quick_falls(record.time, record.force)
     return [falls.number / record.duration] if falls.clearness > EVEN else []
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from benchmarks.explore.records import irregular_in_noise
 
-from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
+from stiction.analysis.motion.changes.quick_falls import EVEN, QuickFalls, quick_falls
 
 
 def slips(number: int) -> np.ndarray:
@@ -12,40 +12,65 @@ def slips(number: int) -> np.ndarray:
     return record.force
 
 
+def falls(force: np.ndarray) -> QuickFalls:
+    return quick_falls(5e-3 * np.arange(len(force)), force)
+
+
 @pytest.mark.parametrize("number", range(4))
 def test_slips_are_falls_and_not_rises(number: int) -> None:
     force = slips(number)
-    found = quick_falls(force)
+    found = falls(force)
     assert found.clearness > EVEN
     assert 0.5 < found.height < 1.5  # the drops are 0.5 to 1.5 N
     for other in (-force, force[::-1]):
-        assert quick_falls(other).clearness < EVEN / 2
+        assert falls(other).clearness < EVEN / 2
 
 
 def test_unit_zero_and_single_wild_samples_make_no_difference() -> None:
     force = slips(0)
-    found = quick_falls(force)
-    other = quick_falls(1e-3 * force + 7.0)
+    found = falls(force)
+    other = falls(1e-3 * force + 7.0)
     assert other.number == found.number
     assert other.height == pytest.approx(1e-3 * found.height, rel=1e-9)
     assert other.times == pytest.approx(found.times, rel=1e-9)
     wild = force.copy()
     wild[100::200] -= 5.0
-    assert quick_falls(wild).clearness > EVEN
+    assert falls(wild).clearness > EVEN
 
 
 def test_a_sawtooth_makes_up_its_whole_motion() -> None:
     rng = np.random.default_rng(1)
     force = np.arange(6000) / 200.0 % 1.0 + 0.02 * rng.normal(size=6000)
-    found = quick_falls(force)
+    found = falls(force)
     assert found.number in (29, 30)
     assert found.times == pytest.approx(12.0**0.5, rel=0.1)  # sd of a uniform distribution
-    wanders = quick_falls(force + 3.0 * np.sin(np.arange(6000) / 1000.0))
+    wanders = falls(force + 3.0 * np.sin(np.arange(6000) / 1000.0))
     assert wanders.number in (29, 30)
     assert wanders.times < 0.5
 
 
-@pytest.mark.parametrize("size", [1, 5, 31, 64])
-def test_few_samples_and_no_noise_have_none(size: int) -> None:
-    assert quick_falls(np.ones(size)).clearness == 0.0
-    assert quick_falls(np.arange(float(size))).clearness == 0.0
+@pytest.mark.parametrize("size", [1, 5, 31, 64, 1000, 20000])
+@pytest.mark.parametrize("step", [1.0, -0.1, 1e-9 / 3.0, 1e6 / 7.0])
+def test_few_samples_and_no_noise_have_none(size: int, step: float) -> None:
+    assert falls(np.full(size, step)).clearness == 0.0
+    assert falls(step * np.arange(float(size))).clearness == 0.0
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.2, 0.35])  # of a step: noise of half a step leaves none
+def test_a_force_that_drifts_down_the_steps_of_a_converter_has_none(noise: float) -> None:
+    noises = noise * np.random.default_rng(2).normal(size=6000)
+    drifts = 500.0 - np.arange(6000) / 270.0 + noises
+    assert falls(np.rint(drifts)).clearness == 0.0
+    assert falls(np.rint(drifts - 4.0 * (np.arange(6000) / 200.0 % 1.0))).clearness < EVEN
+    assert falls(np.rint(drifts + 4.0 * (np.arange(6000) / 200.0 % 1.0))).clearness > EVEN
+
+
+def test_what_a_force_falls_by_in_a_gap_is_not_quick() -> None:
+    number = np.arange(12000)
+    time = 5e-3 * number[number % 200 < 190]
+    noise = 1e-3 * np.random.default_rng(3).normal(size=len(time))
+    assert quick_falls(time, 2.0 - time + noise).clearness < EVEN / 2
+    saw = time % 0.7 + noise
+    assert quick_falls(time, saw).clearness > EVEN
+    rare = time[number[: len(time)] % 100 < 20]  # no spectrum, either
+    assert quick_falls(rare, rare % 0.7).clearness == 0.0

@@ -13,7 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.robust import uniform_mean
+from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.even_grid import even_grid
+from stiction.analysis.signals.robust import largest_magnitude, uniform_mean
 from stiction.analysis.signals.turning_points import surprise, without_spikes
 from stiction.arrays import TINY, Floats, Indices
 
@@ -26,6 +28,10 @@ AS_GOOD = 0.9  # of the clearest: of two lengths as good, more of a fall ends wi
 # The clearness at which slips are as likely as noise. Of 10 000 records of noise (white, filtered,
 # of heavy tails), vibration, settling and loading, 4 have more than 4, the most 4.9.
 EVEN = 4.5
+# Smaller falls are rounding: so much of the force, that of numbers; so many steps of a converter,
+# in which a drift falls, one at a time. They are clear if there are seven, and then the standard
+# deviation of the force is two: larger falls than one deviation are not of a drift
+ROUNDED, STEPS, DRIFTS = 1e-9, 1.6, 1.0
 
 
 class QuickFalls(NamedTuple):
@@ -54,19 +60,29 @@ class QuickFalls(NamedTuple):
 NONE = QuickFalls(0, 0.0, 0.0, 0.0)
 
 
-def quick_falls(force: Floats) -> QuickFalls:
+def quick_falls(time: Floats, force: Floats) -> QuickFalls:
     """Return the quick falls of a force that are least likely in noise.
 
-    Its changes are looked at over 1, 2, 4, ... samples.
+    Its changes are looked at over 1, 2, 4, ... even steps of time, so that its change in a gap is
+    not quick. A force whose times have no even grid has none.
 
     Parameters
     ----------
-    force : ndarray
-        (n,), N.
+    time, force : ndarray
+        (n,), s, and N.
     """
-    sums = np.append(0.0, np.cumsum(without_spikes(force) - force.mean()))
-    lengths = [2**power for power in range((len(force) // FEWEST_PARTS).bit_length())]
-    seen = [_clearest(sums, length) for length in lengths]
+    grid = even_grid(time)
+    if grid is None or not grid.serves:
+        return NONE
+    even = grid.on(force)
+    sums = np.append(0.0, np.cumsum(without_spikes(even) - even.mean()))
+    lengths = [2**power for power in range((len(even) // FEWEST_PARTS).bit_length())]
+    least, steps = ROUNDED * largest_magnitude(force), STEPS * resolution(force)
+    seen = [
+        each
+        for length in lengths
+        if (each := _clearest(sums, length)).height > max(least, steps * (each.times < DRIFTS))
+    ]
     clearest = max((each.clearness for each in seen), default=0.0)
     return next((each for each in seen[::-1] if each.clearness >= AS_GOOD * clearest), NONE)
 

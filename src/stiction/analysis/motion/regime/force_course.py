@@ -218,7 +218,7 @@ def _unless_it_slips(record: Record, seen: Regime) -> Regime:
     If such falls are most of what it does, it is that of a mass that slips, and noise hides its
     cycles.
     """
-    falls = quick_falls(record.force)
+    falls = quick_falls(record.time, record.force)
     chance = likelihood(falls.clearness / EVEN)
     if chance <= 0.5:
         return seen._replace(confidence=seen.confidence * (1.0 - chance))
