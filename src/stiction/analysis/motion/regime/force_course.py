@@ -215,17 +215,19 @@ def _unless_hidden(record: Record, begin: int, least: float, seen: Regime) -> Re
 def _unless_it_slips(record: Record, seen: Regime) -> Regime:
     """Return a kind of motion, less sure if the force falls quickly, and does not rise so.
 
-    If such falls are most of what it does, it is that of a mass that slips, and noise hides its
-    cycles.
+    That is, if such falls would be most of what it does: then the mass slips, and noise hides its
+    cycles. Fewer, or smaller ones, are evidence beside the kind.
     """
     falls = quick_falls(record.time, record.force)
     chance = likelihood(falls.clearness / EVEN)
-    if chance <= 0.5:
-        return seen._replace(confidence=seen.confidence * (1.0 - chance))
-    evidence = seen.evidence | {"quick_falls": falls.number, "quick_fall": falls.height}
-    if falls.times > MAKES_UP:
-        return Regime(UNDETERMINED, 0.0, evidence, STICK_SLIP)
-    return seen._replace(evidence=evidence)
+    if chance > 0.5:
+        its = {"quick_falls": falls.number, "quick_fall": falls.height}
+        seen = seen._replace(evidence=seen.evidence | its)
+    if not falls.times > MAKES_UP:
+        return seen
+    if chance > 0.5:
+        return Regime(UNDETERMINED, 0.0, seen.evidence, STICK_SLIP)
+    return seen._replace(confidence=seen.confidence * (1.0 - chance))
 
 
 def _hidden_line(record: Record, begin: int, least: float, clearness: float = 1.0) -> Line | None:

@@ -34,6 +34,7 @@ from tests.measured import bare, read_measured
 import stiction as st
 from stiction.analysis.motion.course import dies_out, final_fall
 from stiction.analysis.motion.regime.band import highest_hump
+from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.rest import rest_share
 from stiction.analysis.motion.vibration import is_irregular
 from stiction.analysis.parts.motion import plainly
@@ -731,6 +732,21 @@ def test_small_slips_of_a_mass_that_slides_are_named() -> None:
     regime = st.analysis.classify(read_measured("k2254_v42"))
     assert regime.kind == "steady sliding"
     assert regime.evidence["quick_falls"] > 100
+
+
+def test_falls_that_are_not_most_of_the_motion_leave_its_kind_as_sure_however_clear() -> None:
+    def classify(number: int) -> Regime:
+        rng, time = np.random.default_rng([3, 0]), np.arange(6000) / 200.0
+        wanders = 2.0 + 0.004 * np.cumsum(rng.normal(size=6000)) + 0.01 * rng.normal(size=6000)
+        at = np.sort(rng.choice(6000, number, replace=False))
+        fallen = 0.12 * (np.searchsorted(at, np.arange(6000)) - number * time / 30.0)
+        return st.analysis.classify(st.Record(time=time, force=wanders - fallen))
+
+    unclear, clear = classify(6), classify(9)
+    assert unclear.kind == clear.kind == "steady sliding"
+    assert "quick_falls" not in unclear.evidence
+    assert clear.evidence["quick_falls"] == 9
+    assert unclear.confidence > 0.9 * clear.confidence
 
 
 def test_faint_swings_in_steady_sliding_are_named() -> None:
