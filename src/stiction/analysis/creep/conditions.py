@@ -70,9 +70,10 @@ def _pauses(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:
     """
     none = np.zeros(len(begin), bool)
     inside = [slice(*each) for each in np.searchsorted(record.time, [begin, end]).T]
-    if len(inside) < FEWEST_RISES or min(each.stop - each.start for each in inside) < 2:
+    sizes = [each.stop - each.start for each in inside]
+    if len(inside) < FEWEST_RISES or min(sizes) < 2:
         return none
-    step = 1.0 / record.sample_rate
+    step = float((end - begin).sum()) / sum(sizes)  # a slip can have a million times the rate
     rises = [_evenly(record.time[each], record.force[each], step) for each in inside]
     peaks = np.array([each.max() for each in rises])
     high = float(np.median(peaks))

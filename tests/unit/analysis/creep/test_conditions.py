@@ -237,6 +237,18 @@ def test_another_rate_of_samples_is_not_taken_for_a_pause():
     assert driven_steadily(*sawtooth(np.zeros(8), left=gap)).all()
 
 
+def test_slips_that_are_sampled_far_more_often_than_rises_take_no_memory():
+    """At the rate of the slips the rises would have 6e9 samples."""
+    record, begin, end = sawtooth([0.0] * 5 + [0.5], 30.0)
+    slips = np.concatenate([1e6 * record.time, *(1e6 * end[:, None] + 1e-3 * np.arange(200))])
+    time = np.unique(slips)
+    force = np.interp(time, 1e6 * record.time, record.force)
+    triggered = record.model_copy(update={"time": time, "force": force})
+    assert triggered.sample_rate > 100.0
+    driven = driven_steadily(triggered, 1e6 * begin, 1e6 * (end - 0.05))
+    assert driven.tolist() == [True] * 5 + [False]
+
+
 def test_of_two_stick_phases_one_may_pause():
     """Compared with their mean, both did; a stated stiffness may be wrong."""
     record, begin, end = sawtooth([0.0, 0.5], position=1.0)
