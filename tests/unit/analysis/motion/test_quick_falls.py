@@ -36,6 +36,7 @@ def test_unit_zero_and_single_wild_samples_make_no_difference() -> None:
     wild = force.copy()
     wild[100::200] -= 5.0
     assert falls(wild).clearness > EVEN
+    assert falls(wild).height == pytest.approx(found.height, rel=0.1)
 
 
 def test_a_sawtooth_makes_up_its_whole_motion() -> None:
@@ -72,5 +73,44 @@ def test_what_a_force_falls_by_in_a_gap_is_not_quick() -> None:
     assert quick_falls(time, 2.0 - time + noise).clearness < EVEN / 2
     saw = time % 0.7 + noise
     assert quick_falls(time, saw).clearness > EVEN
-    rare = time[number[: len(time)] % 100 < 20]  # no spectrum, either
-    assert quick_falls(rare, rare % 0.7).clearness == 0.0
+    rare = number[: len(time)] % 100 < 20  # no spectrum, either
+    assert quick_falls(time[rare], 2.0 - time[rare] + noise[rare]).clearness == 0.0
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_a_wave_25_times_as_high_hides_none(number: int) -> None:
+    force = slips(number)
+    wave = 12.5 * np.sin(np.linspace(0.0, 20.0, len(force)))
+    found = falls(force + wave)
+    assert found.clearness > EVEN
+    assert 0.5 < found.height < 1.5
+
+
+@pytest.mark.parametrize("period", [4.0, 4.3, 20.0, 40.0])  # of few phases the median is by chance
+def test_noise_and_a_vibration_have_none(period: float) -> None:
+    rng, turns = np.random.default_rng(4), np.arange(3000) / period
+    for phase in range(6):
+        noise = rng.normal(size=3000)
+        hum = np.sin(2.0 * np.pi * turns + phase)
+        for force in (noise, noise**3, np.cumsum(noise), hum + 0.03 * noise, hum + 0.3 * noise):
+            assert falls(force).clearness < EVEN
+
+
+@pytest.mark.parametrize(("skew", "seen"), [(0.02, False), (0.15, True)])
+def test_a_vibration_that_falls_hardly_quicker_than_it_rises_has_none(
+    skew: float, seen: bool
+) -> None:
+    turns = 2.0 * np.pi * np.arange(3000) / 20.0
+    noise = 0.03 * np.random.default_rng(5).normal(size=3000)
+    force = np.sin(turns) - skew * np.sin(2.0 * turns) + noise
+    assert (falls(force).clearness > EVEN) == seen
+
+
+def test_falls_of_any_duration_have_their_whole_height_and_a_larger_one_counts_once() -> None:
+    drops = np.where(np.arange(40) % 5, 1.0, 2.0)
+    ends = 100.0 * np.cumsum(drops)
+    knots = np.ravel([ends - 20.0, ends], "F")
+    force = np.interp(np.arange(ends[-1]), knots, np.ravel([0.8 * drops, np.zeros(40)], "F"))
+    found = falls(force + 0.02 * np.random.default_rng(6).normal(size=len(force)))
+    assert found.number == pytest.approx(40, abs=1)
+    assert found.height == pytest.approx(0.8, rel=0.25)

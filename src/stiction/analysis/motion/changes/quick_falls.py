@@ -90,11 +90,13 @@ def quick_falls(time: Floats, force: Floats) -> QuickFalls:
 def changes(sums: Floats, length: int) -> Floats:
     """Return by how much each mean over a length exceeds the one before, from sums (n + 1,).
 
-    What the loading and a slow wave add is taken off: the mean nearby, and the median.
+    What a slow wave adds is taken off, the mean nearby; and what loading adds, the mean of the
+    middle third: a median jumps where a vibration has few phases, as hum of 20 samples a period.
     """
     jumps = (sums[2 * length :] - 2.0 * sums[length:-length] + sums[: -2 * length]) / length
-    near = jumps - uniform_mean(jumps, min(NEAR * length, len(jumps)))
-    return np.asarray(near - np.median(near))
+    near = jumps - uniform_mean(jumps, NEAR * length)
+    low, high = np.quantile(near, (1 / 3, 2 / 3))
+    return np.asarray(near - near[(near >= low) & (near <= high)].mean())
 
 
 def _clearest(sums: Floats, length: int) -> QuickFalls:
