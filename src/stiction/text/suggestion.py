@@ -80,12 +80,15 @@ def as_option(its: Suggestion) -> str:
     ("--force-across '3=mN'", '--trust')
     >>> as_option(Suggestion("block", 1)), as_option(Suggestion("at", {"NAME": "VALUE"}))
     ('--block 1', "--at 'NAME=VALUE'")
+    >>> print(as_option(Suggestion("position", "Mohr's gauge=mm")))
+    --position "Mohr's gauge=mm"
     """
     option = f"--{its.name.replace('_', '-')}"
     if its.value is None or its.value is True:
         return option
     value = "=".join(*its.value.items()) if isinstance(its.value, dict) else str(its.value)
-    return f"{option} {value}" if value.isalnum() else f"{option} '{value}'"
+    quote = "" if value.isalnum() else '"' if "'" in value else "'"
+    return f"{option} {quote}{value}{quote}"
 
 
 def begin_and_end() -> str:
