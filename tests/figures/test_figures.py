@@ -53,7 +53,7 @@ from stiction.plotting.page.style import (
 from stiction.plotting.page.words import plain
 from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.law import plot_law
-from stiction.plotting.run.lines import draw_line, envelope, oscillations
+from stiction.plotting.run.lines import draw_line, envelope, mean_course, oscillations
 from stiction.plotting.run.overview import GAP, LINE, SERIES, plot_glance, plot_run
 from stiction.plotting.run.time_series import cut_open, draw_slip_speed
 from stiction.plotting.shades import COLORS
@@ -599,6 +599,18 @@ def test_noise_on_an_oscillation_that_can_be_seen_does_not_flatten_it(noise: flo
     periods = [heights[(times >= a) & (times < a + 1 / 35)] for a in np.arange(1, 128) / 35]
     assert min(np.ptp(each) for each in periods) > 1.9  # of 2
     assert not panel.collections
+
+
+def test_creep_that_oscillates_has_a_mean_and_a_highest_speed_beside_slip_and_rest() -> None:
+    time = np.arange(4000.0)
+    speeds = 1e-6 * (1.0 + 0.6 * np.sin(2.0 * pi * time / 10.3))
+    speeds[2000:2020], speeds[3000:3500] = 1e-2, 0.0
+    mean, high = mean_course(time, speeds, speeds, 20.0)
+    assert mean[50:1950] == pytest.approx(1e-6, rel=0.01)
+    assert high[50:1950] == pytest.approx(1.6e-6, rel=0.02)  # samples beside crests
+    for part in (slice(1995, 2025), slice(3000, 3500)):
+        assert (mean[part] == speeds[part]).all()
+        assert (high[part] == speeds[part]).all()
 
 
 def test_slips_that_ring_are_no_oscillation() -> None:
