@@ -148,7 +148,7 @@ def _describe_unclear_force(found: Analysis) -> str:
     """Describe a motion that noise hides, or whose force may have the other sign; '' for others."""
     evidence = found.regime.evidence
     if found.regime.runner_up == STICK_SLIP and "quick_falls" in evidence:
-        fall = in_words(float(f"{evidence['quick_fall']:.2g}"), "N")
+        fall = in_words(evidence["quick_fall"], "N", 2)
         return (
             f"The mass probably sticks and slips, in noise that hides its cycles: the force falls "
             f"quickly {evidence['quick_falls']:.0f} times, by about {fall}, and hardly ever rises "

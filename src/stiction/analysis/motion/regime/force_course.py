@@ -231,9 +231,9 @@ def _unless_it_slips(record: Record, seen: Regime) -> Regime:
 
 
 def _hidden_line(record: Record, begin: int, least: float, clearness: float = 1.0) -> Line | None:
-    """Return the clearest lasting line in a force from a sample on, other than the mains'.
+    """Return the lasting line most alone in a force from a sample on, other than the mains'.
 
-    Its root mean square is `least` (N) or more.
+    Its root mean square is at least `least` (N), and how clear it is at least `clearness`.
     """
     time, force = record.time[begin:], record.force[begin:]
     for line in narrow_lines(even_grid(time), force, clearness):
