@@ -19,6 +19,7 @@ from stiction.friction.law import static_coefficient
 from stiction.friction.user.loading import finder_for_descriptions
 from stiction.machine import shortage
 from stiction.names import draw
+from stiction.result.rest import REST
 from stiction.simulation import MOST_STEPS, automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
@@ -33,7 +34,6 @@ HEADINGS = (
     "median slip while loading",
 )  # fmt: skip
 ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is not a slip
-REST = 1e-9  # of the drive's speed: slower motion counts as rest
 BRISTLES = 100.0  # of a spring's stiffness: sigma_0 of Canudas de Wit et al. (1995) over 1 kN/m
 MEMORY = 200.0  # memory lengths in a slip length: 10 µm in the 2 mm of Nakano & Popov
 EXAMPLE = """'{law = "coulomb", mu_0 = 0.15}'"""

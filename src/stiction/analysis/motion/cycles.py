@@ -14,7 +14,6 @@ from stiction.analysis.motion.changes.sizes import find_corners
 from stiction.analysis.motion.course import dies_out, is_over
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
-    ROUNDED,
     have_period,
     is_beside,
     is_carried,
@@ -29,7 +28,7 @@ from stiction.analysis.motion.disturbance import (
 )
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, as_record
-from stiction.analysis.signals.digitised import resolution, rounding_line
+from stiction.analysis.signals.digitised import fall_by_rounding, rounding_line
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.hum import (
     PERIODS,
@@ -331,7 +330,7 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
     if wave is not None:
         there = np.interp(corners.time, record.time, wave)
         corners = corners._replace(value=np.asarray(corners.value + there))
-        least = max(least, ROUNDED * resolution(record.force))  # a staircase less a wave turns back
+        least = max(least, fall_by_rounding(record.force))  # a staircase less a wave turns back
         dips = Vertices(*(each[dips.value > least] for each in dips))
     table = tabulate(record, corners, dips, least)
     over = dying = False

@@ -9,7 +9,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.motion.vibration import COUPLED, OWN_PERIODS, is_irregular
 from stiction.analysis.record import Record
-from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.digitised import fall_by_rounding
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import (
@@ -36,10 +36,7 @@ LOADED = 0.5  # of its rise: until then the mass goes at half the drive's speed 
 SLIDES = 0.5  # of the rate of loading: afterwards the force rises more slowly, if at all
 PERIODS = 5.0  # of the line while the spring is loaded, and afterwards
 ELSEWHERE = 3.0  # times as large as beside the swings
-# Steps of a converter: the median fall that rounding makes. Without a wave it is one step, without
-# a line up to 1.50, in 482 staircases with noise up to 0.3 steps; and share of such falls from
-# which on others do not count
-ROUNDED, SOME = 1.6, 0.1
+SOME = 0.1  # of all falls are by rounding: from there on others do not count
 RESIDUE = 0.05  # of a line's height: so much of it may be left where it was subtracted
 AS_LARGE = 0.6  # the smaller amplitude over the larger one, while it is loaded and afterwards
 
@@ -184,7 +181,7 @@ def is_rounding(table: CycleTable, force: Floats) -> bool:
     """
     drift = (table["trough"] - table["start_force"]) / table["period"]
     falls = table["drop"] + drift * (table["trough_time"] - table["peak_time"])
-    return len(table) > 0 and bool(np.quantile(falls, SOME) < ROUNDED * resolution(force))
+    return len(table) > 0 and bool(np.quantile(falls, SOME) < fall_by_rounding(force))
 
 
 def lasts_through_loading(line: Line, time: Floats, force: Floats) -> bool:

@@ -8,6 +8,9 @@ from stiction.arrays import Floats
 from stiction.recording.noise import dither_remainder, lattice, rounding_error
 
 MANY, COARSE = 100_000, 1e-4  # samples examined for steps; smallest step, over the signal's range
+# Steps of a converter: the median fall that rounding makes. Without a wave it is one step, without
+# a line up to 1.50, in 482 staircases with noise up to 0.3 steps
+ROUNDED = 1.6
 
 
 def resolution(values: Floats) -> float:
@@ -23,6 +26,11 @@ def resolution(values: Floats) -> float:
         return step
     step = float(np.diff(np.unique(some)).min(initial=np.inf))
     return step if np.isfinite(step) and step >= COARSE * float(np.ptp(some)) else 0.0
+
+
+def fall_by_rounding(values: Floats) -> float:
+    """Return the fall that the steps of a converter make of an even change; 0 without steps."""
+    return ROUNDED * resolution(values)
 
 
 def rounding_of_mean(values: Floats, width: float) -> float:

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.digitised import fall_by_rounding
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.robust import largest_magnitude, uniform_mean
 from stiction.analysis.signals.turning_points import surprise, without_spikes
@@ -28,10 +28,10 @@ AS_GOOD = 0.9  # of the clearest: of two lengths as good, more of a fall ends wi
 # The clearness at which slips are as likely as noise. Of 10 000 records of noise (white, filtered,
 # of heavy tails), vibration, settling and loading, 4 have more than 4, the most 4.9.
 EVEN = 4.5
-# Smaller falls are rounding: so much of the force, that of numbers; so many steps of a converter,
-# in which a drift falls, one at a time. They are clear if there are seven, and then the standard
-# deviation of the force is two: larger falls than one deviation are not of a drift
-ROUNDED, STEPS, DRIFTS = 1e-9, 1.6, 1.0
+TINIEST = 1e-9  # of the force: smaller falls are those of numbers
+# The steps of a converter, in which a drift falls one at a time, are clear if there are seven, and
+# then the standard deviation of the force is two: falls above one deviation are not of a drift
+DRIFTS = 1.0
 
 
 class QuickFalls(NamedTuple):
@@ -77,7 +77,7 @@ def quick_falls(time: Floats, force: Floats) -> QuickFalls:
     even = grid.on(force)
     sums = np.append(0.0, np.cumsum(without_spikes(even) - even.mean()))
     lengths = [2**power for power in range((len(even) // FEWEST_PARTS).bit_length())]
-    least, steps = ROUNDED * largest_magnitude(force), STEPS * resolution(force)
+    least, steps = TINIEST * largest_magnitude(force), fall_by_rounding(force)
     seen = [
         each
         for length in lengths
