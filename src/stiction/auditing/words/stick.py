@@ -124,8 +124,8 @@ def _rests_for_moments(seen: SimulatedTest) -> str:
     stretched = float((np.interp(end, time, u_y) - np.interp(begin, time, u_y)).sum())
     if share_held(stretched, way) >= HELD:
         return ""
-    each = float(f"{len(of) / len(loadings):.2g}")
     lasts, long = float(np.median(lengths)), _long_rest(seen)
+    each = float(f"{len(of) / len(loadings) - (long > 0.0):.2g}")
     once = f"once for {in_words(long, 's')}, and then " if long else ""
     return (
         f"The mass rests {once}{each:g} times while the spring is loaded, typically for "

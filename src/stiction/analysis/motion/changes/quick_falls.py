@@ -23,7 +23,6 @@ FEWEST_PARTS = 32  # of a force, of the length over which its changes are looked
 LARGER = 1.25  # times a rise: the samples of a vibration can be off its crests by so much
 NEARLY_ALL = 0.9  # of the largest changes are falls
 NEAR = 16  # lengths over which the mean change is taken off: what a slow wave adds to each
-SMALL = 1 / 3  # of the median fall: what is less is not counted
 AS_GOOD = 0.9  # of the clearest: of two lengths as good, more of a fall ends within the longer one
 # The clearness at which slips are as likely as noise. Of 10 000 records of noise (white, filtered,
 # of heavy tails), vibration, settling and loading, 4 have more than 4, the most 4.9.
@@ -109,11 +108,9 @@ def _clearest(sums: Floats, length: int) -> QuickFalls:
         return NONE
     best = int(np.argmax(worth))
     its = order[: best + 1]
-    heights = size[its[falls[its]]]
-    height = float(np.median(heights))
-    number = int(np.count_nonzero(heights > SMALL * height))
+    height = float(np.median(size[its[falls[its]]]))
     wander = float(np.std(sums[length:] - sums[:-length])) / length
-    return QuickFalls(number, height, height / max(wander, TINY), float(worth[best]))
+    return QuickFalls(int(found[best]), height, height / max(wander, TINY), float(worth[best]))
 
 
 def extremes(jumps: Floats) -> tuple[Floats, NDArray[np.bool_]]:
