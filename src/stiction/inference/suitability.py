@@ -17,7 +17,7 @@ from stiction.analysis.motion.doubts.cycles import (
 )
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.regime.evidence import Regime
-from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
+from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK, UNDETERMINED
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.errors import ResultError
@@ -29,6 +29,7 @@ from stiction.text.suggestion import Suggestion, begin_and_end, by_strokes
 from stiction.text.units import in_words
 
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
+IN_NOISE = {"hidden", "quick_falls"}  # evidence of swings that noise hides
 BEYOND = 1.5  # times the largest simulated spread, which twenty cycles exceed by half in 1 of 1000
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
 
@@ -60,6 +61,11 @@ def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
         raise ResultError(
             f"{name} shows no stick-slip, of which a fit needs {LEAST_CYCLES} cycles: it is "
             f"{regime.kind}; `stiction analyse` tells what that says of friction"
+        )
+    if regime.kind == UNDETERMINED and IN_NOISE & regime.evidence.keys():
+        raise ResultError(
+            f"noise hides the cycles of {name}, of which a fit needs {LEAST_CYCLES}: measure with "
+            "less noise; `stiction analyse` tells what is seen of them"
         )
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from benchmarks.explore.records import irregular_in_noise
 
 import stiction as st
 from stiction.errors import ResultError
@@ -137,3 +138,10 @@ def test_too_few_cycles_ask_for_more_of_them():
     """The remedy was to drive more slowly: fewer cycles in the same time."""
     with pytest.raises(ResultError, match=r"3 whole cycles .* record for longer, or drive faster$"):
         refuse_few("the record", 3)
+
+
+def test_cycles_that_noise_hides_ask_for_less_noise():
+    """The remedy was to record for longer."""
+    hidden, _, _ = irregular_in_noise(np.random.default_rng([5, 5]))
+    with pytest.raises(ResultError, match=r"noise hides the cycles .* measure with less noise"):
+        observe(hidden, RIG.slider)
