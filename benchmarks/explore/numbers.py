@@ -22,7 +22,6 @@ from scipy.signal import lfilter  # type: ignore[attr-defined]
 from scipy.special import ndtr
 
 import stiction as st
-from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.doubts.sampling import hidden_way
 
 Floats = NDArray[np.float64]
@@ -121,7 +120,7 @@ def compare(known: Known, found: st.analysis.Analysis) -> Iterator[Compared]:
             mu, error = measured.coefficient, measured.coefficient_error
             yield Compared(f"µ {name}", mu, error, float(true.mean()) / LOAD)
     if "creep_distance" not in found.missing:
-        hidden, crept = hidden_way(record, table_of(ends)), float(known.crept[inside].mean())
+        hidden, crept = hidden_way(record), float(known.crept[inside].mean())
         yield Compared(
             "creep, by what is hidden", float(ends["creep_distance"].mean()), hidden, crept
         )

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.analysis.slip import cell_symbol, outcome
+from stiction.analysis.slip import Outcome, cell_symbol, outcome
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Anisotropic, Law, has_state, name_of, parameters, read_law
 from stiction.friction.equivalent import Traits, like, traits
@@ -65,13 +65,14 @@ class Comparison(Report, dict[str, Trajectory]):
 
     def tables(self) -> list[Section]:
         """Return a table with a row for each law."""
-        rows = [row(label, run) for label, run in self.items()]
+        outcomes = [outcome(run) for run in self.values()]
+        rows = [row(*each, o) for each, o in zip(self.items(), outcomes, strict=True)]
         early = [
             f"{label} ended early: {run.status.value}."
             for label, run in self.items()
             if not run.status.ok
         ]
-        if any(cell.startswith("> ") for each in rows for cell in each):
+        if any(o.hidden for o in outcomes):
             early.append("> marks slips that are faster still, between samples: take more of them.")
         force = next((cell_symbol(run.slider) for run in self.values()), "")
         headings = tuple(each.format(force) for each in HEADINGS)
@@ -82,9 +83,8 @@ class Comparison(Report, dict[str, Trajectory]):
         return draw("plot_comparison", self, axes)
 
 
-def row(label: str, run: Trajectory) -> tuple[str, ...]:
+def row(label: str, run: Trajectory, o: Outcome) -> tuple[str, ...]:
     """Return the table row of one law."""
-    o = outcome(run)
     initial = run.description.initial
     drive = float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
     release = ROUNDED * initial.epsilon if initial.v_x is None else 0.0

@@ -186,7 +186,7 @@ def _meaningless(
     known = cycles["creep_distance"][~np.isnan(cycles["creep_distance"])]
     if not len(known):
         return {}
-    hidden = hidden_way(record, cycles)
+    hidden = hidden_way(record)
     if 0.0 <= np.median(known) < hidden:
         why = f"noise and the time between samples hide about {in_words(hidden, 'm')} of it"
         return {"creep_distance": why}

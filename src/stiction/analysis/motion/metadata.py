@@ -232,9 +232,11 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
     swing = float(np.median(swings))
     lowest, highest, off = HEAVIER, LIGHTER, SWINGS
     if kind != HARMONIC:
-        if _main_part(record, cycles) < DRAWN_OUT or _hidden_end(record, cycles) > MOST_HIDDEN:
+        reach = REACH * white_noise(record.force) + resolution(record.force)
+        hidden = reach > MOST_HIDDEN * cycles.median("drop")
+        if _main_part(record, cycles) < DRAWN_OUT or hidden:
             return None
-        longer, shorter = _unseen_ends(record, cycles)
+        longer, shorter = _unseen_ends(reach, cycles)
         lowest, highest = SLOW_SLIP * shorter**2, LIGHTER * longer**2
         unseen = max(longer - 1.0, 1.0 - shorter)
         off = 0.5 * float(np.hypot(unseen, 2.0 / (record.sample_rate * swing)))  # or a sample
@@ -264,23 +266,17 @@ def _main_part(record: Record, cycles: CycleTable) -> float:
     return float(np.median(shares)) if shares else nan
 
 
-def _unseen_ends(record: Record, cycles: CycleTable) -> tuple[float, float]:
+def _unseen_ends(reach: float, cycles: CycleTable) -> tuple[float, float]:
     """Return by which factors slips may last longer, or shorter, than their falls are seen to.
 
-    A force that is within noise, or a step of its converter, of a peak or a trough may have left
-    it. Half a cosine begins and ends so, and the spring is loaded as slowly before and after it.
+    A force within `reach` (N) of a peak or a trough, by noise or a step of its converter, may have
+    left it. Half a cosine begins and ends so, and the spring is loaded as slowly before and after
+    it.
     """
-    share, falls = _hidden_end(record, cycles), cycles["trough_time"] - cycles["peak_time"]
-    reach = share * cycles.median("drop")
+    share, falls = reach / cycles.median("drop"), cycles["trough_time"] - cycles["peak_time"]
     hidden = 2.0 * float(np.arccos(1.0 - 2.0 * share)) / pi  # of a slip, at both ends
     rate = max(float(np.median(cycles["stick_slope"])), TINY)
     return 1.0 / (1.0 - hidden), max(1.0 - reach / rate / float(np.median(falls)), 0.0)
-
-
-def _hidden_end(record: Record, cycles: CycleTable) -> float:
-    """Return the share of a fall's height within noise, or a step, of its peak, or its trough."""
-    reach = REACH * white_noise(record.force) + resolution(record.force)
-    return reach / cycles.median("drop")
 
 
 def _median_error(values: Floats) -> float:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.doubts.sampling import hidden_way
 from stiction.analysis.parts.wording import SHOWN, number, with_spread
 from stiction.arrays import xr
@@ -65,7 +64,7 @@ def section(found: Analysis) -> Section:
 
 def _hidden_ways(found: Analysis) -> list[str]:
     """Return how much of the ways noise and samples hide, if that is worth a word."""
-    hidden = hidden_way(found.record, table_of(found.cycles))
+    hidden = hidden_way(found.record)
     known = (float(found.cycles[name].mean()) for name in WAYS if name not in found.missing)
     if not any(hidden > HIDDEN * way for way in known):
         return []

@@ -216,7 +216,7 @@ def _above_samples(record: Record, cycles: CycleTable) -> float:
     return max(float(np.median(cycles["peak"] - largest)), 0.0)
 
 
-def hidden_way(record: Record, cycles: CycleTable) -> float:
+def hidden_way(record: Record) -> float:
     """Return how much of creep and slip noise and samples hide, m; 0 where the position is known.
 
     The largest force is too early, and too high, by noise; the mass seems to slip from there on. Of
@@ -227,7 +227,7 @@ def hidden_way(record: Record, cycles: CycleTable) -> float:
         return 0.0
     force = ON_BOTH_ENDS * white_noise(record.force) + resolution(record.force)
     between = abs(record.drive_velocity) / record.sample_rate
-    return force / record.stiffness + between if len(cycles) else 0.0
+    return float(force / record.stiffness + between)
 
 
 def with_supposed_filter(
