@@ -7,8 +7,8 @@ posterior. Records have 20 cycles, friction that differs by 0.1 % to 3 % from cy
 of 0.2 % of the friction force at rest and, on the displacement, of 0.2 % of the slip length. The
 third rig's slips take a fifth of the force: its spring loads for as long as five cycles first. One
 rig is measured again with load cells that smear its slips, or whose zero drifts by 5 % or 10 % of
-the friction force over a record (standard deviation). FOLDER holds the simulations, so that a
-second call only compares.
+the friction force over a record (standard deviation); and with friction that differs by 1 % to
+30 % from cycle to cycle. FOLDER holds the simulations, so that a second call only compares.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from stiction.inference.learning.calibration import Learned, learn_or_read
 from stiction.inference.learning.regression_abc import Sample, quantiles, rank
 from stiction.inference.observation import Conditions, Noise
 from stiction.inference.posterior import RARE
-from stiction.inference.priors import Uniform
+from stiction.inference.priors import IRREGULAR, Uniform
 from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import Library, build
 from stiction.inference.simulated.plan import plan
@@ -73,6 +73,9 @@ RIGS["pin on plate, filter at 20 Hz"] = RIGS["pin on plate"]
 FILTERS = {"pin on plate, filter at 20 Hz": (LowPass(20.0, 4),)}  # of the load cell
 DRIFTS = {"pin on plate, zero drifts by 5 %": 0.05, "pin on plate, zero drifts by 10 %": 0.1}
 RIGS |= dict.fromkeys(DRIFTS, RIGS["pin on plate"])
+JITTER = Uniform(1e-3, 0.03, "log")  # of the rigs that are not listed here
+OTHER_JITTER = {"pin on plate, irregular": IRREGULAR}
+RIGS |= dict.fromkeys(OTHER_JITTER, RIGS["pin on plate"])
 SLIPS = {"granite": 0.2}  # drop of a cycle over the friction force at rest; 0.6 of the other rigs
 CYCLES, PER_CYCLE = 20, 200
 NOISE = 0.002
@@ -106,8 +109,8 @@ def rig_of(name: str) -> tuple[Rig, Conditions]:
     }
     step, lead = cycle / PER_CYCLE, cycle if drift else 0.0
     conditions = Conditions(velocity, slider.normal_load, 0.0, step, CYCLES, cycle, noise, lead)
-    jitter = {"jitter": Uniform(1e-3, 0.03, "log")}
-    return Rig(slider, {**rig.priors, **jitter}), conditions
+    jitter = OTHER_JITTER.get(name, JITTER)
+    return Rig(slider, {**rig.priors, "jitter": jitter}), conditions
 
 
 def library_of(name: str, count: int, seed: int, folder: Path | None) -> Library:

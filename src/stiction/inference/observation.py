@@ -23,6 +23,7 @@ from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError
 from stiction.inference.cycles import Cycles, slip_cycles
 from stiction.inference.features import USED, FeatureScale, features
+from stiction.inference.priors import JITTER, Uniform, jitter_of
 from stiction.inference.suitability import (
     changes_within,
     refuse_far,
@@ -114,6 +115,8 @@ class Conditions(NamedTuple):
         Time from the start of the record to its first whole cycle, s, where a zero drifts.
     block : int
         Readings of which a simulated sample is the mean, each of them rounded.
+    jitter : Uniform
+        Prior of how friction differs from cycle to cycle.
     """
 
     velocity: float
@@ -125,6 +128,7 @@ class Conditions(NamedTuple):
     noise: dict[str, Noise]
     lead: float = 0.0
     block: int = 1
+    jitter: Uniform = JITTER
 
     def slider_of(self, slider: Slider) -> Slider:
         """Return a slider under these conditions."""
@@ -238,6 +242,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         float(record.turned or 0.0), step * block, number, cycle, thin_noise,
         lead=near(step * block * int(found.before[0])) if drifts else 0.0,
         block=readings_to_simulate(block, thin_noise),
+        jitter=jitter_of(thin["force"][found.peak]),
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
     until = float(record.time[0]) + step * block * float(found.after[-1] + 1)

@@ -89,8 +89,23 @@ class Uniform:
 Prior = Normal | Uniform
 
 
-# Standard deviation of friction from cycle to cycle, over its mean
-JITTER = Uniform(1e-3, 0.05, "log")
+# Priors of the jitter, the standard deviation of friction from cycle to cycle over its mean; the
+# second for records whose peaks spread by more than a share of their mean. They overlap by about
+# as much as the spread of six peaks differs from the jitter by chance.
+JITTER, IRREGULAR = Uniform(1e-3, 0.05, "log"), Uniform(0.01, 0.3, "log")
+SPREAD = 0.035
+
+
+def jitter_of(peaks: Floats) -> Uniform:
+    """Return the prior of the jitter for the peaks of a force (n,), a trend of which is left out.
+
+    >>> jitter_of(np.r_[1.0:2.0:9j]) == JITTER, jitter_of(np.r_[0.9, 1.1, 0.9, 1.1]) == IRREGULAR
+    (True, True)
+    """
+    number = np.arange(len(peaks))
+    trend = np.polynomial.Polynomial.fit(number, peaks, 1)
+    spread = np.std(peaks - trend(number)) / abs(np.mean(peaks))
+    return IRREGULAR if spread > SPREAD else JITTER
 
 
 def read_prior(table: Mapping[str, Any], kind: Kind) -> Prior:

@@ -22,15 +22,12 @@ from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.cycles import LEAST_CYCLES, Cycles
-from stiction.inference.priors import JITTER
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
 from stiction.text.suggestion import Suggestion, begin_and_end, by_strokes
 from stiction.text.units import in_words
 
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 IN_NOISE = {"hidden", "quick_falls"}  # evidence of swings that noise hides
-BEYOND = 1.5  # times the largest simulated spread, which twenty cycles exceed by half in 1 of 1000
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
 
 
@@ -101,18 +98,7 @@ def changes_within(seen: Swings, regime: Regime, until: float) -> tuple[str, ...
         *doubt_mean_period(used),
         *doubt_loading(used),
         *doubt_cycles_apart(used),
-        *_name_irregularity(used["peak"]),
     )
-
-
-def _name_irregularity(peaks: Floats) -> Iterator[str]:
-    """Name a spread of peaks (n,), N, beyond any that is simulated."""
-    spread = float(np.std(peaks) / abs(np.mean(peaks))) if len(peaks) else 0.0
-    if spread > BEYOND * JITTER.high:
-        yield (
-            f"Peaks differ from cycle to cycle by {percent(spread)} (standard deviation); that of "
-            f"simulated friction is {percent(JITTER.low)} to {percent(JITTER.high)}."
-        )
 
 
 def _name_other_motion(regime: Regime, until: float) -> Iterator[str]:

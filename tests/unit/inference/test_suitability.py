@@ -13,7 +13,8 @@ from stiction.inference.mechanism import comparison
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.odds import Odds
 from stiction.inference.observation import observe
-from stiction.inference.priors import Normal
+from stiction.inference.priors import Normal, Uniform
+from stiction.inference.simulated.plan import plan
 from stiction.inference.suitability import explain_unlike, refuse_few
 
 RIG = st.Rig.from_toml(
@@ -107,13 +108,23 @@ def test_what_differs_within_a_record_explains_that_it_is_unlike():
     assert "(begin, end of st.read_record)" in said
 
 
-def test_friction_that_differs_more_than_any_that_is_simulated_is_named():
-    heights = 1.0 + 0.12 * np.tile([-1.0, 1.0, 0.3, -0.3], 6)
-    (differs,) = observe(record(*(CYCLE * height for height in heights)), RIG.slider).changes
-    assert differs.startswith("Peaks differ from cycle to cycle by 8.")
-    assert differs.endswith("of simulated friction is 0.1 % to 5 %.")
-    alike = 1.0 + 0.05 * np.tile([-1.0, 1.0, 0.3, -0.3], 6)
-    assert observe(record(*(CYCLE * height for height in alike)), RIG.slider).changes == ()
+@pytest.mark.parametrize(("spread", "most"), [(0.0, 0.05), (0.01, 0.05), (0.08, 0.3), (0.3, 0.3)])
+@pytest.mark.parametrize("trend", [0.0, 0.02])
+def test_friction_differs_in_simulations_as_in_the_record(spread, most, trend):
+    heights = 1.0 + spread * np.tile([-1.0, 1.0, 0.3, -0.3], 6) + trend * np.arange(24)
+    seen = observe(record(*(CYCLE * height for height in heights)), RIG.slider)
+    assert seen.conditions.jitter.high == most
+    jitter = plan(RIG.slider, {}, [seen.conditions]).priors["jitter"]
+    assert jitter == seen.conditions.jitter
+
+
+def test_friction_differs_in_simulations_as_in_each_of_several_records():
+    alike, unlike = (
+        observe(record(*(CYCLE * height for height in heights)), RIG.slider).conditions
+        for heights in (np.ones(20), 1.0 + 0.1 * np.tile([-1.0, 1.0], 10))
+    )
+    jitter = plan(RIG.slider, {}, [alike, unlike]).priors["jitter"]
+    assert jitter == Uniform(alike.jitter.low, unlike.jitter.high, "log")
 
 
 def test_what_comes_after_the_cycles_that_are_used_explains_nothing():

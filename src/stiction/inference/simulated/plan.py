@@ -12,12 +12,12 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.observation import Conditions
-from stiction.inference.priors import JITTER, Normal, Prior
+from stiction.inference.priors import Normal, Prior, Uniform
 from stiction.inference.simulated.restriction import is_allowed, is_restricted
 from stiction.system.slider import Slider
 
 MOST_DRAWS = 10_000  # of one set of parameters, where the priors are restricted
-FORMAT = 8  # of stored simulations and of what is learned from them
+FORMAT = 9  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):
@@ -85,7 +85,9 @@ class Plan(NamedTuple):
 def plan(slider: Slider, priors: Mapping[str, Prior], conditions: Sequence[Conditions]) -> Plan:
     """Return the plan for records under these conditions."""
     force = conditions[0].noise["force"]
-    own: dict[str, Prior] = {"jitter": JITTER}
+    jitters = [each.jitter for each in conditions]
+    low, high = min(its.low for its in jitters), max(its.high for its in jitters)
+    own: dict[str, Prior] = {"jitter": Uniform(low, high, "log")}
     if force.gain:
         own["gain"] = Normal(1.0, force.gain, low=0.0)
     if force.zero:
