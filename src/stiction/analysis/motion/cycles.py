@@ -11,6 +11,7 @@ from stiction.analysis.motion.changes.few_slips import FEW, few_slips
 from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
+from stiction.analysis.motion.changes.velocity import made_by_jumps, velocity_jumps
 from stiction.analysis.motion.course import dies_out, is_over
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
@@ -67,7 +68,9 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     cycles leave a long stretch free, as after a change of the load, smaller ones are sought there
     by themselves (`stiction.analysis.motion.changes.sizes`). Left out are
     cycles cut by the beginning or end of the record, cycles with a gap of a quarter of their period
-    between samples, and the first loading from an unloaded spring, before which there is no slip.
+    between samples, the first loading from an unloaded spring, before which there is no slip, and
+    swings that jumps of the drive's measured velocity make
+    (`stiction.analysis.motion.changes.velocity`).
 
     A study (`stiction.Study`) counts the same cycles in the same run, but for one cycle in 8 of 250
     random rigs: where swings build up, in the loading before irregular slips, or just before the
@@ -148,6 +151,8 @@ class Swings(NamedTuple):
     few : CycleTable or None
         A row for each slip of a record that has few, known by their shape, with the columns of
         `find_cycles`; the first is loaded from where its loading is even.
+    driven : int
+        Number of swings that were left out because jumps of the drive's velocity make them.
     """
 
     table: CycleTable
@@ -161,6 +166,7 @@ class Swings(NamedTuple):
     ringing: Ringing | None = None
     over: bool = False
     few: CycleTable | None = None
+    driven: int = 0
 
     @property
     def lasting(self) -> CycleTable:
@@ -175,6 +181,19 @@ class Swings(NamedTuple):
 
 def swings(record: Record) -> Swings:
     """Return all swings of the force that stand apart from smaller reversals.
+
+    Those that jumps of the drive's measured velocity make are left out, and counted.
+    """
+    found = _swings_of_any_drive(record)
+    its = found.table if len(found.table) or found.few is None else found.few
+    if not len(its) or not made_by_jumps(its, velocity_jumps(record)):
+        return found
+    none = found.table.part(slice(0))
+    return found._replace(table=none, dying=False, few=None, driven=len(its))
+
+
+def _swings_of_any_drive(record: Record) -> Swings:
+    """Return all swings of the force, whatever the drive does meanwhile.
 
     A narrow line is subtracted first, if the rest shows slower swings that are larger, or that
     stick: then these are the motion, and the line is a disturbance. So is a line that the record

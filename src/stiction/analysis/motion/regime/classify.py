@@ -64,6 +64,7 @@ def classify(source: Trajectory | Record) -> Regime:
 
     The shape of the cycles decides (`stiction.analysis.motion.rest`). If there are none, or they
     die out, the course of the force decides: it rises to the end, settles, or stays about constant.
+    Where jumps of the drive's measured velocity make the swings, nothing is determined.
 
     Parameters
     ----------
@@ -111,6 +112,8 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if len(found.table):
         period = found.lasting.mean("period")
         return _or_hum(record, period, SAME, by_parts(record, found))
+    if found.driven:
+        return Regime(UNDETERMINED, 0.0, {"driven": found.driven})
     if found.few is not None:
         return Regime(UNDETERMINED, 0.0, _single_slip(record, found, found.few), STICK_SLIP)
     seen = _while_it_slides(record, found)

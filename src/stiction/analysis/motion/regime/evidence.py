@@ -81,6 +81,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "over": ("{} swings, and none for long after", _whole),
     "last_over_first": ("the last force drop is {} times the first", _three_digits),
     "turns": ("{} peaks and troughs make no complete cycle", _whole),
+    "driven": ("swings that follow jumps of the drive's velocity: {}", _whole),
     "levels": ("it stays at {} levels, one after the other", _whole),
     "unloaded": ("that is until {}, and it is next to zero later", _seconds),
     "turned": (

@@ -1,0 +1,79 @@
+"""Swings of the force that jumps of the drive's velocity make, where its displacement was measured.
+
+Where a drive becomes faster, friction rises at once and comes down again while the contacts evolve;
+where it becomes slower, or holds, friction falls at once. Thus the force has a peak soon after the
+one jump, and a trough soon after the other, as in stick-slip, but without any slip. The peaks of
+stick-slip come whenever the spring is loaded, wherever the jumps are.
+"""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.protocols.measured_drive import measured_stretches
+from stiction.analysis.record import Record
+from stiction.arrays import Floats
+from stiction.errors import ResultError
+from stiction.recording.noise import seeming_motion
+
+CHANGES = 0.05  # of the larger of two velocities: a drive that is to keep to one differs by less
+SOON = 0.25  # of the stretch at the new velocity. So soon come a quarter of all cycles by chance
+MOST = 0.75  # of all swings: then none of them is a cycle of stick-slip
+NEAR = 0.02  # of a swing: noise places its peak no better
+
+
+class VelocityJump(NamedTuple):
+    """A jump of the drive's velocity: when, until when the new one lasts (s), whether it rises."""
+
+    time: float
+    until: float
+    rises: bool
+
+
+def velocity_jumps(record: Record) -> list[VelocityJump]:
+    """Return the jumps of the measured velocity of a drive, in order of time.
+
+    None are known where the displacement was not measured, or has no stretches of constant
+    velocity.
+    """
+    way = record.drive_position
+    if way is None or record.slip_speed is not None or not np.ptp(way) > seeming_motion(way):
+        return []
+    try:
+        found = measured_stretches(record.time, way)
+    except ResultError:
+        return []
+    end, forward = float(record.time[-1]), float(way[-1] - way[0]) >= 0.0
+    jumps = []
+    for (at, one), (until, two) in pairwise(found):
+        rise = two.velocity - one.velocity
+        if abs(rise) > CHANGES * max(abs(one.velocity), abs(two.velocity)):
+            jumps.append(VelocityJump(at, min(until, end), (rise > 0.0) == forward))
+    return jumps
+
+
+def made_by_jumps(swings: CycleTable, jumps: list[VelocityJump]) -> bool:
+    """Return whether jumps of the drive's velocity make the swings of a force: most, or all."""
+    if not jumps or not len(swings):
+        return False
+    near = NEAR * swings["period"]
+    peaks = _soon_after(swings["peak_time"], near, jumps, rises=True)
+    troughs = _soon_after(swings["trough_time"], near, jumps, rises=False)
+    return bool(np.mean(peaks | troughs) >= MOST)
+
+
+def _soon_after(
+    time: Floats, near: Floats, jumps: list[VelocityJump], *, rises: bool
+) -> NDArray[np.bool_]:
+    """Return which times (s), known to within `near` (s), come soon after a jump up, or down."""
+    at = np.array([each.time for each in jumps])
+    last = np.searchsorted(at, time + near, side="right") - 1
+    lasts = np.array([each.until - each.time for each in jumps])
+    such = np.array([each.rises is rises for each in jumps])
+    soon = time - at[last] <= np.maximum(SOON * lasts[last], near)
+    return np.asarray((last >= 0) & such[last] & soon)
