@@ -55,6 +55,7 @@ else:
 
 T = TypeVar("T")
 LEAST, MOST = 3, 6  # letters that begin a name; names that are listed
+MISSPELT = 0.8  # likeness of two names, from which on one is the other with an error in it
 READS = "reads_parameters"  # marks constructors made by `validate`
 
 
@@ -345,10 +346,20 @@ def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
         or name in re.split("[._]", each)  # or an index, or a word before it: mu, load
     ]
     longer = [each for each in longer if "." not in each or each.split(".")[-1] not in longer]
-    near = longer if 0 < len(longer) <= MOST else get_close_matches(name, known, 1)
+    near = longer if 0 < len(longer) <= MOST else _nearest(name, known)
     meant = " or ".join(filter(None, (", ".join(map(repr, near[:-1])), *map(repr, near[-1:]))))
     remedy = f"did you mean {meant}?" if near else f"known: {', '.join(known)}"
     return f"unknown {what} {echo(name)}; {remedy}"
+
+
+def _nearest(name: str, known: list[str]) -> list[str]:
+    """Return the nearest known name; those of one stem where only the last word differs much."""
+    misspelt = get_close_matches(name, known, 1, MISSPELT)
+    *stem, _ = re.split("[-_]", name)
+    of_stem = [each for each in known if re.split("[-_]", each)[:-1] == stem]
+    if not misspelt and len(stem) > 1 and 0 < len(of_stem) <= MOST:
+        return of_stem
+    return misspelt or get_close_matches(name, known, 1)
 
 
 def _no_faults(made: object) -> Iterable[tuple[str, str]]:

@@ -45,6 +45,15 @@ def test_a_misspelt_name_is_answered_with_the_nearest():
         find("leine-bel")
 
 
+def test_a_name_whose_stem_alone_is_known_is_not_taken_for_one_of_two():
+    """It asked whether the paper's slider, `nakano_popov_2020`, is the one without stick-slip."""
+    both = "did you mean 'nakano-popov-constant' or 'nakano-popov-weakening'"
+    with pytest.raises(st.DescriptionError, match=both):
+        find("nakano-popov-2020")
+    with pytest.raises(st.DescriptionError, match="did you mean 'velocity-step-ageing'"):
+        find("velocity-step-aging")
+
+
 def test_a_number_that_does_not_come_out_is_wrong():
     preset = find("modelica-force")
     run = st.run(preset.make())
