@@ -75,6 +75,11 @@ class SectionReport(Report):
     _figure: ClassVar[str]  # its name in `stiction.plotting`
 
     @property
+    def figure(self) -> str:
+        """Name of its figure in `stiction.plotting`."""
+        return self._figure
+
+    @property
     def section(self) -> Section:
         """The report in words and as a table."""
         raise NotImplementedError

@@ -5,9 +5,13 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from stiction.analysis.motion.doubts.warnings import variations
 from stiction.analysis.motion.regime.kinds import STICK_SLIP
+from stiction.analysis.parts.wording import number
 from stiction.analysis.record import Record
+from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.text.sections import Section
 from stiction.trajectory import Trajectory
@@ -15,11 +19,44 @@ from stiction.trajectory import Trajectory
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
     from stiction.system.slider import Slider
+    from stiction.text.sections import SectionReport
 
 TWO_AXES = (
     "Here coefficients are of the force along the drive, elsewhere in this report of k_x u_x. "
     "State cell_angle to have them along one axis."
 )
+
+# Of each test: its rows, attributes of the analysis or of each of its parts, and its results, with
+# their units
+ROWS = {
+    "velocity-steps": {
+        **{"time": "s", "before": "m/s", "after": "m/s", "steady_before": "1", "steady_after": "1"},
+        **{"peak": "1", "a_minus_b": "1", "a_minus_b_error": "1", "a": "1", "a_error": "1"},
+        **{"b": "1", "b_error": "1", "D_c": "m", "D_c_error": "m", "law": ""},
+    },
+    "healing": {
+        **{"hold": "s", "steady": "1", "relaxed": "1", "peak": "1", "gain": "1"},
+        "peak_error": "1",
+    },
+    "hysteresis": {"area": "J", "width": "m", "friction": "1"},
+    "load-dependence": {"load": "N", "force": "N"},
+}
+PARTS = {"velocity-steps": "steps", "hysteresis": "loops"}
+EACH = {  # what a row is; a hold has its duration in a column of that name
+    **{"velocity-steps": "step", "healing": "number", "hysteresis": "loop"},
+    "load-dependence": "level",
+}
+RESULTS = {
+    "velocity-steps": {"stiffness": "1", "trend": "1/m", "trend_error": "1/m"},
+    "healing": {
+        **{"per_decade": "1", "per_decade_error": "1"},
+        **{"at_one_second": "1", "at_one_second_error": "1"},
+    },
+    "hysteresis": {},
+    "load-dependence": {
+        **{"coefficient": "1", "error": "1", "adhesion": "N", "adhesion_error": "N"},
+    },
+}
 
 
 def find(found: Analysis) -> Any:
@@ -66,3 +103,53 @@ def section(found: Analysis) -> Section | None:
 
 def _reads_along_two_axes(slider: Slider) -> bool:
     return slider.cell_angle is None and slider.misalignment != 0.0
+
+
+def name_of(its: SectionReport) -> str:
+    """Return the name of the test that an analysis is of, which is that of its files."""
+    return its.figure.removeprefix("plot_").replace("_", "-")
+
+
+def tables(found: Analysis) -> dict[str, xr.Dataset]:
+    """Return the test's steps, holds, loops or levels, a row each."""
+    its = found.parts["procedure"]
+    if its is None:
+        return {}
+    name = name_of(its)
+    each, columns = EACH[name], _columns(its)
+    count = len(next(iter(columns.values()))[0])
+    table = {key: (each, *column) for key, column in columns.items()}
+    return {name: xr.Dataset(table, {each: np.arange(1, count + 1)})}
+
+
+def numbers(found: Analysis) -> dict[str, Any]:
+    """Return the same for JSON, with what follows from all rows."""
+    its = found.parts["procedure"]
+    if its is None:
+        return {"procedure": None}
+    name = name_of(its)
+    results = {
+        key: {"value": number(getattr(its, key)), "unit": unit}
+        for key, unit in RESULTS[name].items()
+    }
+    columns = {
+        key: {"values": [_for_json(each) for each in values], **units}
+        for key, (values, units) in _columns(its).items()
+    }
+    return {"procedure": {"test": name, **results, "rows": columns}}
+
+
+def _columns(its: SectionReport) -> dict[str, tuple[list[Any], dict[str, str]]]:
+    """Return each column of a test's table: its values, and its unit where it has one."""
+    name = name_of(its)
+    parts = getattr(its, PARTS[name]) if name in PARTS else None
+    columns = {}
+    for key, unit in ROWS[name].items():
+        values = getattr(its, key) if parts is None else [getattr(each, key) for each in parts]
+        if values is not None:
+            columns[key] = (list(values), {"units": unit} if unit else {})
+    return columns
+
+
+def _for_json(value: Any) -> Any:
+    return value if isinstance(value, str) else number(value)

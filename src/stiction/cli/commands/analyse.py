@@ -22,8 +22,9 @@ def analyse(
     """Analyse a result or a measured record: kind of motion, cycles, creep, oscillation, energy.
 
     Prints a report and writes tables: cycles.csv (a row for each cycle), summary.csv, friction.csv,
-    creep.csv, creep-phases.csv, oscillation.csv, oscillation-phases.csv and energy.csv; numbers in
-    analysis.json; figures of cycles, creep, oscillation and energy. A quantity that is
+    creep.csv, creep-phases.csv, oscillation.csv, oscillation-phases.csv and energy.csv; of a test,
+    velocity-steps.csv, healing.csv, hysteresis.csv or load-dependence.csv; numbers in
+    analysis.json; figures of the test, cycles, creep, oscillation and energy. A quantity that is
     not determined has no file. Creep and oscillation need several samples per transverse period.
 
     For example, after `stiction run my.toml -o my.nc`:

@@ -1,4 +1,4 @@
-"""The figures of an analysis: cycles, creep, oscillation, energy."""
+"""The figures of an analysis: its test, cycles, creep, oscillation, energy."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from stiction.analysis.creep.curve import mean_creep
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.misalignment import REST_SPEED, STRETCH, implied_velocity
 from stiction.analysis.oscillation import stands_out
+from stiction.analysis.parts.procedure import name_of
 from stiction.analysis.report import Analysis
 from stiction.arrays import Floats
 from stiction.plotting.analysis.creep_curve import Line, creep_theory, plot_creep
@@ -38,6 +39,8 @@ def plot_analysis(found: Analysis, axes: Any = None) -> Any:
 def figures(found: Analysis) -> dict[str, Figure]:
     """Return the figures of the existing parts of an analysis by name."""
     drawn = {}
+    if (test := found.parts["procedure"]) is not None:
+        drawn[name_of(test)] = figure_of(test.plot)
     if len(found.record):
         drawn["cycles"] = figure_of(plot_motion, found.record, found.cycles, found.regime.kind)
     V = drive_speed(found.source, found.record)
