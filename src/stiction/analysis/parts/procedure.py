@@ -67,7 +67,7 @@ def find(found: Analysis) -> Any:
     """
     source = found.source
     if isinstance(source, Trajectory):
-        its = ("velocity_steps", "healing", "hysteresis", "load_dependence")
+        its = tuple(name.replace("-", "_") for name in ROWS)
         return _first(source, its) if variations(source) else None
     measured = source.drive_position is not None and source.normal_load is not None
     if not measured or found.regime.kind == STICK_SLIP:

@@ -7,6 +7,7 @@ import pytest
 
 import stiction as st
 from stiction.analysis.export import numbers, tables
+from stiction.analysis.parts.procedure import EACH, RESULTS, ROWS
 from stiction.plotting.analysis.overview import figures
 
 p = st.protocols
@@ -49,6 +50,10 @@ def test_a_report_of_a_test_writes_its_rows(name):
     for key, each in stored.items():
         if key not in ("test", "rows"):
             assert each["value"] is None or each["value"] == getattr(its, key)
+
+
+def test_each_test_that_a_report_finds_is_written():
+    assert [*ROWS] == [*RESULTS] == [*EACH] == [*TESTS]
 
 
 def test_a_report_of_no_test_writes_none():
