@@ -9,7 +9,9 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from stiction.arrays import Floats
 from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status, echo
 from stiction.friction import has_state, states
@@ -21,12 +23,14 @@ from stiction.storage.version import own_version
 from stiction.system.description import Description, Settings, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.text.units import Quantity
+from stiction.text.samples import as_numbers, samples_to_si
+from stiction.text.units import TIME, Quantity, in_words, unit_on
 from stiction.text.validation import read_arguments
 from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()
 MOST_STEPS = 100_000_000
+ROUNDING = 1e-12  # relative, of a time that is the end
 
 
 def simulate(
@@ -34,6 +38,7 @@ def simulate(
     duration: Quantity | None = None,
     *,
     sample_rate: Quantity | None = None,
+    times: ArrayLike | None = None,
     rtol: float = 1e-6,
     initial: Initial | None = None,
     regularisation: Quantity | None = None,
@@ -60,6 +65,10 @@ def simulate(
         which drive or load vary, up to a million in all; and 1000 in the shortest run. With
         ``multiscale=True`` the first and last state only. Samples never influence the steps, and
         stick intervals are all recorded anyway.
+    times : array_like, optional
+        Times to sample at in place of a rate, (n,), s, ascending, from the start to the end: those
+        of a measurement, or at which another solver stops. Without a duration the last of them is
+        the end. A description does not hold them.
     rtol : float, optional
         Relative tolerance, 1e-13 to 1e-2. The measure of the error is how much the forces change if
         the mass, or the normal load, is greater by 0.8 rtol^0.8 (1.3e-5 at the default): they are
@@ -103,6 +112,9 @@ def simulate(
     >>> run = st.simulate(st.presets.nakano_popov_2020(), duration=0.02, sample_rate=1e3)
     >>> f"{float(run.sticks['stick_end'][0]) * 1e3:.4f} ms"
     '11.4595 ms'
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), times=[0.0, 0.003, 0.02])
+    >>> run.samples["time"]
+    array([0.   , 0.003, 0.02 ])
     """
     if not isinstance(slider, Slider):
         remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
@@ -112,8 +124,12 @@ def simulate(
     if not isinstance(initial, Initial | None):
         remedy = "write for example st.Initial(u_x='1 mm')"
         raise DescriptionError.of("initial", f"{echo(initial)} is not an Initial; {remedy}")
+    if times is not None and sample_rate is not None:
+        raise DescriptionError.of("times", "take the place of sample_rate; give one of the two")
+    start = initial or PAPERS
     if duration is None:
-        duration = time_to_end(slider, initial or PAPERS)
+        ends = time_to_end(slider, start) if times is None else read_times(times)[-1] - start.time
+        duration = float(ends)
     given: dict[str, Any] = {
         "duration": duration,
         "sample_rate": sample_rate,
@@ -123,9 +139,8 @@ def simulate(
     }
     stated = {name: value for name, value in given.items() if value is not None}
     settings = read_arguments(Settings, **stated)
-    return run(
-        Description(slider, initial or PAPERS, settings), max_steps=max_steps, progress=progress
-    )
+    description = Description(slider, start, settings)
+    return run(description, times=times, max_steps=max_steps, progress=progress)
 
 
 def time_to_end(slider: Slider, initial: Initial) -> float:
@@ -143,6 +158,7 @@ def time_to_end(slider: Slider, initial: Initial) -> float:
 def run(
     description: Description | str | Path,
     *,
+    times: ArrayLike | None = None,
     max_steps: int = MOST_STEPS,
     progress: Callable[[float], None] | None = None,
 ) -> Trajectory:
@@ -152,8 +168,8 @@ def run(
     ----------
     description : Description, str or Path
         What is run, or its file.
-    max_steps, progress
-        As of `simulate`.
+    times, max_steps, progress
+        As of `simulate`; times take the place of the description's sample rate.
 
     Returns
     -------
@@ -172,14 +188,8 @@ def run(
     True
     """
     description = description_of(description)
-    initial, settings = description.initial, description.run
-    whole = settings.multiscale is True and settings.sample_rate is None
-    rate = 0.0 if whole else settings.sample_rate
-    if rate is None:
-        times = automatic_times(description)
-    else:
-        times = sample_times(initial.time, settings.duration, rate)
-    solution = solve(description, times, max_steps=max_steps, progress=progress)
+    at = times_of(description) if times is None else own_times(description, times)
+    solution = solve(description, at, max_steps=max_steps, progress=progress)
     status, statistics = STATUSES[solution.code], Statistics(*solution.counts)
     arrays = partial(label, description, solution, status, statistics)
     return Trajectory(description, arrays, solution.sticks, status, statistics)
@@ -266,6 +276,41 @@ def kind(description: Description) -> str:
     return "set-valued friction"
 
 
+def times_of(description: Description) -> Floats:
+    """Return the output times of a description; see `simulate`."""
+    initial, settings = description.initial, description.run
+    whole = settings.multiscale is True and settings.sample_rate is None
+    rate = 0.0 if whole else settings.sample_rate
+    if rate is None:
+        return automatic_times(description)
+    return sample_times(initial.time, settings.duration, rate)
+
+
+def own_times(description: Description, times: ArrayLike) -> Floats:
+    """Return the times at which a user wants samples, or say why a run has none there."""
+    found = read_times(times)
+    start = description.initial.time
+    end = start + description.run.duration
+    if found[0] < start or found[-1] > end + ROUNDING * description.run.duration:
+        raise DescriptionError.of(
+            "times",
+            f"reach from {in_words(found[0], 's')} to {in_words(found[-1], 's')}, the run from "
+            f"{in_words(start, 's')} to {in_words(end, 's')}",
+        )
+    return np.minimum(found, end)
+
+
+def read_times(times: Any) -> Floats:
+    """Return times in s, which may carry a unit, or say why they are none to sample at."""
+    try:
+        found = as_numbers(samples_to_si(times, unit_on(times) or TIME.unit, TIME))
+    except ValueError as error:
+        raise DescriptionError.of("times", str(error)) from None
+    if not len(found) or not np.isfinite(found).all() or (np.diff(found) <= 0.0).any():
+        raise DescriptionError.of("times", "must be finite numbers, at least one, ascending")
+    return found
+
+
 def sample_times(start: float, duration: float, rate: float) -> np.ndarray:
     """Return the output times; the end belongs to them if it is on the grid, within rounding.
 
@@ -274,7 +319,7 @@ def sample_times(start: float, duration: float, rate: float) -> np.ndarray:
     end = start + duration
     if rate == 0.0:
         return np.array([start, end])
-    times: np.ndarray = start + np.arange(int(duration * rate * (1 + 1e-12)) + 1) / rate
+    times: np.ndarray = start + np.arange(int(duration * rate * (1.0 + ROUNDING)) + 1) / rate
     clipped: np.ndarray = np.minimum(times, end)
     return clipped
 

@@ -6,6 +6,7 @@ import re
 import h5netcdf
 import numpy as np
 import pytest
+import xarray as xr
 
 import stiction as st
 from stiction.cli.commands.run import report_lines
@@ -35,6 +36,58 @@ def test_variables_and_units(run):
     assert run.data["time"].attrs["units"] == "s"
     assert dict(run.data.sizes) == {"time": 501}
     assert run.data["u_x"].dims == ("time",)
+
+
+@pytest.mark.parametrize("pick", [slice(7, None), slice(None, None, 13), [100], [0, -1]], ids=str)
+def test_samples_at_times_of_ones_own_are_those_of_a_rate(slider, run, pick):
+    times = run.samples["time"][pick]
+    own = st.simulate(slider, "50 ms", times=times)
+    assert all(np.array_equal(own.samples[name], run.samples[name][pick]) for name in VARIABLES)
+    assert np.array_equal(own.stick_intervals, run.stick_intervals)
+    assert st.run(run.description, times=times).samples == own.samples
+
+
+@pytest.mark.parametrize("multiscale", ["auto", True, False])
+def test_uneven_times_need_no_others(multiscale, tmp_path):
+    times = np.sort(np.random.default_rng(0).uniform(0.0, 2.0, 40))
+    its = st.simulate(PAPER, 2.0, times=times, multiscale=multiscale)
+    alone = [
+        st.simulate(PAPER, 2.0, times=[time], multiscale=multiscale).samples["spring_x"][0]
+        for time in times
+    ]
+    # samples inside the cycles of a patch are held to 0.3 rtol of the friction force, 2 N
+    assert np.allclose(its.samples["spring_x"], alone, rtol=0.0, atol=6e-7)
+    assert st.load(its.save(tmp_path / "own.nc")) == its
+
+
+def test_times_carry_a_unit_and_tell_the_duration():
+    start = st.Initial(time="1 ms")
+    own = st.simulate(
+        PAPER, times=xr.DataArray([1.5, 3.0, 4.0], attrs={"units": "ms"}), initial=start
+    )
+    assert np.allclose(own.samples["time"], [1.5e-3, 3e-3, 4e-3], rtol=1e-15)
+    assert own.description.run.duration == pytest.approx(3e-3, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        ({"times": []}, "at least one, ascending"),
+        ({"times": [1.0, 1.0]}, "ascending"),
+        ({"times": [0.0, np.inf]}, "finite"),
+        ({"times": [[1.0]]}, "one dimension"),
+        ({"times": "1 s"}, "numbers"),
+        ({"times": xr.DataArray([1.0], attrs={"units": "m"})}, "not a unit of a time"),
+        ({"times": [-1.0, 0.1]}, "from -1 s to 100 ms, the run from 0 s to 100 ms"),
+        ({"times": [0.1, 1.0], "duration": "0.5 s"}, "to 1 s, the run from 0 s to 500 ms"),
+        ({"times": [0.1], "sample_rate": 10.0}, "one of the two"),
+    ],
+    ids=str,
+)
+def test_times_that_no_run_has_are_refused(arguments, said):
+    with pytest.raises(st.DescriptionError, match=said) as found:
+        st.simulate(PAPER, **arguments)
+    assert [fault.path for fault in found.value.faults] == ["times"]
 
 
 def test_sticks_are_a_table_of_their_own(run):
