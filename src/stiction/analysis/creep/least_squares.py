@@ -15,6 +15,8 @@ from stiction.text.units import in_words
 
 FEWEST_USED = 5  # bins of a fit, which has two or three unknowns
 UNLIKE = "not determined: the creep curve does not have the shape that is fitted"
+ACCURACY = 1e-6  # of the sum of squares: then parameters are within a thousandth of their errors
+STEP = float(np.finfo(float).eps) ** 0.5  # of a derivative: halves the digits of a difference
 THEORY = 0.01  # relative accuracy of Eqs. (7) and (8): they leave out inertia and terms in phi
 
 
@@ -92,19 +94,42 @@ def _minimise(
     """Return the parameters of the best fit over their sizes, and their covariance."""
     from scipy.optimize import OptimizeWarning, curve_fit
 
+    def modelled(_: Floats, *shares: float) -> Floats:
+        return model(*np.multiply(shares, sizes))
+
+    def slopes(_: Floats, *shares: float) -> Floats:
+        return forward_differences(lambda at: modelled(values, *at), np.array(shares), highest)
+
+    highest = np.divide(bounds[1], sizes)
     try:
         with catch_warnings():
             simplefilter("ignore", OptimizeWarning)  # then the standard errors are infinite
             found, covariance = curve_fit(  # type: ignore[no-untyped-call]
-                lambda _, *shares: model(*np.multiply(shares, sizes)),
+                modelled,
                 values,
                 values,
                 np.divide(start, sizes),
                 sigma=errors,
                 absolute_sigma=True,
                 bounds=np.divide(bounds, sizes),
+                jac=slopes,
+                ftol=ACCURACY,
                 max_nfev=2000,
             )
     except RuntimeError:
         raise ResultError(UNLIKE) from None
     return found, covariance
+
+
+def forward_differences(model: Callable[[Floats], Floats], at: Floats, highest: Floats) -> Floats:
+    """Return the derivatives of a model (n,) by its parameters `at` (m,), as (n, m).
+
+    SciPy takes the same, but spends longer on types and options than a short model takes. Where a
+    step would exceed the `highest` parameter, it is backward.
+    """
+    here, columns = model(at), []
+    for i, step in enumerate(STEP * np.maximum(np.abs(at), 1.0)):
+        moved = at.copy()
+        moved[i] += step if at[i] + step <= highest[i] else -step
+        columns.append((model(moved) - here) / (moved[i] - at[i]))
+    return np.transpose(columns)

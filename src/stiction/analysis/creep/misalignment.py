@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from math import cos, exp, inf, pi, sin
 from typing import NamedTuple
 
@@ -289,6 +290,7 @@ class TurningCreep(NamedTuple):
     velocity: Floats
 
 
+@lru_cache(maxsize=2)  # derivatives by other parameters ask again for the same angle
 def turning_creep(phi: float, weakening: float, ratio: float) -> TurningCreep:
     """Return the slow creep up to the largest force, at which the mass slips.
 
@@ -303,9 +305,14 @@ def turning_creep(phi: float, weakening: float, ratio: float) -> TurningCreep:
     """
     along = COSINE * cos(phi) + SINE * sin(phi)  # cos(theta - phi)
     across = SINE * cos(phi) - COSINE * sin(phi)
-    turned = (1.0 - ratio) * SINE * COSINE / (SINE**2 + ratio * COSINE**2)
-    slip = along - across * turned  # below zero against the force
+    slip = along - across * _turn_by_springs(ratio)  # below zero against the force
     force = COSINE / np.maximum(1.0 + weakening * np.abs(slip), TINY)
     slips = int(np.argmax(force))
     rising, velocity = force[slips:][::-1], (along * slip)[slips:][::-1]
     return TurningCreep(np.maximum.accumulate(rising), velocity)
+
+
+@lru_cache(maxsize=1)
+def _turn_by_springs(ratio: float) -> Floats:
+    """Return by how much the spring across turns the slip, for springs of a ratio k_x/k_y."""
+    return np.asarray((1.0 - ratio) * SINE * COSINE / (SINE**2 + ratio * COSINE**2))

@@ -6,7 +6,14 @@ import xarray as xr
 from scipy import optimize
 
 from stiction.analysis.creep.curve import CURVES
-from stiction.analysis.creep.least_squares import FEWEST_USED, THEORY, best_fit, used_bins
+from stiction.analysis.creep.least_squares import (
+    FEWEST_USED,
+    STEP,
+    THEORY,
+    best_fit,
+    forward_differences,
+    used_bins,
+)
 from stiction.errors import ResultError
 
 ENDS = np.arange(10.0)  # s to slip; each bin begins 1 s before its end
@@ -100,3 +107,17 @@ def test_a_fit_that_does_not_converge_is_refused(monkeypatch):
     monkeypatch.setattr(optimize, "curve_fit", give_up)
     with pytest.raises(ResultError, match="does not have the shape that is fitted"):
         best_fit(line, line(2.0, -3.0), np.ones(30), [(1.0, 0.0)], FAR, (1.0, 1.0))
+
+
+@pytest.mark.parametrize("highest", [(np.inf, np.inf), (3.0, -2.0)])
+@pytest.mark.parametrize("far", [1.0, 1e6])
+def test_derivatives_are_those_of_the_model_up_to_the_highest_parameters(highest, far):
+    """A parabola is off by the step times half of its curvature, and by rounding over the step."""
+
+    def parabola(at):
+        assert np.all(at <= highest)
+        return at[0] * X**2 + at[1] ** 2 / far
+
+    found = forward_differences(parabola, np.array([3.0, -2.0]), np.array(highest))
+    expected = np.stack([X**2, np.full(30, -4.0 / far)], axis=1)
+    assert found == pytest.approx(expected, rel=0.0, abs=4.0 * STEP)
