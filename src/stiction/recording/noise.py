@@ -13,6 +13,7 @@ ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15
 FEWEST_SAMPLES = 64  # so many tell white noise to a fifth
 CODES = 12  # at least so many different values, by which a lattice is recognised
 REPEATED = 4  # samples for each of them, on average
+SOME = 3  # in the first third of the values there may be more different ones than in a lattice
 LARGEST = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
@@ -161,6 +162,8 @@ def lattice(values: Floats) -> float:
     >>> round(lattice(0.25 * np.rint(40.0 * smooth)), 9), lattice(smooth)
     (0.25, 0.0)
     """
+    if REPEATED * len(np.unique(values[: len(values) // SOME])) > len(values):
+        return 0.0
     codes = np.unique(values)
     if len(codes) < CODES or REPEATED * len(codes) > len(values):
         return 0.0

@@ -8,6 +8,7 @@ from stiction.arrays import Floats
 from stiction.recording.noise import dither_remainder, lattice, rounding_error
 
 MANY, COARSE = 100_000, 1e-4  # samples examined for steps; smallest step, over the signal's range
+FIRST = 1000  # values, among which those of a continuous signal are nearer than that already
 # Steps of a converter: the median fall that rounding makes. Without a wave it is one step, without
 # a line up to 1.50, in 482 staircases with noise up to 0.3 steps
 ROUNDED = 1.6
@@ -24,8 +25,18 @@ def resolution(values: Floats) -> float:
     some = values[:MANY]
     if step := lattice(some):
         return step
-    step = float(np.diff(np.unique(some)).min(initial=np.inf))
-    return step if np.isfinite(step) and step >= COARSE * float(np.ptp(some)) else 0.0
+    if len(some) < 2:
+        return 0.0
+    least = COARSE * float(np.ptp(some))
+    if _smallest_step(some[:FIRST]) < least:
+        return 0.0
+    step = _smallest_step(some)
+    return step if np.isfinite(step) and step >= least else 0.0
+
+
+def _smallest_step(values: Floats) -> float:
+    """Return the smallest step between different values; infinite if all are the same."""
+    return float(np.diff(np.unique(values)).min(initial=np.inf))
 
 
 def fall_by_rounding(values: Floats) -> float:

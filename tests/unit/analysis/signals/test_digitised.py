@@ -29,3 +29,16 @@ def test_of_few_codes_or_samples_the_smallest_step_is_a_bound():
     ramp = np.linspace(0.0, 1.0, 101)
     assert resolution(ramp) == pytest.approx(0.01)
     assert lattice(ramp) == 0.0
+    assert [resolution(ramp[:count]) for count in (0, 1)] == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("step", [0.0, 1e-5, 1e-3, 0.1])
+@pytest.mark.parametrize("size", [10, 999, 6000])
+def test_the_step_does_not_depend_on_the_order_of_values(step, size):
+    """Some of the values are examined first, and may decide."""
+    values = np.append(SINE[: size * 5 : 5], np.full(size // 3, 0.3))
+    values = step * np.rint(values / step) if step else values
+    shuffled = np.random.default_rng(1).permutation(values)
+    for order in (np.sort(values), values[::-1], shuffled):
+        assert lattice(order) == lattice(values)
+        assert resolution(order) == resolution(values)
