@@ -8,7 +8,6 @@ from threading import Event, Thread, Timer
 from time import monotonic
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from stiction.cli.terminal import note
 
@@ -25,6 +24,14 @@ def progress(title: str) -> Iterator[Callable[[float], None]]:
         with _lines(title) as report:
             yield report
         return
+    from rich.progress import (  # slow to import: only where there is a terminal
+        BarColumn,
+        Progress,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(bar_width=20),
