@@ -8,10 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from stiction.analysis.motion.loading import loaded_until, loading_rate, samples_from
 from stiction.analysis.record import Record
-from stiction.analysis.signals.peak_refinement import Vertices, fit_pieces
+from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.turning_points import without_spikes
-from stiction.arrays import Floats, Indices, xr
+from stiction.arrays import Floats, xr
 from stiction.result.table import UNSEEN_PEAK, mean_speeds
 
 # name: (unit, long name), as CF attributes
@@ -37,7 +38,6 @@ COLUMNS = {
 }
 UNSEEN = 0.25  # of a period without a sample: the cycle is not known
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
-LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
 TIMES = ("start", "peak_time", "trough_time")  # instants, whose mean is meaningless
@@ -152,7 +152,8 @@ def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[st
     relative = record.relative_load()
     reduced_peak = peak / np.interp(peak_time, record.time, relative)
     reduced_trough = trough / np.interp(trough_time, record.time, relative)
-    slope = _loading_rate(record.time, force, start, peak_time)
+    loaded = loaded_until(record.time, force, start, start_force, peak_time)
+    slope = loading_rate(record.time, force, start, loaded)
     return {
         "start": start,
         "peak_time": peak_time,
@@ -166,7 +167,7 @@ def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[st
         "mu_static": reduced_peak / load if load else unknown,
         "mu_kinetic": 0.5 * (reduced_peak + reduced_trough) / load if load else unknown,
         "stick_slope": slope,
-        "stiffness": slope / _drive_velocity(record, start, peak_time),
+        "stiffness": slope / _drive_velocity(record, start, loaded),
         "creep_distance": _distance_moved(record, start, peak_time, peak - start_force),
         "slip_distance": _distance_moved(record, peak_time, trough_time, trough - peak),
         "peak_slip_speed": _fastest(record, force, peak_time, trough_time),
@@ -175,32 +176,17 @@ def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[st
 
 def _longest_step(time: Floats, corners: Vertices) -> Floats:
     """Return the longest time between two samples in each cycle."""
-    begin, end = (_from(time, corners.time[i:j:2]) for i, j in (_THREE[0], _THREE[2]))
+    begin, end = (samples_from(time, corners.time[i:j:2]) for i, j in (_THREE[0], _THREE[2]))
     ends = np.stack([begin, np.maximum(end, begin + 1)], axis=1).ravel()
     return np.asarray(np.maximum.reduceat(np.diff(time), np.minimum(ends, len(time) - 2))[::2])
 
 
-def _loading_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats) -> Floats:
-    rise = peak_time - start
-    begin, end = (_from(time, start + part * rise) for part in LOADING)
-    begin = np.minimum(begin, len(time) - 2)
-    fit = fit_pieces(time, force, begin, np.maximum(end, begin + 1), 1)
-    slope: Floats = fit.coefficients[:, 1] / fit.half
-    return slope
-
-
-def _drive_velocity(record: Record, start: Floats, peak_time: Floats) -> Floats:
+def _drive_velocity(record: Record, start: Floats, until: Floats) -> Floats:
     """Return the velocity of the drive while the force is loaded; NaN where it is not known."""
     if (travel := record.drive_travel) is None:
         return np.full(len(start), record.drive_velocity or np.nan)
-    velocity = _loading_rate(record.time, travel, start, peak_time)
+    velocity = loading_rate(record.time, travel, start, until)
     return np.where(velocity > 0.0, velocity, np.nan)
-
-
-def _from(time: Floats, begin: Floats) -> Indices:
-    """Return the first sample at or after each time, within rounding."""
-    place = np.interp(begin, time, np.arange(len(time)))
-    return np.ceil(place - 1e-3).astype(np.intp)
 
 
 def _distance_moved(record: Record, begin: Floats, end: Floats, gained: Floats) -> Floats:
@@ -218,8 +204,8 @@ def _fastest(record: Record, force: Floats, peak_time: Floats, trough_time: Floa
 
     There the mean velocity from one sample to the next is larger than that of each sample.
     """
-    begin = _from(record.time, peak_time)
-    end = np.maximum(_from(record.time, trough_time), begin + 1)
+    begin = samples_from(record.time, peak_time)
+    end = np.maximum(samples_from(record.time, trough_time), begin + 1)
     if record.slip_speed is not None:
         speed = record.slip_speed
     elif record.stiffness is not None and record.drive_velocity is not None:

@@ -97,8 +97,9 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
             that slips against constant friction swings as far below it as it was above. These are
             apparent coefficients, not necessarily those of the interface.
         ``stick_slope`` (N/s), ``stiffness`` (N/m)
-            Of the straight line through the loading from a tenth to half of its time; creep in
-            that time lowers them by its share of the drive velocity.
+            Of the straight line through the loading from a tenth to half of its time, or less
+            where the mass slides or creeps for most of it; creep in that time lowers them by its
+            share of the drive velocity.
         ``creep_distance, slip_distance`` (m)
             Moved by the mass from start to peak, and from peak to trough; from its position, or
             from V t minus the change of force over stiffness.

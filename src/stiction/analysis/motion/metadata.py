@@ -37,6 +37,10 @@ SLOW_SLIP = 0.4
 # Relative error of the period of a swing: friction that varies in it, and the spring across, make
 # k/m 0.77 to 1.32 times the true one in 9 of 10 random rigs that vibrate so
 SWINGS = 0.08
+FEWEST_SWINGS = 3  # of a vibration
+# Quartiles of the durations of slips that noise hides nothing of: their ratio where mass and
+# stiffness do not shape them
+UNLIKE = 1.5
 DRAWN_OUT = 0.4  # of a fall: two thirds of what half a cosine takes from 90 % to 10 %
 MOST_HIDDEN = 0.25  # of a fall's height at each end, within noise
 REACH = 3.0  # standard deviations of noise: a force that is nearer to a peak may be on it
@@ -147,7 +151,7 @@ def _loading_rates(
     slopes, starts = cycles["stick_slope"], cycles["start"]
     stated = record.loading_rate or nan
     # a drift of the load cell seems to load the spring; one of friction does not
-    off = 0.0 if drift is None else abs(drift.rate)
+    off = abs(_rate_of_troughs(cycles) if drift is None else drift.rate)
     whole = _loading_rate(slopes, stated, off)
     places = parts_of(cycles["period"])
     if len(places) < 2:
@@ -176,13 +180,23 @@ def _part_in_words(begin: float, end: float) -> str:
     return f"from {in_words(begin, 's')} to {in_words(end, 's')}"
 
 
+def _rate_of_troughs(cycles: CycleTable) -> float:
+    """Return the rate at which the troughs of a few cycles change, N/s: too few to tell a drift."""
+    at, force = (
+        np.append(cycles[first], cycles[last][-1:])
+        for first, last in (("start", "trough_time"), ("start_force", "trough"))
+    )
+    return line(at, force).slope
+
+
 def _loading_rate(slopes: Floats, stated: float, off: float) -> StatedQuantity:
     """Return the median rate of loading of some cycles, with a further error `off`, N/s.
 
     It contradicts the stated one where it does so by more than two standard errors.
     """
     error = hypot(_median_error(slopes), off)
-    within = ERRORS_95 * float(np.nan_to_num(error)) / stated  # a single cycle tells no error
+    # a single cycle tells no error, but by how much a drift may load it
+    within = ERRORS_95 * (error if isfinite(error) else off) / stated
     low, high = SLOWER - within, FASTER + within
     found = float(np.median(slopes))
     return StatedQuantity(LOADING_RATE, "N/s", found, error, stated, low, high, BY_RISE)
@@ -213,7 +227,9 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
     slip under constant friction takes T/2 too, and one under friction that weakens takes longer. A
     slip whose fall begins or ends far more slowly, as under rate-and-state friction or in a
     dashpot, does not last as mass and stiffness have it. Nor does a fall in which the force
-    hesitates, and under much noise nothing shows when a slip begins and ends.
+    hesitates, and under much noise nothing shows when a slip begins and ends. Slips against
+    constant friction last equally long, however far they go: where they do not, friction or the
+    drive shapes them. One swing has no shape that tells a vibration from friction that changes.
     """
     if not len(cycles) or kind not in (HARMONIC, STICK_SLIP, TRANSITIONAL):
         return None
@@ -224,27 +240,48 @@ def _stiffness_over_mass(record: Record, kind: str, cycles: CycleTable) -> State
     falls = cycles["trough_time"] - cycles["peak_time"]
     if float(np.median(falls)) * record.sample_rate < FEWEST_PER_FALL:
         return None
-    periods, how = cycles["period"], BY_SLIPS
-    rests = float(np.median(periods)) > RESTED * 2.0 * float(np.median(falls))
-    swings = periods if kind == HARMONIC and not rests else 2.0 * falls
     if kind == HARMONIC:
-        how = f"period of its swings{' less the rest' if rests else ''}"
+        return _by_swings(record, cycles, falls) if len(cycles) >= FEWEST_SWINGS else None
+    reach = REACH * white_noise(record.force) + resolution(record.force)
+    hidden = reach > MOST_HIDDEN * cycles.median("drop")
+    if _main_part(record, cycles) < DRAWN_OUT or hidden:
+        return None
+    longer, shorter = _unseen_ends(reach, cycles)
+    few, many = np.quantile(falls, (0.25, 0.75))
+    if many > UNLIKE * longer * few:
+        return None
+    swings = 2.0 * falls
+    unseen = max(longer - 1.0, 1.0 - shorter)
+    sample = 2.0 / (record.sample_rate * float(np.median(swings)))
+    off = 0.5 * float(np.hypot(unseen, sample))
+    low, high = SLOW_SLIP * shorter**2, LIGHTER * longer**2
+    return _over_mass(record, swings, off, (low, high), BY_SLIPS)
+
+
+def _by_swings(record: Record, cycles: CycleTable, falls: Floats) -> StatedQuantity:
+    """Compare k/m by the period of a vibration, which may rest in each swing."""
+    periods = cycles["period"]
+    rests = float(np.median(periods)) > RESTED * 2.0 * float(np.median(falls))
+    how = f"period of its swings{' less the rest' if rests else ''}"
+    swings = 2.0 * falls if rests else periods
+    return _over_mass(record, swings, SWINGS, (HEAVIER, LIGHTER), how)
+
+
+def _over_mass(
+    record: Record, swings: Floats, off: float, bounds: tuple[float, float], how: str
+) -> StatedQuantity:
+    """Compare k/m by some periods (s), that may all be `off` by a share of them.
+
+    `bounds` are those of the ratio to that stated, which the scatter of the periods widens.
+    """
     swing = float(np.median(swings))
-    lowest, highest, off = HEAVIER, LIGHTER, SWINGS
-    if kind != HARMONIC:
-        reach = REACH * white_noise(record.force) + resolution(record.force)
-        hidden = reach > MOST_HIDDEN * cycles.median("drop")
-        if _main_part(record, cycles) < DRAWN_OUT or hidden:
-            return None
-        longer, shorter = _unseen_ends(reach, cycles)
-        lowest, highest = SLOW_SLIP * shorter**2, LIGHTER * longer**2
-        unseen = max(longer - 1.0, 1.0 - shorter)
-        off = 0.5 * float(np.hypot(unseen, 2.0 / (record.sample_rate * swing)))  # or a sample
     found = (2.0 * pi / swing) ** 2
     stated = (record.stiffness or nan) / (record.mass or nan)
     scatter = _median_error(swings) / swing if len(swings) > 1 else 0.0
     error = 2.0 * found * float(np.hypot(scatter, off))
-    return StatedQuantity(SWING, "1/s²", found, error, stated, lowest, highest, how)
+    within = ERRORS_95 * 2.0 * found * scatter / stated
+    low, high = bounds[0] - within, bounds[1] + within
+    return StatedQuantity(SWING, "1/s²", found, error, stated, low, high, how)
 
 
 def _main_part(record: Record, cycles: CycleTable) -> float:

@@ -22,6 +22,7 @@ from stiction.analysis.motion.metadata import (
     _median_error,
     compare_metadata,
 )
+from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.parts.metadata import _is_rough
 from stiction.presets.preset import on_a_line
 
@@ -397,3 +398,58 @@ def test_slips_of_rate_and_state_do_not_contradict_the_mass(number):
     assert found.regime.kind == "stick-slip"
     its = compare_metadata(found.record, found.regime.kind, table_of(found.cycles), None, ())
     assert all(each.agrees is not False for each in its if each.quantity == SWING)
+
+
+def falls_of(durations, noise=1e-3):
+    """Return a record at 100 samples a second: slips of these durations, after 3 s of loading."""
+    at = np.cumsum(np.stack([np.full(len(durations), 3.0), durations], axis=1).ravel())
+    time = np.arange(0.0, at[-1] + 2.0, 0.01)
+    which = np.minimum(np.searchsorted(at[1::2], time), len(durations) - 1)
+    since = time - np.concatenate([[0.0], at[1:-1:2]])[which]
+    fall = 0.5 + 0.5 * np.cos(np.pi * np.clip((since - 3.0) / np.asarray(durations)[which], 0, 1))
+    force = np.where(time < at[-1], np.where(since < 3.0, since / 3.0, fall), (time - at[-1]) / 3.0)
+    force += noise * np.random.default_rng(3).standard_normal(len(time))
+    return 1.0 + force, time
+
+
+def test_slips_that_last_unlike_times_tell_no_mass():
+    """Against constant friction they last equally long: theirs was 0.11 or 1 of k/m."""
+    alike, _ = compare(*falls_of([0.3, 0.31, 0.29, 0.3, 0.32, 0.3]), stiffness=1.0, mass=0.01)
+    assert alike[SWING].found == pytest.approx((np.pi / 0.3) ** 2, rel=0.2)
+    assert alike[SWING].agrees
+    unlike, _ = compare(*falls_of([0.3, 0.9, 0.3, 0.8, 0.9, 0.3]), stiffness=1.0, mass=0.01)
+    assert SWING not in unlike
+    assert unlike[LOADING_RATE].found == pytest.approx(1.0 / 3.0, rel=0.05)
+
+
+def test_the_mass_contradicts_by_more_than_the_scatter_of_slips():
+    """Few slips that differ tell their duration to a third only."""
+    force, time = falls_of([0.24, 0.24, 0.36, 0.36])
+    for stated, agrees in ((3.0, True), (10.0, False)):
+        its, _ = compare(force, time, stiffness=stated * (np.pi / 0.3) ** 2, mass=1.0)
+        assert its[SWING].error > 0.2 * its[SWING].found
+        assert its[SWING].agrees is agrees
+
+
+@pytest.mark.parametrize(("swung", "told"), [(1, False), (2, False), (3, True)])
+def test_three_swings_tell_a_mass(swung, told):
+    """A force that friction lowers, raises and lowers is no vibration: k/m was 1e-6 of the true."""
+    force = 1.0 + np.sin(2.0 * np.pi * TIME)
+    record = st.Record(time=TIME, force=force, stiffness=STIFFNESS, mass=MASS)
+    cycles = swings(record).lasting.part(slice(swung))
+    its = {each.quantity for each in compare_metadata(record, HARMONIC, cycles, None, ())}
+    assert (SWING in its) is told
+
+
+@pytest.mark.parametrize(("stated", "agrees"), [(1.0, True), (0.4, False)])
+def test_a_drift_that_few_cycles_cannot_tell_does_not_contradict(stated, agrees):
+    """Slips loaded at 1 N/s while the zero drifts by 0.3 N/s: two cycles show no drift."""
+    time = np.arange(0.0, 4.5, 1e-3)
+    phase = (time + 0.3) % 1.5
+    force = 2.0 + np.minimum(phase, 1.4 * (1.5 - phase) / 0.1) + 0.3 * time
+    force += 2e-3 * np.random.default_rng(1).standard_normal(len(time))
+    its, _ = compare(force, time, stiffness=1e3, drive_velocity=1e-3 * stated)
+    rate = its[LOADING_RATE]
+    assert rate.found == pytest.approx(1.3, rel=0.05)
+    assert rate.error > 0.25
+    assert rate.agrees is agrees

@@ -77,9 +77,10 @@ def few_slips(time: Floats, force: Floats) -> FewSlips | None:
     if not all(rates):
         return None
     index = points[1:-1]
-    loaded, peak, trough = (float(each) for each in values[points[:3]])
-    drop = min(peak - loaded, peak - trough)
-    begin = Vertices(times[index[:1]] - drop / rates[0], np.array([peak - drop]))
+    bottom = np.array([max(values[points[0]], values[points[2]])])
+    before = int(np.flatnonzero(values[: index[0]] <= bottom)[-1])
+    both = slice(before, before + 2)  # the force may stay on a level before it falls
+    begin = Vertices(np.interp(bottom, values[both], times[both]), bottom)
     low = np.arange(len(index)) % 2 == 1
     reach = REACH * noise / width**0.5
     return FewSlips(TurningPoints(index, low, values, width, reach, CLEAR, height), begin)

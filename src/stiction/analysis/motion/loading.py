@@ -1,0 +1,83 @@
+"""The change from loading to creep, or to sliding, in a rise of the force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
+from stiction.arrays import TINY, Floats, Indices
+from stiction.recording.noise import white_noise
+
+LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
+# A loading is not straight if its line comes from so far above the trough, or if it deviates so
+# far from it, over what it gains; and by more than so many standard deviations of noise
+LIFTS, STEPS = 0.05, 0.03
+LIFTED, AWAY = 3.0, 2.0
+# Times as much bends a whole rise: less may be a drive whose velocity varies, or a filter's swing
+GROSSLY = 5.0
+PRECISE = 0.05  # relative error by noise of the rate of half as long a rise
+FEWEST = 8  # samples between first and last of a straight part, of which half as many are enough
+
+
+def loaded_until(
+    time: Floats, force: Floats, start: Floats, start_force: Floats, peak_time: Floats
+) -> Floats:
+    """Return the time until which each rise counts as loading: half of it is straight.
+
+    A mass may slide, or creep, for most of a rise. Then the line through its first half does not
+    come from the trough by far, or is none: half as long a rise is looked at, and so on until it is
+    straight, as long as it has samples; the straightest counts.
+    """
+    noise, step = white_noise(force), resolution(force)
+    until, rises = peak_time.copy(), np.arange(len(start))
+    straightest, ends = np.full(len(start), np.inf), peak_time.copy()
+    while len(rises):
+        begin, end = _window(time, start[rises], ends[rises])
+        fit = fit_pieces(time, force, begin, end, 1)
+        level, slope = fit.coefficients[:, 0], fit.coefficients[:, 1] / fit.half
+        lifted = level - slope * (fit.middle - start[rises]) - start_force[rises]
+        lifted = np.maximum(lifted - LIFTED * noise - step, 0.0)
+        away = np.maximum(_deviation(fit, time, force, begin, end) - AWAY * noise - step, 0.0)
+        gained = np.maximum(slope * (time[end] - start[rises]), TINY)
+        bent = np.maximum(lifted / LIFTS, away / STEPS) / gained
+        bent[(ends[rises] == peak_time[rises]) & (bent < GROSSLY)] = 0.0
+        better = bent < straightest[rises]
+        straightest[rises[better]], until[rises[better]] = bent[better], ends[rises[better]]
+        # half as long a rise gains half as much or more, four fifths of it in its straight part
+        gains = np.maximum(0.4 * (lifted + gained), TINY)
+        error = noise * np.sqrt(12.0 / (0.5 * (end - begin))) / gains
+        rises = rises[(bent > 1.0) & (end - begin >= FEWEST) & (error < PRECISE)]
+        ends[rises] = 0.5 * (start[rises] + ends[rises])
+    return until
+
+
+def _deviation(fit: Fits, time: Floats, force: Floats, begin: Indices, end: Indices) -> Floats:
+    """Return the root mean square deviation of a force from the line of each piece, N."""
+    counts = end - begin + 1
+    first = np.cumsum(counts) - counts
+    piece = np.repeat(np.arange(len(begin)), counts)
+    at = np.arange(len(piece)) - first[piece] + begin[piece]
+    x = (time[at] - fit.middle[piece]) / fit.half[piece]
+    away = force[at] - fit.coefficients[piece, 0] - fit.coefficients[piece, 1] * x
+    return np.asarray(np.sqrt(np.add.reduceat(away**2, first) / counts))
+
+
+def loading_rate(time: Floats, force: Floats, start: Floats, until: Floats) -> Floats:
+    """Return the rate of each rise in its straight part."""
+    fit = fit_pieces(time, force, *_window(time, start, until), 1)
+    slope: Floats = fit.coefficients[:, 1] / fit.half
+    return slope
+
+
+def _window(time: Floats, start: Floats, until: Floats) -> tuple[Indices, Indices]:
+    """Return first and last sample of the straight part of each rise."""
+    begin, end = (samples_from(time, start + part * (until - start)) for part in LOADING)
+    begin = np.minimum(begin, len(time) - 2)
+    return begin, np.maximum(end, begin + 1)
+
+
+def samples_from(time: Floats, begin: Floats) -> Indices:
+    """Return the first sample at or after each time, within rounding."""
+    place = np.interp(begin, time, np.arange(len(time)))
+    return np.ceil(place - 1e-3).astype(np.intp)

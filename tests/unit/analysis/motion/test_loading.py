@@ -1,0 +1,85 @@
+"""The rate of loading is that of the part of a rise in which the mass sticks."""
+
+import numpy as np
+import pytest
+from tests.drawn import inside
+
+import stiction as st
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.loading import loaded_until, loading_rate
+
+TIME = np.arange(0.0, 12.0, 2e-3)
+
+
+def rise(corners, noise=0.0, time=TIME):
+    """Return the rate found in a rise through some corners (s, N), from the first to the last."""
+    at, force = np.array(corners).T
+    values = np.interp(time, at, force) + noise * np.random.default_rng(1).normal(size=len(time))
+    ends = at[:1], force[:1], at[-1:]
+    return float(loading_rate(time, values, at[:1], loaded_until(time, values, *ends))[0])
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.01, 0.05])
+@pytest.mark.parametrize(
+    "rest",
+    [
+        [],
+        [(10.0, 1.05)],  # it slides for nine tenths of the time
+        [(5.0, 1.0), (5.5, 1.5), (10.0, 1.5)],  # friction grows meanwhile
+        [(2.5, 1.0), (3.0, 1.5), (6.0, 1.5), (6.5, 2.0), (10.0, 2.0)],
+    ],
+)
+def test_a_mass_that_slides_before_it_slips_was_loaded_before(rest, noise):
+    """Through a tenth to a half of such rises the line rises at 0 to 0.3 N/s.
+
+    Noise hides a bend of three standard deviations.
+    """
+    found = rise([(0.0, 0.0), (1.0, 1.0), *rest], noise)
+    assert found == pytest.approx(1.0, abs=0.01 + 3.0 * noise)
+
+
+def test_a_loading_in_noise_counts_as_a_whole():
+    """Where noise bends it, the rate by a part of the samples alone would be that of noise."""
+    rates = [
+        rise([(0.0, 0.0), (10.0, 1.0)], noise, np.arange(0.0, 12.0, 10.0 / samples))
+        for noise, samples in inside(40, (0.05, 0.3), (10.0, 100.0))
+    ]
+    assert np.median(rates) == pytest.approx(0.1, rel=0.1)
+
+
+def sliding_slips(random, count):
+    """Return a record of slips, each after a loading at 1 N/s and sliding for up to 30 s."""
+    corners, time, force = [(0.0, 0.0)], 0.0, 0.0
+    for _ in range(count):
+        top = random.uniform(1.0, 3.0)
+        time += top - force
+        corners.append((time, top))
+        time += random.uniform(0.0, 30.0)
+        corners.append((time, top))
+        time, force = time + 0.1, random.uniform(0.0, 0.5)
+        corners.append((time, force))
+    corners.append((time + 0.9, force + 0.9))
+    at = np.arange(0.0, corners[-1][0], 0.01)
+    values = np.interp(at, *np.array(corners).T) + 2e-3 * random.normal(size=len(at))
+    return st.Record(time=at, force=values, stiffness=1e3, drive_velocity=1e-3)
+
+
+@pytest.mark.parametrize("count", [2, 4])
+def test_slips_after_sliding_were_loaded_at_one_rate(count):
+    """By a tenth to a half of the time most rates came out at less than half of it."""
+    rates = []
+    for number in range(20):
+        record = sliding_slips(np.random.default_rng([count, number]), count)
+        rates += [*swings(record).lasting["stick_slope"]]
+    assert len(rates) >= 10 * (count - 1)  # the first slip ends before the first cycle
+    assert rates == pytest.approx(np.ones(len(rates)), rel=0.1)
+
+
+@pytest.mark.parametrize("turns", [0.7, 1.0, 1.5, 2.5])
+def test_a_loading_by_a_drive_whose_velocity_varies_counts_as_a_whole(turns):
+    """By up to 30 % each way, as of a lead screw: the fastest part of it is no rate of loading."""
+    time, start, end = np.arange(0.0, 1.0, 1e-3), np.array([0.0]), np.array([0.999])
+    for phase in np.arange(0.0, 2.0 * np.pi, 0.3):
+        angle = 2.0 * np.pi * turns * time + phase
+        force = time + 0.3 * (np.cos(phase) - np.cos(angle)) / (2.0 * np.pi * turns)
+        assert loaded_until(time, force, start, force[:1], end) == end
