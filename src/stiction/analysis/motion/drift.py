@@ -14,12 +14,13 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, 
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_997, error_of_few
 from stiction.analysis.signals.robust import part_means
-from stiction.analysis.signals.straight_line import line
+from stiction.analysis.signals.straight_line import line, slope_in_lasting_noise
 from stiction.arrays import Floats
 
 SURE, LIKELY = 4.0, ERRORS_997  # standard errors of a drift, in a sentence and in errors alone
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
 PARTS = 20  # number of means of a force without cycles, over its second half
+MOST_MEANS = 1000  # of the middles of cycles: more would take long
 FEWEST_CYCLES = 4  # cycles that show a drift
 LASTING = 1.0  # of its rate, by which that of the two halves may differ
 
@@ -63,7 +64,8 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     else:
         likely = _likely_rate(cycles)
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
-    rate, error = _fit_line(at, middle)
+    at, middle = (part_means(each, MOST_MEANS) for each in (at, middle))
+    rate, error = slope_in_lasting_noise(at, middle)
     change = rate * (float(record.time[-1]) - start)
     large = abs(change) > WORTH * abs(float(middle.mean()))
     sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
@@ -101,12 +103,6 @@ def _rate(at: Floats, force: Floats, freedom: int) -> tuple[float, float]:
     return found.slope, error_of_few(found.slope_error * share**0.5, freedom)
 
 
-def _fit_line(at: Floats, middle: Floats) -> tuple[float, float]:
-    """Return the slope of a line, and its standard error; neighbours may deviate alike."""
-    found = line(at, middle)
-    return found.slope, found.correlated_error(at, middle)
-
-
 def is_shown(drift: Drift, kind: str) -> bool:
     """Return whether a motion of some kind shows a steady drift, or none, by its force."""
     known = kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY)
@@ -141,7 +137,9 @@ def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
     if len(at) < 2 * FEWEST_CYCLES:
         return True
     half = len(at) // 2
-    halves = [_fit_line(at[part], middle[part]) for part in (slice(half), slice(half, None))]
+    halves = [
+        slope_in_lasting_noise(at[part], middle[part]) for part in (slice(half), slice(half, None))
+    ]
     (first, first_error), (second, second_error) = halves
     apart = SURE * float(np.hypot(first_error, second_error)) + LASTING * abs(rate)
     return abs(first - second) < apart

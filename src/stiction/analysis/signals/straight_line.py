@@ -7,8 +7,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.correlated_noise import error_of_few, whole_correlation_time
-from stiction.arrays import Floats
+from stiction.analysis.signals.correlated_noise import error_of_few
+from stiction.arrays import TINY, Floats
+
+# Correlation of neighbours: of noise that lasts for 1 to 100 values, each factor as likely
+LASTING = 1.0 - np.geomspace(1.0, 0.01, 15)
 
 
 class StraightLine(NamedTuple):
@@ -35,14 +38,6 @@ class StraightLine(NamedTuple):
     def deviations(self, x: Floats, y: Floats) -> Floats:
         """Return what points deviate by from the line."""
         return np.asarray(y - self.at(x))
-
-    def correlated_error(self, x: Floats, y: Floats) -> float:
-        """Return the standard error of the slope where neighbours deviate alike.
-
-        As many points count as one as `whole_correlation_time` returns.
-        """
-        alike = whole_correlation_time(self.deviations(x, y))
-        return error_of_few(self.slope_error * alike**0.5, len(x) / alike - 2.0)
 
 
 def line(x: Floats, y: Floats) -> StraightLine:
@@ -75,3 +70,39 @@ def line_of_few(x: Floats, y: Floats, errors: Floats) -> StraightLine:
     by_scatter = (error_of_few(each, len(x) - 2.0) for each in found[3:])
     by_points = (float(np.linalg.norm(each * errors)) for each in weights)
     return StraightLine(*found[:3], *map(hypot, by_scatter, by_points))
+
+
+def slope_in_lasting_noise(x: Floats, y: Floats) -> tuple[float, float]:
+    """Return the slope of a line, and its standard error, where neighbours may deviate alike.
+
+    How alike they are, few of them hardly tell, and a line follows a part of what lasts. So slope
+    and variance are means over many correlations, each as likely as it makes the deviations (by
+    the restricted likelihood, H. D. Patterson & R. Thompson, Biometrika 58, 545 (1971)). With each
+    the line is that of values made independent (S. J. Prais & C. B. Winsten, Cowles Commission
+    Discussion Paper 383 (1954)).
+
+    Parameters
+    ----------
+    x, y : ndarray
+        (n,), at least 3, nearly evenly spaced.
+    """
+    spread = float(x.std())
+    each = LASTING[:, None]
+
+    def independent(values: Floats) -> Floats:
+        first = np.sqrt(1.0 - each**2) * values[0]
+        return np.concatenate([first, values[1:] - each * values[:-1]], axis=1)
+
+    level, way, value = map(independent, (np.ones(len(x)), (x - x.mean()) / spread, y - y.mean()))
+    design = np.stack([level, way], axis=1)
+    normal = design @ design.transpose(0, 2, 1)
+    found = np.linalg.solve(normal, design @ value[:, :, None])
+    left = np.maximum(((value[:, None] - found.transpose(0, 2, 1) @ design) ** 2).sum((1, 2)), TINY)
+    freedom, slopes = len(x) - 2.0, found[:, 1, 0]
+    likely = np.log(1.0 - LASTING**2) - np.linalg.slogdet(normal)[1] - freedom * np.log(left)
+    weight = np.exp(0.5 * (likely - likely.max()))
+    weight /= weight.sum()
+    slope = float(weight @ slopes)
+    variances = left / freedom * np.linalg.inv(normal)[:, 1, 1] + (slopes - slope) ** 2
+    error = error_of_few(sqrt(float(weight @ variances)), freedom)
+    return slope / spread, error / spread

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from stiction.analysis.signals.correlated_noise import correlation_time, whole_correlation_time
-from stiction.analysis.signals.straight_line import line
+from stiction.analysis.signals.straight_line import line, slope_in_lasting_noise
 
 
 def test_numbers_and_errors_are_those_of_the_normal_equations():
@@ -28,22 +27,38 @@ def test_a_line_over_times_since_1970_is_that_over_times_from_0():
 
 def test_alike_neighbours_make_the_error_larger():
     """Each value stands ten times in a row: as many values tell the line as are different."""
-    values = np.random.default_rng(7).standard_normal(400)
-    x = np.linspace(-1.0, 1.0, 4000)
-    y = np.repeat(values, 10)
-    found = line(x, y)
-    assert correlation_time(found.deviations(x, y)) == pytest.approx(10.0, rel=0.1)
-    alike = whole_correlation_time(found.deviations(x, y))
-    assert found.correlated_error(x, y) == pytest.approx(found.slope_error * alike**0.5)
+    values = np.random.default_rng(7).standard_normal(100)
+    x = np.linspace(-1.0, 1.0, 1000)
+    slope, error = slope_in_lasting_noise(x, np.repeat(values, 10))
+    alone, its = slope_in_lasting_noise(np.linspace(-1.0, 1.0, 100), values)
+    assert slope == pytest.approx(alone, abs=0.5 * its)
+    assert its < error < 1.6 * its  # neighbours seem to have a correlation of 0.9: 19 count as one
 
 
-@pytest.mark.parametrize("count", [12, 50])
-def test_the_errors_of_a_few_alike_neighbours_hold_the_slope(count):
+def test_independent_neighbours_have_the_error_of_the_line():
+    x, noise = np.arange(400.0), np.random.default_rng(3).standard_normal(400)
+    found, (slope, error) = (
+        line(x, 2.0 + 0.5 * x + noise),
+        slope_in_lasting_noise(x, 0.5 * x + noise),
+    )
+    assert slope == pytest.approx(found.slope, abs=0.2 * error)
+    assert error == pytest.approx(found.slope_error, rel=0.1)
+
+
+def test_points_on_a_line_leave_no_error():
+    x = np.arange(5.0)
+    assert slope_in_lasting_noise(x, 2.0 * x + 1.0) == pytest.approx((2.0, 0.0), abs=1e-12)
+    assert slope_in_lasting_noise(x, 0.0 * x) == pytest.approx((0.0, 0.0), abs=1e-12)
+
+
+@pytest.mark.parametrize("alike", [0.0, 0.5, 0.7, 0.9])
+@pytest.mark.parametrize("count", [4, 8, 12, 50])
+def test_the_errors_of_a_few_alike_neighbours_hold_the_slope(count, alike):
     """A line follows a part of what lasts, so that its deviations seem to last for less."""
-    noise = np.random.default_rng(count).standard_normal((1000, 100 + count))
-    values = lfilter([1.0], [1.0, -0.7], noise)[:, 100:]
+    noise = np.random.default_rng(count).standard_normal((400, 200 + count))
+    values = lfilter([1.0], [1.0, -alike], noise)[:, 200:]
     x = np.arange(float(count))
-    lines = [(line(x, y), y) for y in values]
-    off = np.array([abs(found.slope) / found.correlated_error(x, y) for found, y in lines])
-    assert np.mean(off < 2.0) > 0.88  # 0.75 and 0.86 by `correlation_time`
+    found = np.array([slope_in_lasting_noise(x, y) for y in values])
+    off = np.abs(found[:, 0]) / found[:, 1]
+    assert np.mean(off < 2.0) > 0.93  # by the correlation of the deviations 0.77 at worst
     assert np.mean(off > 4.0) < 0.02
