@@ -10,7 +10,7 @@ from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
-from stiction.analysis.motion.doubts.clipping import without_cut_off
+from stiction.analysis.motion.doubts.clipping import cut_off, without_cut_off
 from stiction.analysis.motion.doubts.sampling import (
     hidden_way,
     with_smear,
@@ -44,6 +44,7 @@ OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # col
 OF_SLIDING = ("mu_kinetic", "slip_distance", "peak_slip_speed")  # and those of any known motion
 # columns that a force alone gives by stiffness and drive velocity
 BY_STIFFNESS = ("creep_distance", "slip_distance", "peak_slip_speed")
+BY_DROP = ("creep_distance", "slip_distance")  # and by peaks and troughs
 
 
 class Assessment(NamedTuple):
@@ -115,6 +116,9 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     halting = cycles["hesitations"] > 0.0 if record.position is None else other
     sticking = cycles.part(~(other | apart | halting)) if regime.loads else none
     missing = _meaningless(record, cycles, regime, stated)
+    cut = cut_off(record, cycles, ends)
+    if cut and record.position is None:
+        missing |= {name: cut for name in BY_DROP if name not in missing}
     if (turns or unreal) and len(cycles):
         names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
         missing |= dict.fromkeys(names, turns or unreal)

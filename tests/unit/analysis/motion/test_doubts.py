@@ -880,3 +880,19 @@ def test_friction_is_not_given_of_peaks_that_are_cut_off(per_cycle) -> None:
     assert found.friction.kinetic is None
     assert found.friction.missing["kinetic"].endswith("N or more")
     assert "cut off" in found.missing["mu_kinetic"]
+
+
+@pytest.mark.parametrize(("end", "given"), [(1.7, False), (2.5, True)])
+def test_ways_are_not_given_of_peaks_that_are_cut_off(end, given) -> None:
+    """The force stays at the end of the range while it is loaded: the mass seemed to creep."""
+    time = np.arange(0.0, 60.0, 2e-3)
+    noise = 1e-4 * np.random.default_rng(1).normal(size=len(time))
+    force = np.minimum(sawtooth(time / 2.0) + noise, end)
+    loaded = float(np.median(swings(st.Record(time=time, force=force)).lasting["stick_slope"]))
+    record = st.Record(time=time, force=force, stiffness=1e3, drive_velocity=1e-3 * loaded)
+    found = assess(record)
+    assert ("cut off" in found.missing.get("slip_distance", "")) is not given
+    assert bool(np.isfinite(found.cycles["slip_distance"]).all()) is given
+    assert ("cut off" in found.missing.get("creep_distance", "")) is not given
+    moved = st.Record(time=time, force=force, position=1e-3 * loaded * time)
+    assert "slip_distance" not in assess(moved).missing

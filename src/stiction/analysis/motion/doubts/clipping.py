@@ -44,8 +44,7 @@ def without_cut_off(
         friction = friction._replace(
             break_away=None, missing=friction.missing | {"break_away": reason}
         )
-    cut = {name: value for name, value in cut.items() if _is_reached(record, cycles, value)}
-    what = f"the {' and '.join(ENDS[name] for name in cut)} are cut off"
+    cut, what = _cut_off(record, cycles, ends), cut_off(record, cycles, ends)
     if "largest" in cut and friction.static is not None:
         least = in_words(friction.static.force, "N")
         friction = friction.without_static(f"{what}: it is {least} or more")
@@ -54,6 +53,17 @@ def without_cut_off(
         bound = f": it is {in_words(friction.kinetic.force, 'N')} or {bounds[next(iter(cut))]}"
         friction = friction.without_kinetic(what + bound * (len(cut) == 1))
     return friction
+
+
+def cut_off(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> str:
+    """Return what of the cycles is cut off at ends, in words; '' if nothing is."""
+    cut = _cut_off(record, cycles, ends)
+    return f"the {' and '.join(ENDS[name] for name in cut)} are cut off" if cut else ""
+
+
+def _cut_off(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> dict[str, float]:
+    """Return the value (N) of each end, by its name, that the cycles reach."""
+    return {each.name: each.value for each in ends if _is_reached(record, cycles, each.value)}
 
 
 def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: float) -> bool:
