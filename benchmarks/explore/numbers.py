@@ -59,11 +59,12 @@ def alike(random: np.random.Generator, count: int, correlation: float) -> Floats
 def slips(
     random: np.random.Generator, *, cycles: tuple[int, int] = (12, 80), creep: float = 0.0,
     correlation: float = 0.0, drift: float = 0.0, step: float = 0.0,
+    noise: tuple[float, float] = (-2.0, -0.52),
 ) -> Known:  # fmt: skip
     """Return irregular stick-slip of 20 to 1000 samples a cycle in noise of 1 to 30 % of a drop.
 
     At its peak a force creeps at a share `creep` of the drive's velocity. Drift over the record,
-    and steps of a converter, are shares of the mean drop.
+    and steps of a converter, are shares of the mean drop, and `noise` powers of ten of it.
     """
     count, differ, at_peak = int(random.integers(*cycles)), *random.uniform((0.1, 0), (0.5, 0.7))
     stiffness, velocity = 10 ** random.uniform((2, -5), (4, -2.5))
@@ -85,7 +86,7 @@ def slips(
     low, high = trough[1:][at], peak[1:][at]
     loading = high - bend * np.log(np.maximum(rest, 1.0))
     force = np.where(since < loads[at], loading, low + (high - low) * falls)
-    force += drop * 10 ** random.uniform(-2, -0.52) * random.normal(size=len(time))
+    force += drop * 10 ** random.uniform(*noise) * random.normal(size=len(time))
     drifts = drift * drop * random.choice([-1.0, 1.0]) / time[-1]
     force += drifts * (time - begin)
     if step:
@@ -96,6 +97,14 @@ def slips(
     return Known(record, peak[1:], trough[1:], ends - fall, crept, drifts)
 
 
+def cut_off(random: np.random.Generator) -> Known:
+    """Return irregular stick-slip by a load cell whose range ends below most peaks."""
+    known = slips(random, noise=(-3.0, -1.0))
+    drop = float((known.peak - known.trough).mean())
+    force = np.minimum(known.record.force, 4.0 - random.uniform(0.0, 0.5) * drop)
+    return known._replace(record=known.record.model_copy(update={"force": force}))
+
+
 FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "straight": slips,
     "creeping": partial(slips, creep=0.8),
@@ -103,6 +112,10 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "neighbours alike": partial(slips, correlation=0.7),
     "drifting": partial(slips, drift=1.0),
     "in steps": partial(slips, step=0.1),
+    "in few steps": partial(slips, step=0.2, noise=(-3.0, -1.5)),
+    "neighbours much alike": partial(slips, correlation=0.9),
+    "few, drifting": partial(slips, cycles=(2, 6), drift=1.0),
+    "cut off": cut_off,
 }
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
 from stiction.arrays import TINY, Floats, Indices
-from stiction.recording.noise import white_noise
+from stiction.recording.noise import dither_remainder, white_noise
 
 LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 # A loading is not straight if its line comes from so far above the trough, or if it deviates so
@@ -17,6 +17,9 @@ LIFTED, AWAY = 3.0, 2.0
 # Times as much bends a whole rise: less may be a drive whose velocity varies, or a filter's swing
 GROSSLY = 5.0
 PRECISE = 0.05  # relative error by noise of the rate of half as long a rise
+# Relative error of rates by a line through a single step: in 420 records of 2 to 20 steps a drop
+# their median is off by 0.10 at most, as a standard error
+ROUNDED = 0.1
 FEWEST = 8  # samples between first and last of a straight part, of which half as many are enough
 
 
@@ -68,6 +71,26 @@ def loading_rate(time: Floats, force: Floats, start: Floats, until: Floats) -> F
     fit = fit_pieces(time, force, *_window(time, start, until), 1)
     slope: Floats = fit.coefficients[:, 1] / fit.half
     return slope
+
+
+def rounding_of_rates(force: Floats, rise: float) -> float:
+    """Return the relative error that the steps of a converter make in all rates of loading alike.
+
+    Each rise begins at a trough, which is rounded to the same steps as what follows it: the line
+    through few of them is too steep, or not steep enough, in most rises. Noise breaks that up.
+
+    Parameters
+    ----------
+    force : ndarray
+        (n,), N.
+    rise : float
+        Usual height of a rise, N.
+    """
+    step = resolution(force)
+    if not step or rise <= 0.0:
+        return 0.0
+    steps = (LOADING[1] - LOADING[0]) * rise / step
+    return float(ROUNDED * dither_remainder(force, step) * steps**-1.5)
 
 
 def _window(time: Floats, start: Floats, until: Floats) -> tuple[Indices, Indices]:

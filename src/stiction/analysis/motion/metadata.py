@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from stiction.analysis.motion.changes.cycles import parts_of, steady_change
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
+from stiction.analysis.motion.loading import rounding_of_rates
 from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
@@ -152,7 +153,10 @@ def _loading_rates(
     stated = record.loading_rate or nan
     # a drift of the load cell seems to load the spring; one of friction does not
     off = abs(_rate_of_troughs(cycles) if drift is None else drift.rate)
-    whole = _loading_rate(slopes, stated, off)
+    alike = rounding_of_rates(
+        record.force, float(np.median(cycles["peak"] - cycles["start_force"]))
+    )
+    whole = _loading_rate(slopes, stated, off, alike)
     places = parts_of(cycles["period"])
     if len(places) < 2:
         if steady_change(slopes) is None:
@@ -163,7 +167,7 @@ def _loading_rates(
     at = [-inf, *(float(starts[place.start]) for place in places[1:]), inf]
     parts = []
     for place, begin, end in zip(places, at[:-1], at[1:], strict=True):
-        its = _loading_rate(slopes[place], stated, off)
+        its = _loading_rate(slopes[place], stated, off, alike)
         parts.append(its._replace(part=_part_in_words(begin, end), begin=begin, end=end))
     agree = [each for each in parts if each.is_same] or [x for x in parts if x.agrees]
     if not agree:
@@ -189,16 +193,18 @@ def _rate_of_troughs(cycles: CycleTable) -> float:
     return line(at, force).slope
 
 
-def _loading_rate(slopes: Floats, stated: float, off: float) -> StatedQuantity:
-    """Return the median rate of loading of some cycles, with a further error `off`, N/s.
+def _loading_rate(slopes: Floats, stated: float, off: float, alike: float) -> StatedQuantity:
+    """Return the median rate of loading of some cycles.
 
-    It contradicts the stated one where it does so by more than two standard errors.
+    Its errors are that of the scatter, one of `off` (N/s), and a relative one that all have
+    `alike`. It contradicts the stated one where it does so by more than two of them.
     """
+    found = float(np.median(slopes))
+    off = hypot(off, alike * found)
     error = hypot(_median_error(slopes), off)
-    # a single cycle tells no error, but by how much a drift may load it
+    # a single cycle tells no error, but by how much drift and steps may change it
     within = ERRORS_95 * (error if isfinite(error) else off) / stated
     low, high = SLOWER - within, FASTER + within
-    found = float(np.median(slopes))
     return StatedQuantity(LOADING_RATE, "N/s", found, error, stated, low, high, BY_RISE)
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from benchmarks.explore.draw import Draw
+from benchmarks.explore.numbers import slips
 from benchmarks.explore.records import between
 from benchmarks.explore.records import sawtooth as sawtooth_of
 from scipy.signal import lfilter
@@ -453,3 +454,15 @@ def test_a_drift_that_few_cycles_cannot_tell_does_not_contradict(stated, agrees)
     assert rate.found == pytest.approx(1.3, rel=0.05)
     assert rate.error > 0.25
     assert rate.agrees is agrees
+
+
+def test_the_error_of_a_rate_holds_what_few_steps_of_a_converter_make():
+    """All rises begin at a step: with the scatter alone 11 of 27 rates were off by two errors."""
+    off = []
+    for number in range(40):
+        known = slips(np.random.default_rng([5, number]), step=0.25, noise=(-3.0, -1.5))
+        true = known.record.loading_rate
+        its = [each for each in assess(known.record).stated if each.quantity == LOADING_RATE]
+        off += [abs(each.found - true) / each.error for each in its]
+    assert len(off) >= 25
+    assert np.mean(np.array(off) > 2.0) < 0.1
