@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from stiction.errors import ResultError, argument
 from stiction.recording.stored import read_stored, root_attributes
-from stiction.result.attributes import SEAL, intact_description
+from stiction.result.attributes import SEAL, TIMES, intact_description, intact_times
 from stiction.result.file import (
     FIT_KIND,
     RECORD_KIND,
@@ -21,6 +21,7 @@ from stiction.result.file import (
 )
 from stiction.result.fit_file import refuse_damaged_fit
 from stiction.simulation import run
+from stiction.storage.checksums import broken_parts, bytes_of
 from stiction.storage.isolation import apart
 from stiction.storage.kinds import RESULT, use_of
 from stiction.study.execution.repair import damage_of, restore, stores_in
@@ -28,6 +29,7 @@ from stiction.study.store.store import CHECKED, group_at
 from stiction.study.view.view import broken_changes
 from stiction.system.description import Description
 from stiction.text.sections import Section, as_text
+from stiction.trajectory import Trajectory
 
 
 class Check(NamedTuple):
@@ -154,11 +156,20 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
         if attributes is not None and not {*TEXTS} & {*attributes}:  # somebody else's
             raise
         told = str(error).removeprefix(f"{path}: ")
-    description = apart(intact_description, path)
+    text, known = apart(intact_description, path)
     if not repair:
         return Check(path, [told])
-    run(Description.from_json(description, trust=trust)).save(path)
+    _computed_again(path, Description.from_json(text, trust=trust), known).save(path)
     return Check(path, [told], repaired=True)
+
+
+def _computed_again(path: Path, description: Description, known: str) -> Trajectory:
+    """Return the run of a damaged result, sampled as that was; `known` are its checksums."""
+    again = run(description)
+    if TIMES not in broken_parts(known, {TIMES: bytes_of(again.samples["time"])}):
+        return again
+    own = apart(intact_times, path)
+    return again if own is None else run(description, times=own)
 
 
 def _check_store(path: Path, repair: bool, trust: bool) -> Check:

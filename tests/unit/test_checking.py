@@ -126,6 +126,32 @@ def test_no_damage_of_a_store_is_silent(store, tmp_path):
     assert all(seen.values()), seen
 
 
+def test_a_result_at_times_of_its_own_is_repaired_as_it_was(tmp_path):
+    run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", times=[1e-3, 3e-3, 1.7e-2])
+    path = run.save(tmp_path / "a.nc")
+    with h5py.File(path, "r+") as file:
+        file["u_x"][1] += 1e-9
+    assert st.check(path, repair=True).repaired
+    assert st.load(path) == run
+    with h5py.File(path, "r+") as file:
+        file["time"][1] += 1e-9
+    with pytest.raises(st.ResultError, match="and so are its times"):
+        st.check(path, repair=True)
+    with pytest.raises(st.ResultError, match="is damaged"):
+        st.load(path)
+
+
+def test_a_result_that_was_given_up_is_computed_to_its_end(tmp_path):
+    slider = st.presets.nakano_popov_2020()
+    run = st.simulate(slider, "20 ms", max_steps=20)
+    assert not run.status.ok
+    path = run.save(tmp_path / "a.nc")
+    with h5py.File(path, "r+") as file:
+        file["u_x"][1] += 1e-9
+    assert st.check(path, repair=True).repaired
+    assert st.load(path) == st.simulate(slider, "20 ms")
+
+
 @pytest.mark.parametrize(
     "gone", ["phi", "phi/c/0", "peak_force", "peak_force/zarr.json", "status/zarr.json"]
 )

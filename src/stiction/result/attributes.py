@@ -6,11 +6,12 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import ResultError
-from stiction.storage.checksums import broken_parts
+from stiction.errors import ResultError, Status
+from stiction.storage.checksums import broken_parts, bytes_of
 from stiction.storage.foreign import opening
 
 SEAL, DESCRIPTION = "checksums", "description"
+TIMES = "samples.time"  # what checksums call the times of the samples
 
 
 def list_attributes(path: str) -> str:
@@ -20,8 +21,8 @@ def list_attributes(path: str) -> str:
         return "\n".join(map(str, file.attrs))
 
 
-def intact_description(path: str | Path) -> str:
-    """Return the description from a result file whose other parts are damaged.
+def intact_description(path: str | Path) -> tuple[str, str]:
+    """Return the description from a result file whose other parts are damaged, and its checksums.
 
     Raises
     ------
@@ -37,4 +38,26 @@ def intact_description(path: str | Path) -> str:
         whole = DESCRIPTION not in broken_parts(known, {DESCRIPTION: text.encode()})
     if not whole:
         raise ResultError(f"{path}: is damaged, and so is its description; run it again")
-    return text
+    return text, known
+
+
+def intact_times(path: str | Path) -> list[float] | None:
+    """Return the times of the samples from a result file whose other parts are damaged, s.
+
+    None if the run was given up: its times end early, and need not be others than those of its
+    description.
+
+    Raises
+    ------
+    ResultError
+        If they are damaged too.
+    """
+    h5py: Any = import_module("h5py")  # slow to import
+    lost = "is damaged, and so are its times, which its description does not hold; run it again"
+    with opening(path, lost), h5py.File(path) as file:
+        if str(file.attrs["status"]) != Status.COMPLETED.name:
+            return None
+        times = file["time"][()]
+        if TIMES in broken_parts(str(file.attrs[SEAL]), {TIMES: bytes_of(times)}):
+            raise ResultError(f"{path}: {lost}")
+    return [*times.tolist()]

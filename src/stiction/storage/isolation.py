@@ -32,7 +32,7 @@ T = TypeVar("T")
 
 
 def apart(work: Callable[[str], T], path: str | Path) -> T:
-    """Call a function on a file in another process; return its result, text or None.
+    """Call a function on a file in another process; return its result, as JSON has it.
 
     Raises
     ------
