@@ -239,7 +239,9 @@ def with_duration(raw: Mapping[str, Any]) -> Mapping[str, Any]:
         programs = [read(dict(table)) for read, table in ((read_drive, drive), (read_load, load))]
         start = Initial(**raw.get("initial", {})).time
     except (DescriptionError, TypeError):  # which is told when the rest is read
-        return raw
+        # then how long a program lasts is unknown, not missing
+        unknown = {"duration": 1.0} if "program" in {*drive, *load} else {}
+        return {**raw, "run": {**settings, **unknown}}
     until = end(*programs)
     if until is None or not until > start:
         return raw

@@ -225,3 +225,23 @@ def test_a_notebook_shows_each_piece_of_a_long_program_and_how_many_numbers_a_lo
     program, time, v = (value for _, value in table.rows)
     assert program.count("hold") == 101
     assert (time, v.count("0.5")) == ("101 values", 100)
+
+
+PIECES = '[{ piece = "constant", value = "1 mm/s", duration = "5 s" }, { piece = "hold"%s }]'
+
+
+@pytest.mark.parametrize(
+    ("drive", "load", "paths"),
+    [
+        (PIECES % ', duration = "x"', None, ["drive.program.2.duration"]),
+        (PIECES % ', value = "x"', None, ["drive.program.2.value"]),
+        (PIECES % "", '[{ piece = "step", to = "x" }]', ["load.program.1.to"]),
+        (PIECES % "", None, ["run.duration"]),
+    ],
+)
+def test_a_duration_is_missing_only_where_no_program_tells_it(drive, load, paths):
+    text = TOML.replace('duration = "5 s"', "").replace('velocity = "1 mm/s"', f"program = {drive}")
+    more = f"\n[load]\nprogram = {load}\n" if load else ""
+    with pytest.raises(st.DescriptionError) as found:
+        st.Description.from_toml(text + more)
+    assert [fault.path for fault in found.value.faults] == paths
