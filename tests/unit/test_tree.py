@@ -53,6 +53,29 @@ def test_what_a_benchmark_imports_of_ours_is_there(path):
     assert missing == []
 
 
+def modules_in(text):
+    """Modules that a text imports, by their dotted names, and words that may name one."""
+    dotted = re.findall(r"\bstiction(?:\.\w+)+", text)
+    lists = re.findall(r"from (stiction[\w.]*) import (.+)", text)
+    dotted += [f"{room}.{name}" for room, names in lists for name in re.findall(r"\w+", names)]
+    words = re.findall(r'"([\w-]+)"', text) + re.findall(r"from \.(?:\w+\.)*(\w+) import", text)
+    return {*dotted, *(word.replace("-", "_") for word in words)}
+
+
+def test_a_file_is_used_by_another():
+    """A law, a command or a figure without its line in a registry would be nobody's."""
+    room = ROOT / "src"
+    files = [*room.rglob("*.py"), *room.rglob("*.pyi")]
+    said = {path: modules_in(path.read_text("utf-8")) for path in files}
+    times = Counter(name for names in said.values() for name in names)
+    for path, names in said.items():
+        if path.stem in ("__init__", "__main__"):
+            continue
+        name = ".".join(path.relative_to(room).with_suffix("").parts)
+        own = sum(each in names for each in (name, path.stem))
+        assert times[name] + times[path.stem] > own, path
+
+
 def test_each_part_of_the_benchmark_is_there():
     assert [part for part in PARTS.values() if find_spec(f"benchmarks.{part}") is None] == []
 
