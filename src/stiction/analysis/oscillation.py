@@ -11,7 +11,7 @@ from stiction import theory
 from stiction.analysis.measured_line import STEPS
 from stiction.analysis.motion.rest import sticks_until, stuck_until
 from stiction.analysis.signals.ridge import follow_ridge
-from stiction.analysis.signals.spectrum import rate_spectrogram
+from stiction.analysis.signals.spectrum import even_rate, rate_spectrogram
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 from stiction.text.units import in_words
@@ -95,11 +95,9 @@ def transverse_oscillation(run: Trajectory) -> xr.Dataset:
 
 def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
     """Return the spectrogram of v_y (m/s), see `transverse_oscillation`."""
-    times = run.samples["time"]
     natural = run.slider.natural_frequency_y
     width = WIDTH / natural
-    span = float(times[-1] - times[0])
-    rate = (len(times) - 1) / span if span > 0.0 else 0.0
+    span, rate = float(np.ptp(run.samples["time"])), even_rate(run)
     if rate < 2.0 * HIGHEST * natural or span < width:
         raise ResultError(
             f"the transverse oscillation has {in_words(natural, 'Hz')}: sample the run at "

@@ -14,6 +14,7 @@ import stiction as st
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.oscillation import apart, stands_out
 from stiction.analysis.signals.ridge import best_path
+from stiction.analysis.signals.spectrum import even_rate
 from stiction.plotting.analysis.oscillation import plot_oscillation
 from stiction.plotting.page.canvas import figure_of
 
@@ -324,3 +325,21 @@ def test_the_rounding_of_a_sawtooth_has_no_line(step: float) -> None:
     force = np.rint((0.8 + 0.2 * (time / 0.7 % 1.0)) / step) * step
     found = st.analyse(st.Record(time=time, force=force))
     assert np.isfinite(found.oscillation["frequency"]).mean() < 0.05
+
+
+@pytest.mark.parametrize(
+    "times", [[0.01], np.linspace(0.0, 0.1, 2001) ** 2], ids=["once", "uneven"]
+)
+def test_uneven_samples_of_a_run_make_no_spectrum_and_no_measurement(times):
+    run = st.simulate(st.presets.nakano_popov_2020(), 0.1, times=times)
+    for analysis in (st.analysis.transverse_oscillation, lambda its: st.measure(its, st.Sensor())):
+        with pytest.raises(st.ResultError, match="sampled once or at uneven times"):
+            analysis(run)
+
+
+@pytest.mark.parametrize("rate", ["10 kHz", "7.3 kHz", None])
+def test_a_run_that_was_given_up_has_the_rate_of_its_samples(rate):
+    run = st.simulate(st.presets.nakano_popov_2020(), 1.0, sample_rate=rate, max_steps=500)
+    assert not run.status.ok
+    step = float(np.diff(run.samples["time"])[0])
+    assert even_rate(run) == pytest.approx(1.0 / step, rel=2.0 / len(run.samples["time"]))

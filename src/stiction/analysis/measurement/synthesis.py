@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from stiction.analysis.record import Record, cell_axis, record_of
+from stiction.analysis.signals.spectrum import even_rate
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.recording.sensor import Sensor
@@ -46,7 +47,8 @@ def measure(
     Raises
     ------
     ResultError
-        If the run is too coarse for a filter or for the sample rate, or there is no such channel.
+        If the run is too coarse for a filter or for the sample rate, or sampled at uneven times, or
+        there is no such channel.
 
     Examples
     --------
@@ -66,12 +68,12 @@ def measure(
             f"{echo(sensor)} is not a sensor, nor one for each channel; write for example "
             "st.Sensor(noise='2 mN')"
         )
-    plain = record_of(run)
+    plain, own = record_of(run), even_rate(run)
     sampling = read_arguments(Sampling, sample_rate=sample_rate or 0.0)
-    rate = sampling.sample_rate or plain.sample_rate
-    if rate > plain.sample_rate * (1.0 + 1e-9):
+    rate = sampling.sample_rate or own
+    if rate > own * (1.0 + 1e-9):
         raise ResultError(
-            f"the run has {plain.sample_rate:g} samples a second, the record is to have {rate:g}; "
+            f"the run has {own:g} samples a second, the record is to have {rate:g}; "
             "simulate it with a higher sample_rate"
         )
     values = {"force": plain.force, **_others(run, plain)}
@@ -86,7 +88,7 @@ def measure(
     for name, stream in zip(values, streams, strict=True):
         if name not in sensors:
             continue
-        slow = sensors[name].response(values[name], plain.sample_rate)
+        slow = sensors[name].response(values[name], own)
         found[name] = sensors[name].readings(np.interp(time, plain.time, slow), stream, time)
     known = ["stiffness", "drive_velocity", "mass"]
     if "load" not in found or not np.ptp(values["load"]) > 0.0:  # no number states a varying load

@@ -15,6 +15,7 @@ from stiction.trajectory import Trajectory
 
 BLOCK = 2**17  # samples taken at once from what can be sliced, 1 MB
 AT_ONCE = 2**18  # samples in the windows that are transformed at once, 2 MB
+UNEVEN = 0.1  # of a step between two samples: more than times that are rounded differ by
 
 
 def spectrum(force: Floats) -> tuple[Floats, float]:
@@ -212,9 +213,25 @@ def rate_spectrogram(
     See `spectrogram`; `width` is the width of the window, s, and `steps` windows overlap at any
     time.
     """
-    times = run.samples["time"]
-    rate = (len(times) - 1) / (times[-1] - times[0])
+    start = float(run.samples["time"][0])
     found = spectrogram(
-        run.samples[f"v_{axis}"], rate, width=width, step=width / steps, start=float(times[0])
+        run.samples[f"v_{axis}"], even_rate(run), width=width, step=width / steps, start=start
     )
     return found.assign_attrs(units="m/s", long_name=f"amplitude of v_{axis}")
+
+
+def even_rate(run: Trajectory) -> float:
+    """Return the sample rate of a run, Hz.
+
+    A run that was given up has its last sample where it ended, too soon after the one before.
+
+    Raises
+    ------
+    ResultError
+        If it is sampled once, or at uneven times.
+    """
+    steps = np.diff(run.samples["time"])
+    usual = steps[:-1] if len(steps) > 1 else steps
+    if not len(steps) or max(np.ptp(usual), steps[-1] - usual[0]) > UNEVEN * usual[0]:
+        raise ResultError("the run is sampled once or at uneven times; simulate it at a rate")
+    return float(1.0 / steps.mean())
