@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.levels import levels
+from stiction.analysis.motion.changes.shared import shared_change
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import Friction
@@ -31,6 +32,7 @@ class Drift(NamedTuple):
     start : when it is seen to begin, s: a force without cycles loads before its second half.
     sure : whether there is one; stands_out : whether it is so large that it is worth a sentence.
     likely : the rate at which peaks and troughs change alike, perhaps by chance, N/s; or 0.
+    shared : by how much they are off on average if any change that they share is the zero, N.
     """
 
     rate: float
@@ -40,6 +42,7 @@ class Drift(NamedTuple):
     stands_out: bool
     sure: bool = False
     likely: float = 0.0
+    shared: float = 0.0
 
     @property
     def possible(drift) -> float:
@@ -53,7 +56,10 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     The standard error allows for neighbours that deviate alike. A force that stays at several
     levels changes from one to the next, and shows none.
     """
+    shared = 0.0
     if len(cycles) >= FEWEST_CYCLES:
+        times = float(record.time[0]), cycles["peak_time"]
+        shared = shared_change(*times, cycles["peak"], cycles["trough"])
         at = 0.5 * (cycles["peak_time"] + cycles["trough_time"])
         middle = 0.5 * (cycles["peak"] + cycles["trough"])
         start = float(record.time[0])
@@ -70,7 +76,7 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     large = abs(change) > WORTH * abs(float(middle.mean()))
     sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
     likely = 0.0 if sure else _likely_rate(cycles)
-    return Drift(rate, error, change, start, bool(large and sure), bool(sure), likely)
+    return Drift(rate, error, change, start, bool(large and sure), bool(sure), likely, shared)
 
 
 def _likely_rate(cycles: CycleTable) -> float:
@@ -118,7 +124,7 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     at that time.
     """
     rate = drift.possible
-    if rate == 0.0:
+    if rate == drift.shared == 0.0:
         return friction
     first = float(record.time[0])
     middle = peak = 0.5 * (drift.start + float(record.time[-1]))
@@ -129,7 +135,10 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     if friction.break_away is not None:
         broken = float(record.time[np.argmax(record.force >= friction.break_away.force)])
     lasts = {"break_away": broken, "static": peak, "kinetic": middle}
-    return friction.with_errors(**{name: rate * (at - first) for name, at in lasts.items()})
+    further = {name: rate * (at - first) for name, at in lasts.items()}
+    for name in ("static", "kinetic"):
+        further[name] = max(further[name], drift.shared)
+    return friction.with_errors(**further)
 
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.motion.changes.shared import LASTS, _shapes, _shifts, shared_change
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts.warnings import _drift
@@ -16,6 +17,7 @@ from stiction.analysis.motion.regime.kinds import (
     STICK_SLIP,
     TRANSITIONAL,
 )
+from stiction.analysis.signals.correlated_noise import standard_error
 
 RATE, BEGIN = -0.01, 100.0  # N/s, s
 KNOWN = Drift(RATE, 1e-4, 0.0, BEGIN, stands_out=False, sure=True)
@@ -148,3 +150,92 @@ def test_a_force_at_several_levels_shows_no_drift():
         record = st.Record(time=time, force=force + noise)
         drift = find_drift(record, swings(record).lasting)
         assert np.isfinite(drift.error) == drift.sure == known
+
+
+SHAPES = {
+    "settles": lambda way: 1.0 - np.exp(-way / 0.2),
+    "jumps": lambda way: 1.0 * (way > 0.3),
+    "comes back": lambda way: np.sin(np.pi * way),
+}
+SCATTER = 0.05  # N
+
+
+def slips(number, shape, count=30, size=0.3):
+    """Return peaks about 6 N, troughs about 5 N, and what a zero of that shape adds to each (N)."""
+    random = np.random.default_rng([7, number])
+    at = np.arange(1.0, count + 1.0)
+    zero = size * shape(at / count)
+    peak, trough = ([6.0], [5.0]) + SCATTER * random.normal(size=(2, count))
+    return at, peak + zero, trough + zero, zero
+
+
+@pytest.mark.parametrize("shape", SHAPES.values(), ids=SHAPES.keys())
+def test_errors_hold_a_zero_that_does_not_change_steadily(shape):
+    held = []
+    for number in range(50):
+        at, peak, trough, _ = slips(number, shape)
+        error = np.hypot(shared_change(0.0, at, peak, trough), standard_error(peak))
+        held.append(abs((peak - 6.0).mean()) < 2.0 * error)
+    assert np.mean(held) > 0.9  # of the records, whose mean is off by 0.1 to 0.25 N
+
+
+def test_peaks_and_troughs_that_scatter_by_themselves_share_hardly_a_change():
+    without = [shared_change(0.0, *slips(number, np.zeros_like)[:3]) for number in range(50)]
+    error = SCATTER / 30.0**0.5  # of the mean of the peaks
+    assert np.median(without) < error
+    assert np.mean(np.array(without) > 2.0 * error) < 0.1
+
+
+def test_friction_that_changes_the_drop_alone_is_not_shared():
+    # static friction settles, and the mass swings about a constant kinetic one
+    shares = []
+    for number in range(20):
+        at, peak, trough, grown = slips(number, SHAPES["settles"])
+        shares.append(shared_change(0.0, at, peak, trough - 2.0 * grown))
+    assert np.median(shares) < 0.2 * grown.mean()
+    assert shared_change(0.0, at[:3], peak[:3], trough[:3]) == 0.0
+
+
+def test_shift_is_that_of_the_normal_distribution():
+    """The twin: change and noise as one covariance each, and a level by least squares."""
+    at, peak, *_ = slips(1, SHAPES["settles"], count=7)
+    shapes, sizes = _shapes(at / at[-1]), np.array([0.0, 0.7, 5.0])
+    square, likely = _shifts(peak, shapes, sizes)
+    one, mean, twin = np.ones(7), np.full(7, 1.0 / 7.0), np.zeros((2, *square.shape))
+    for index in np.ndindex(square.shape):
+        noise = LASTS[index[0]] ** np.abs(np.subtract.outer(np.arange(7), np.arange(7)))
+        change = sizes[index[2]] ** 2 * shapes[index[1]]
+        inverse = np.linalg.inv(noise + change)
+        total = one @ inverse @ one
+        left = peak - one @ inverse @ peak / total
+        gain = mean @ change @ inverse
+        variance = mean @ change @ mean - gain @ change @ mean + (gain @ one) ** 2 / total
+        chi = left @ inverse @ left
+        twin[0][index] = (gain @ left) ** 2 + variance * chi / 6.0
+        logs = np.linalg.slogdet(noise + change)[1] + np.log(total) + 6.0 * np.log(chi)
+        twin[1][index] = -0.5 * logs
+    assert square == pytest.approx(twin[0], rel=1e-6, abs=1e-12)
+    assert likely == pytest.approx(twin[1], rel=1e-6)
+
+
+def test_friction_has_the_error_of_a_zero_that_settles():
+    shared = KNOWN._replace(sure=False, shared=0.2)
+    assert further(LOADED, 4, shared) == pytest.approx((0.0, 0.2, 0.2))
+    assert further(LOADED, 4, shared._replace(sure=True)) == pytest.approx((0.05, 0.305, 0.325))
+    at, peak, trough, zero = slips(1, SHAPES["settles"])
+    time = np.linspace(0.0, 30.7, 3071)
+    corners = np.stack([at - 0.1, at], axis=1).ravel(), np.stack([peak, trough], axis=1).ravel()
+    noise = 0.005 * np.random.default_rng(3).normal(size=len(time))
+    found = st.analyse(st.Record(time=time, force=np.interp(time, *corners) + noise))
+    off = found.friction.static.force - (peak - zero).mean()
+    assert 0.15 < off < 2.0 * found.friction.static.error
+    assert any(each.startswith("Peaks and troughs change alike") for each in found.warnings)
+
+
+@pytest.mark.parametrize(("share", "told"), [(0.95, False), (1.05, True)])
+def test_a_change_that_is_not_steady_is_told_from_1_percent_of_the_peaks_on(share, told):
+    drift = KNOWN._replace(sure=False, shared=share * 0.01 * 6.0)
+    [*said] = _drift(LOADED, drift, STICK_SLIP, table([6.0, 6.01, 5.99, 6.0], [4.0] * 4))
+    assert ["not steadily" in each for each in said] == [True] * told
+    scattered = table([5.5, 6.5, 5.5, 6.5], [4.0] * 4)
+    assert not [*_drift(LOADED, drift, STICK_SLIP, scattered)]

@@ -35,6 +35,7 @@ from stiction.analysis.motion.metadata import (
 from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import ACROSS, Record, across_force
 from stiction.analysis.signals.clipping import FlatEnd
+from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.text.quantity_text import percent
 from stiction.text.suggestion import Suggestion
@@ -299,12 +300,18 @@ def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Itera
             f"coefficients with it. If it is the load cell, {remedy}; in Python, analyse "
             "st.analysis.detrend(record)."
         )
-    if not drift.likely or not len(cycles):
+    if drift.stands_out or not len(cycles):
         return
-    change = abs(drift.likely) * float(record.time[-1] - record.time[0])
-    if change > WORTH * abs(float(cycles["peak"].mean())):
+    worth = WORTH * abs(float(cycles["peak"].mean()))
+    if abs(drift.likely) * float(record.time[-1] - record.time[0]) > worth:
         yield (
             f"Peaks and troughs change alike, by {in_words(drift.likely, 'N/s', 2)}: "
             f"{len(cycles)} cycles cannot tell whether by chance. The errors of friction allow for "
             "a zero of the load cell that drifts so; a record without contact would show it."
+        )
+    elif drift.shared > max(0.5 * worth, ERRORS_95 * standard_error(cycles["peak"])):
+        yield (
+            "Peaks and troughs change alike, but not steadily. The errors of friction allow for a "
+            "zero of the load cell that does so, as where it settles. Then forces are off by about "
+            f"{in_words(drift.shared, 'N', 2)} on average. A record without contact would show it."
         )
