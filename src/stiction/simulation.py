@@ -15,6 +15,7 @@ from stiction.arrays import Floats
 from stiction.drive.procedures import end
 from stiction.errors import STATUSES, DescriptionError, Fault, Status, echo
 from stiction.friction import has_state, states
+from stiction.result.file import SHORTEST
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
 from stiction.solver.accuracy import tolerance
 from stiction.solver.compilation.refusal import REFUSED, reasons
@@ -30,7 +31,7 @@ from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()
 MOST_STEPS = 100_000_000
-ROUNDING = 1e-12  # relative, of a time that is the end
+ROUNDING = 1e-12  # of a duration: a time that is nearer to the end is the end
 
 
 def simulate(
@@ -128,8 +129,7 @@ def simulate(
         raise DescriptionError.of("times", "take the place of sample_rate; give one of the two")
     start = initial or PAPERS
     if duration is None:
-        ends = time_to_end(slider, start) if times is None else read_times(times)[-1] - start.time
-        duration = float(ends)
+        duration = time_to_end(slider, start) if times is None else time_to_last(times, start)
     given: dict[str, Any] = {
         "duration": duration,
         "sample_rate": sample_rate,
@@ -291,13 +291,23 @@ def own_times(description: Description, times: ArrayLike) -> Floats:
     found = read_times(times)
     start = description.initial.time
     end = start + description.run.duration
-    if found[0] < start or found[-1] > end + ROUNDING * description.run.duration:
+    rounding = max(ROUNDING * description.run.duration, 4.0 * np.spacing(end))
+    if found[0] < start - rounding or found[-1] > end + rounding:
         raise DescriptionError.of(
             "times",
             f"reach from {in_words(found[0], 's')} to {in_words(found[-1], 's')}, the run from "
             f"{in_words(start, 's')} to {in_words(end, 's')}",
         )
-    return np.minimum(found, end)
+    return ascending(np.clip(found, start, end))
+
+
+def time_to_last(times: ArrayLike, initial: Initial) -> float:
+    """Return the time from the start of a run to the last of the times of its samples, s."""
+    last = float(read_times(times)[-1])
+    if not last > initial.time:
+        ends = f"end at {in_words(last, 's')}, the run starts at {in_words(initial.time, 's')}"
+        raise DescriptionError.of("times", f"{ends}; give a duration")
+    return last - initial.time
 
 
 def read_times(times: Any) -> Floats:
@@ -306,9 +316,14 @@ def read_times(times: Any) -> Floats:
         found = as_numbers(samples_to_si(times, unit_on(times) or TIME.unit, TIME))
     except ValueError as error:
         raise DescriptionError.of("times", str(error)) from None
-    if not len(found) or not np.isfinite(found).all() or (np.diff(found) <= 0.0).any():
+    return ascending(found)
+
+
+def ascending(times: Floats) -> Floats:
+    """Return times of samples, or say that the file of a run cannot hold them."""
+    if not len(times) or not np.isfinite(times).all() or (np.diff(times) <= SHORTEST).any():
         raise DescriptionError.of("times", "must be finite numbers, at least one, ascending")
-    return found
+    return times
 
 
 def sample_times(start: float, duration: float, rate: float) -> np.ndarray:

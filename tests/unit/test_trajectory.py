@@ -69,6 +69,13 @@ def test_times_carry_a_unit_and_tell_the_duration():
     assert own.description.run.duration == pytest.approx(3e-3, rel=1e-15)
 
 
+@pytest.mark.parametrize("start", [81.06, 881.58, 1e12 / 3.0])
+def test_times_at_the_ends_may_differ_from_them_by_rounding(start):
+    times = [np.nextafter(start, 0.0), start + 0.5, np.nextafter(start + 1.0, np.inf)]
+    own = st.simulate(PAPER, 1.0, times=times, initial=st.Initial(time=start))
+    assert own.samples["time"].tolist() == [start, start + 0.5, start + 1.0]
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
@@ -81,6 +88,10 @@ def test_times_carry_a_unit_and_tell_the_duration():
         ({"times": [-1.0, 0.1]}, "from -1 s to 100 ms, the run from 0 s to 100 ms"),
         ({"times": [0.1, 1.0], "duration": "0.5 s"}, "to 1 s, the run from 0 s to 500 ms"),
         ({"times": [0.1], "sample_rate": 10.0}, "one of the two"),
+        ({"times": [0.0]}, "end at 0 s, the run starts at 0 s; give a duration"),
+        ({"times": [0.5], "initial": st.Initial(time=2.0)}, "end at 500 ms, the run starts at 2 s"),
+        ({"times": [0.0, 1e-150, 1.0]}, "ascending"),  # such a file could not be read back
+        ({"times": [1.0, np.nextafter(1.0, 2.0)], "duration": 1.0}, "ascending"),
     ],
     ids=str,
 )
