@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.protocols.measured_drive import measured_stretches
 from stiction.analysis.record import Record
-from stiction.arrays import Floats
+from stiction.arrays import Floats, Indices
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion
 
@@ -25,6 +25,9 @@ CHANGES = 0.05  # of the larger of two velocities: a drive that is to keep to on
 SOON = 0.25  # of the stretch at the new velocity. So soon come a quarter of all cycles by chance
 MOST = 0.75  # of all swings: then none of them is a cycle of stick-slip
 NEAR = 0.02  # of a swing: noise places its peak no better
+# Times that a drive becomes faster again in a swing: one that moves in short steps does so more
+# often, and the spring is loaded over many of them
+AGAIN = 2
 
 
 class VelocityJump(NamedTuple):
@@ -61,10 +64,19 @@ def made_by_jumps(swings: CycleTable, jumps: list[VelocityJump]) -> bool:
     """Return whether jumps of the drive's velocity make the swings of a force: most, or all."""
     if not jumps or not len(swings):
         return False
+    if np.median(_times_faster(swings, jumps)) > AGAIN:
+        return False
     near = NEAR * swings["period"]
     peaks = _soon_after(swings["peak_time"], near, jumps, rises=True)
     troughs = _soon_after(swings["trough_time"], near, jumps, rises=False)
     return bool(np.mean(peaks | troughs) >= MOST)
+
+
+def _times_faster(swings: CycleTable, jumps: list[VelocityJump]) -> Indices:
+    """Return how often the drive becomes faster in each swing, in one jump or several."""
+    before = [False, *(each.rises for each in jumps[:-1])]
+    faster = [each.time for each, rose in zip(jumps, before, strict=True) if each.rises > rose]
+    return np.searchsorted(faster, swings["trough_time"]) - np.searchsorted(faster, swings["start"])
 
 
 def _soon_after(

@@ -6,7 +6,9 @@ from benchmarks.explore.draw import Draw
 from tests.drawn import SEED
 
 import stiction as st
-from stiction.analysis.motion.changes.velocity import velocity_jumps
+from stiction.analysis.motion.changes.velocity import VelocityJump, made_by_jumps, velocity_jumps
+from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.cycles import swings
 
 STEPS = ([1, 10, 1, 10, 1], [1, 10, 1, 10, 1, 10, 1], [30, 1, 100, 3], [100, 10, 3, 30], [3, 1, 10])
 
@@ -97,12 +99,64 @@ def test_stick_slip_is_the_same_whatever_the_measured_drive_does(kind):
 
 def test_a_jump_has_a_time_an_end_and_a_sign():
     """The drive goes backwards, to and by its own sign; a change by 3 % is not a jump."""
-    time, way, _ = drive_of([1e-6, 1e-5, 0.97e-5, 1e-6], 1e-3, 2000)
+    time, way, _ = drive_of([1e-6, 1e-5, 0.97e-5, 1e-6, 1.1e-6], 1e-3, 2000)
     record = st.Record(time=time, force=np.sin(time), drive_position=-way)
-    up, down = velocity_jumps(record)
+    up, down, last = velocity_jumps(record)
     assert up.rises
     assert not down.rises
     assert up[:2] == pytest.approx((1000.0, 1100.0), rel=1e-3)
-    assert down[:2] == pytest.approx((1203.1, time[-1]), rel=1e-3)
+    assert down[:2] == pytest.approx((1203.1, 2203.1), rel=1e-3)
+    assert last[:2] == pytest.approx((2203.1, time[-1]), rel=1e-3)
+    known = record.model_copy(update={"slip_speed": np.ones(len(time))})
+    assert velocity_jumps(known) == []  # then a rest is seen
     run = st.simulate(st.presets.nakano_popov_2020(), "1 s", sample_rate="1 kHz")
     assert not velocity_jumps(st.analysis.record_of(run))
+
+
+@pytest.mark.parametrize("steps", [3.7, 10.3, 30.7])
+@pytest.mark.parametrize("moves", [0.1, 0.4])
+def test_stick_slip_by_a_drive_that_moves_in_short_steps_is_seen(steps, moves):
+    """The spring is loaded while it moves: each peak comes soon after one of many jumps."""
+    time = np.arange(0.0, 5.0 * steps, 0.02)
+    way = np.floor(time) + np.minimum(time % 1.0 / moves, 1.0)
+    noise = 3e-3 * np.random.default_rng(1).standard_normal(len(time))
+    record = st.Record(time=time, force=1.0 + 0.3 * (way / steps % 1.0) + noise, drive_position=way)
+    assert len(velocity_jumps(record)) > 30
+    alone = record.model_copy(update={"drive_position": None})
+    assert len(st.analysis.find_cycles(alone)["period"]) >= 3
+    assert st.analysis.find_cycles(record).equals(st.analysis.find_cycles(alone))
+
+
+@pytest.mark.parametrize(
+    ("peaks", "troughs", "made"),
+    [
+        ([120.0, 320.0, 520.0], [190.0, 390.0, 590.0], True),
+        ([130.0, 330.0, 530.0], [190.0, 390.0, 590.0], False),  # a quarter of each stretch is soon
+        ([180.0, 380.0, 580.0], [220.0, 420.0, 620.0], True),
+        ([220.0, 420.0, 620.0], [310.0, 510.0, 690.0], False),  # jumps of the other sign
+        ([20.0, 40.0, 60.0], [30.0, 50.0, 70.0], False),  # before all jumps
+        ([120.0, 320.0, 520.0, 660.0], [190.0, 390.0, 590.0, 690.0], True),
+        ([120.0, 320.0, 560.0, 660.0], [190.0, 390.0, 590.0, 690.0], False),  # half of them
+        ([320.0, 720.0], [480.0, 880.0], True),  # a second jump up in each makes little
+    ],
+)
+def test_most_swings_begin_soon_after_jumps_that_make_them(peaks, troughs, made):
+    jumps = [
+        VelocityJump(100.0 * number, 100.0 * number + 100.0, number % 2 == 1)
+        for number in range(1, 9)
+    ]
+    peak, trough = np.array(peaks), np.array(troughs)
+    start = np.append(peak[0] - 20.0, trough[:-1])
+    columns = {"start": start, "peak_time": peak, "trough_time": trough, "period": trough - start}
+    assert made_by_jumps(CycleTable(columns, 0.0), jumps) is made
+    assert not made_by_jumps(CycleTable(columns, 0.0), [])
+
+
+def test_swings_that_jumps_make_and_that_die_out_are_no_settling_either():
+    time, way, speed = drive_of([1e-6, 1e-5] * 5, 1e-3, 500)
+    stretch = np.minimum((way / 1e-3).astype(int), 9)
+    away = np.where(speed > 2e-6, 1.0, -1.0) * 0.5**stretch * np.exp(-(way / 1e-4 % 10.0))
+    record = st.Record(time=time, force=10.0 + away, drive_position=way)
+    alone = record.model_copy(update={"drive_position": None})
+    assert swings(alone).dying
+    assert st.analysis.classify(record).evidence["driven"] == len(swings(alone).table)
