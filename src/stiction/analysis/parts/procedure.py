@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from contextlib import suppress
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -26,37 +27,43 @@ TWO_AXES = (
     "State cell_angle to have them along one axis."
 )
 
-# Of each test: its rows, attributes of the analysis or of each of its parts, and its results, with
-# their units
-ROWS = {
-    "velocity-steps": {
-        **{"time": "s", "before": "m/s", "after": "m/s", "steady_before": "1", "steady_after": "1"},
-        **{"peak": "1", "a_minus_b": "1", "a_minus_b_error": "1", "a": "1", "a_error": "1"},
-        **{"b": "1", "b_error": "1", "D_c": "m", "D_c_error": "m", "law": ""},
-    },
-    "healing": {
-        **{"hold": "s", "steady": "1", "relaxed": "1", "peak": "1", "gain": "1"},
-        "peak_error": "1",
-    },
-    "hysteresis": {"area": "J", "width": "m", "friction": "1"},
-    "load-dependence": {"load": "N", "force": "N"},
-}
-PARTS = {"velocity-steps": "steps", "hysteresis": "loops"}
-EACH = {  # what a row is; a hold has its duration in a column of that name
-    **{"velocity-steps": "step", "healing": "number", "hysteresis": "loop"},
-    "load-dependence": "level",
-}
-RESULTS = {
-    "velocity-steps": {"stiffness": "1", "trend": "1/m", "trend_error": "1/m"},
-    "healing": {
-        **{"per_decade": "1", "per_decade_error": "1"},
-        **{"at_one_second": "1", "at_one_second_error": "1"},
-    },
-    "hysteresis": {},
-    "load-dependence": {
-        **{"coefficient": "1", "error": "1", "adhesion": "N", "adhesion_error": "N"},
-    },
-}
+
+class ColumnsOfTest(NamedTuple):
+    """Units of the numbers of a test by name: attributes of its analysis, or of each of its parts.
+
+    Parameters
+    ----------
+    row : str
+        What a row of its table is.
+    rows, results : dict
+        Columns of the table, and what follows from all rows.
+    parts : str
+        Which attribute holds the rows, an object each; '' where each column is an attribute.
+    """
+
+    row: str
+    rows: dict[str, str]
+    results: dict[str, str]
+    parts: str = ""
+
+
+TESTS = {  # the first that suits a run is its test
+    "velocity-steps": ColumnsOfTest("step", {
+        "time": "s", "before": "m/s", "after": "m/s", "steady_before": "1", "steady_after": "1",
+        "peak": "1", "a_minus_b": "1", "a_minus_b_error": "1", "a": "1", "a_error": "1",
+        "b": "1", "b_error": "1", "D_c": "m", "D_c_error": "m", "law": "",
+    }, {"stiffness": "1", "trend": "1/m", "trend_error": "1/m"}, "steps"),
+    "healing": ColumnsOfTest("number", {  # a hold has its duration in a column of that name
+        "hold": "s", "steady": "1", "relaxed": "1", "peak": "1", "gain": "1", "peak_error": "1",
+    }, {
+        "per_decade": "1", "per_decade_error": "1",
+        "at_one_second": "1", "at_one_second_error": "1",
+    }),
+    "hysteresis": ColumnsOfTest("loop", {"area": "J", "width": "m", "friction": "1"}, {}, "loops"),
+    "load-dependence": ColumnsOfTest("level", {"load": "N", "force": "N"}, {
+        "coefficient": "1", "error": "1", "adhesion": "N", "adhesion_error": "N",
+    }),
+}  # fmt: skip
 
 
 def find(found: Analysis) -> Any:
@@ -67,7 +74,7 @@ def find(found: Analysis) -> Any:
     """
     source = found.source
     if isinstance(source, Trajectory):
-        its = tuple(name.replace("-", "_") for name in ROWS)
+        its = tuple(name.replace("-", "_") for name in TESTS)
         return _first(source, its) if variations(source) else None
     measured = source.drive_position is not None and source.normal_load is not None
     if not measured or found.regime.kind == STICK_SLIP:
@@ -116,10 +123,12 @@ def tables(found: Analysis) -> dict[str, xr.Dataset]:
     if its is None:
         return {}
     name = name_of(its)
-    each, columns = EACH[name], _columns(its)
-    count = len(next(iter(columns.values()))[0])
-    table = {key: (each, *column) for key, column in columns.items()}
-    return {name: xr.Dataset(table, {each: np.arange(1, count + 1)})}
+    row = TESTS[name].row
+    table = {
+        key: (row, values, {"units": unit} if unit else {}) for key, values, unit in _columns(its)
+    }
+    count = len(next(iter(table.values()))[1])
+    return {name: xr.Dataset(table, {row: np.arange(1, count + 1)})}
 
 
 def numbers(found: Analysis) -> dict[str, Any]:
@@ -130,25 +139,23 @@ def numbers(found: Analysis) -> dict[str, Any]:
     name = name_of(its)
     results = {
         key: {"value": number(getattr(its, key)), "unit": unit}
-        for key, unit in RESULTS[name].items()
+        for key, unit in TESTS[name].results.items()
     }
-    columns = {
-        key: {"values": [_for_json(each) for each in values], **units}
-        for key, (values, units) in _columns(its).items()
+    rows = {
+        key: {"values": [_for_json(each) for each in values], "unit": unit}
+        for key, values, unit in _columns(its)
     }
-    return {"procedure": {"test": name, **results, "rows": columns}}
+    return {"procedure": {"test": name, **results, "rows": rows}}
 
 
-def _columns(its: SectionReport) -> dict[str, tuple[list[Any], dict[str, str]]]:
-    """Return each column of a test's table: its values, and its unit where it has one."""
-    name = name_of(its)
-    parts = getattr(its, PARTS[name]) if name in PARTS else None
-    columns = {}
-    for key, unit in ROWS[name].items():
+def _columns(its: SectionReport) -> Iterator[tuple[str, list[Any], str]]:
+    """Yield the columns of a test's table: name, values, and unit; '' where it has none."""
+    test = TESTS[name_of(its)]
+    parts = getattr(its, test.parts) if test.parts else None
+    for key, unit in test.rows.items():
         values = getattr(its, key) if parts is None else [getattr(each, key) for each in parts]
         if values is not None:
-            columns[key] = (list(values), {"units": unit} if unit else {})
-    return columns
+            yield key, list(values), unit
 
 
 def _for_json(value: Any) -> Any:

@@ -7,7 +7,7 @@ import pytest
 
 import stiction as st
 from stiction.analysis.export import numbers, tables
-from stiction.analysis.parts.procedure import EACH, RESULTS, ROWS
+from stiction.analysis.parts import procedure
 from stiction.plotting.analysis.overview import figures
 
 p = st.protocols
@@ -45,7 +45,7 @@ def test_a_report_of_a_test_writes_its_rows(name):
         parts = getattr(its, {"velocity-steps": "steps", "hysteresis": "loops"}.get(name, ""), None)
         known = getattr(its, key) if parts is None else [getattr(each, key) for each in parts]
         assert column.values.tolist() == list(known)
-        assert stored["rows"][key].get("units") == column.attrs.get("units")
+        assert stored["rows"][key]["unit"] == column.attrs.get("units", "")
         assert len(stored["rows"][key]["values"]) == len(known)
     for key, each in stored.items():
         if key not in ("test", "rows"):
@@ -53,7 +53,7 @@ def test_a_report_of_a_test_writes_its_rows(name):
 
 
 def test_each_test_that_a_report_finds_is_written():
-    assert [*ROWS] == [*RESULTS] == [*EACH] == [*TESTS]
+    assert [*procedure.TESTS] == [*TESTS]
 
 
 def test_a_report_of_no_test_writes_none():
