@@ -6,7 +6,7 @@ from tests.drawn import inside
 
 import stiction as st
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.loading import loaded_until, loading_rate
+from stiction.analysis.motion.loading import loaded_until, loading_rate, rounding_of_rates
 
 TIME = np.arange(0.0, 12.0, 2e-3)
 
@@ -83,3 +83,13 @@ def test_a_loading_by_a_drive_whose_velocity_varies_counts_as_a_whole(turns):
         angle = 2.0 * np.pi * turns * time + phase
         force = time + 0.3 * (np.cos(phase) - np.cos(angle)) / (2.0 * np.pi * turns)
         assert loaded_until(time, force, start, force[:1], end) == end
+
+
+def test_noise_breaks_up_what_the_steps_of_a_converter_make_alike():
+    ramp = np.linspace(0.0, 1.0, 1000)
+    coarse, fine = (rounding_of_rates(step * np.rint(ramp / step), 1.0) for step in (0.1, 0.05))
+    assert coarse == pytest.approx(2.0**1.5 * fine)
+    noise = 0.1 * np.random.default_rng(1).standard_normal(1000)
+    assert rounding_of_rates(0.1 * np.rint((ramp + noise) / 0.1), 1.0) < 0.1 * coarse
+    assert rounding_of_rates(ramp + noise, 1.0) == 0.0
+    assert rounding_of_rates(0.1 * np.rint(ramp / 0.1), 0.0) == 0.0

@@ -20,6 +20,7 @@ from stiction.analysis.motion.metadata import (
     SWING,
     StatedQuantity,
     _drive_velocity,
+    _loading_rate,
     _median_error,
     compare_metadata,
 )
@@ -466,3 +467,10 @@ def test_the_error_of_a_rate_holds_what_few_steps_of_a_converter_make():
         off += [abs(each.found - true) / each.error for each in its]
     assert len(off) >= 25
     assert np.mean(np.array(off) > 2.0) < 0.1
+    assert np.mean(np.square(off)) ** 0.5 > 0.7  # they are not much smaller than their errors
+
+
+@pytest.mark.parametrize(("found", "agrees"), [(1.3, True), (1.9, True), (4.0, False)])
+def test_a_single_rate_differs_by_what_drift_and_steps_make_of_it(found, agrees):
+    """It has no scatter, so that its error is unknown."""
+    assert _loading_rate(np.array([found]), 1.0, 0.4, 0.1).agrees is agrees

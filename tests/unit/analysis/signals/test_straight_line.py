@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from stiction.analysis.signals.straight_line import line, slope_in_lasting_noise
+from stiction.analysis.signals.correlated_noise import error_of_few
+from stiction.analysis.signals.straight_line import LASTING, line, slope_in_lasting_noise
 
 
 def test_numbers_and_errors_are_those_of_the_normal_equations():
@@ -62,3 +63,27 @@ def test_the_errors_of_a_few_alike_neighbours_hold_the_slope(count, alike):
     off = np.abs(found[:, 0]) / found[:, 1]
     assert np.mean(off < 2.0) > 0.93  # by the correlation of the deviations 0.77 at worst
     assert np.mean(off > 4.0) < 0.02
+
+
+@pytest.mark.parametrize("count", [4, 9])
+def test_a_slope_is_a_mean_by_the_restricted_likelihood_of_each_correlation(count):
+    """With covariances written out, of noise whose innovations have one variance."""
+    x, y = np.arange(float(count)), np.random.default_rng(count).standard_normal(count)
+    design, apart = np.stack([np.ones(count), x], axis=1), np.abs(x[:, None] - x)
+    slopes, variances, likely = [], [], []
+    for alike in LASTING:
+        covariance = alike**apart / (1.0 - alike**2)
+        weights = np.linalg.inv(covariance)
+        normal = design.T @ weights @ design
+        found = np.linalg.solve(normal, design.T @ weights @ y)
+        away = y - design @ found
+        left = away @ weights @ away
+        slopes.append(found[1])
+        variances.append(left / (count - 2.0) * np.linalg.inv(normal)[1, 1])
+        dets = np.linalg.slogdet(covariance)[1] + np.linalg.slogdet(normal)[1]
+        likely.append(-0.5 * (dets + (count - 2.0) * np.log(left)))
+    weight = np.exp(np.array(likely) - max(likely))
+    slope = np.average(slopes, weights=weight)
+    variance = np.average(variances + (np.array(slopes) - slope) ** 2, weights=weight)
+    expected = slope, error_of_few(variance**0.5, count - 2.0)
+    assert slope_in_lasting_noise(x, y) == pytest.approx(expected, rel=1e-9)

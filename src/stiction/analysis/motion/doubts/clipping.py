@@ -44,7 +44,7 @@ def without_cut_off(
         friction = friction._replace(
             break_away=None, missing=friction.missing | {"break_away": reason}
         )
-    cut, what = _cut_off(record, cycles, ends), cut_off(record, cycles, ends)
+    cut, what = _cut_values(record, cycles, ends), cut_off(record, cycles, ends)
     if "largest" in cut and friction.static is not None:
         least = in_words(friction.static.force, "N")
         friction = friction.without_static(f"{what}: it is {least} or more")
@@ -57,11 +57,11 @@ def without_cut_off(
 
 def cut_off(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> str:
     """Return what of the cycles is cut off at ends, in words; '' if nothing is."""
-    cut = _cut_off(record, cycles, ends)
+    cut = _cut_values(record, cycles, ends)
     return f"the {' and '.join(ENDS[name] for name in cut)} are cut off" if cut else ""
 
 
-def _cut_off(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> dict[str, float]:
+def _cut_values(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> dict[str, float]:
     """Return the value (N) of each end, by its name, that the cycles reach."""
     return {each.name: each.value for each in ends if _is_reached(record, cycles, each.value)}
 

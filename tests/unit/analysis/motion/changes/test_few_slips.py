@@ -206,3 +206,16 @@ def test_the_error_of_a_single_fall_holds_how_few_samples_it_has():
         off.append(abs(its["slips_by"] - drop) / its["slips_by_error"])
     assert np.mean(np.array(off) < 2.0) > 0.93
     assert max(off) < 5.0
+
+
+@pytest.mark.parametrize("slides", [0.0, 5.0])
+def test_the_first_slip_is_loaded_from_where_the_force_was_last_as_low_as_its_trough(slides):
+    """It may slide before, at a lower force than that of its slip."""
+    corners = [(0.0, 0.0), (1.0, 0.995), (1.0 + slides, 1.0), (3.0, 3.0), (3.05, 1.505), (4.5, 3.0)]
+    at, force = np.array(corners).T
+    at[3:] += slides
+    time = np.arange(0.0, at[-1], 0.01)
+    found = few_slips(time, np.interp(time, at, force))
+    assert found is not None
+    assert found.begin.value == pytest.approx([1.505], abs=0.01)
+    assert found.begin.time == pytest.approx(slides + found.begin.value, abs=1e-3)
