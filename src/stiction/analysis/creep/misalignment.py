@@ -309,7 +309,10 @@ def turning_creep(phi: float, weakening: float, ratio: float) -> TurningCreep:
     force = COSINE / np.maximum(1.0 + weakening * np.abs(slip), TINY)
     slips = int(np.argmax(force))
     rising, velocity = force[slips:][::-1], (along * slip)[slips:][::-1]
-    return TurningCreep(np.maximum.accumulate(rising), velocity)
+    found = TurningCreep(np.maximum.accumulate(rising), velocity)
+    for each in found:
+        each.setflags(write=False)  # the next call with the same angle returns them again
+    return found
 
 
 @lru_cache(maxsize=1)

@@ -602,6 +602,7 @@ def test_a_mass_slips_where_friction_that_turns_and_weakens_is_largest():
     assert creep.force[-1] == pytest.approx(1.0 - 1.5 * theta**2, abs=2.0 * theta**4)
     assert creep.velocity[-1] == pytest.approx(phi / theta, rel=0.05)
     assert (np.diff(creep.force) >= 0.0).all()
+    assert not any(each.flags.writeable for each in creep)  # a later call returns them again
 
 
 @pytest.mark.parametrize(
