@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,11 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
-from stiction.analysis.signals.correlated_noise import ERRORS_997, error_of_few
+from stiction.analysis.signals.correlated_noise import (
+    ERRORS_997,
+    error_of_few,
+    whole_correlation_time,
+)
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import line, slope_in_lasting_noise
 from stiction.arrays import Floats
@@ -24,6 +29,7 @@ PARTS = 20  # number of means of a force without cycles, over its second half
 MOST_MEANS = 1000  # of the middles of cycles: more would take long
 FEWEST_CYCLES = 4  # cycles that show a drift
 LASTING = 1.0  # of its rate, by which that of the two halves may differ
+Slope = Callable[[Floats, Floats], tuple[float, float]]  # of a line, and its standard error
 
 
 class Drift(NamedTuple):
@@ -57,6 +63,7 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     levels changes from one to the next, and shows none.
     """
     shared = 0.0
+    fit: Slope = slope_in_lasting_noise
     if len(cycles) >= FEWEST_CYCLES:
         times = float(record.time[0]), cycles["peak_time"]
         shared = shared_change(*times, cycles["peak"], cycles["trough"])
@@ -66,15 +73,15 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     elif not len(cycles) and len(record) >= 4 * PARTS and not levels(record):
         half = len(record) // 2
         at, middle = (part_means(each[half:], PARTS) for each in (record.time, record.force))
-        start = float(record.time[half])
+        start, fit = float(record.time[half]), _slope_of_means
     else:
         likely = _likely_rate(cycles)
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
     at, middle = (part_means(each, MOST_MEANS) for each in (at, middle))
-    rate, error = slope_in_lasting_noise(at, middle)
+    rate, error = fit(at, middle)
     change = rate * (float(record.time[-1]) - start)
     large = abs(change) > WORTH * abs(float(middle.mean()))
-    sure = abs(rate) > SURE * error and _goes_on(at, middle, rate)
+    sure = abs(rate) > SURE * error and _goes_on(at, middle, rate, fit)
     likely = 0.0 if sure else _likely_rate(cycles)
     return Drift(rate, error, change, start, bool(large and sure), bool(sure), likely, shared)
 
@@ -141,14 +148,23 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     return friction.with_errors(**further)
 
 
-def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
+def _slope_of_means(at: Floats, force: Floats) -> tuple[float, float]:
+    """Return the slope of a line through means of a force without cycles, and its standard error.
+
+    As many means count as one as noise lasts for, by their deviations: a restricted likelihood as
+    for cycles takes what ends the sliding, such as an unloading, for a sure drift.
+    """
+    found = line(at, force)
+    alike = whole_correlation_time(found.deviations(at, force))
+    return found.slope, error_of_few(found.slope_error * alike**0.5, len(at) / alike - 2.0)
+
+
+def _goes_on(at: Floats, middle: Floats, rate: float, fit: Slope) -> bool:
     """Return whether both halves change at about this rate: a single loading is not drift."""
     if len(at) < 2 * FEWEST_CYCLES:
         return True
     half = len(at) // 2
-    halves = [
-        slope_in_lasting_noise(at[part], middle[part]) for part in (slice(half), slice(half, None))
-    ]
+    halves = [fit(at[part], middle[part]) for part in (slice(half), slice(half, None))]
     (first, first_error), (second, second_error) = halves
     apart = SURE * float(np.hypot(first_error, second_error)) + LASTING * abs(rate)
     return abs(first - second) < apart
