@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 from stiction.errors import echo
 from stiction.text.quantity_text import quantity_text
@@ -102,9 +103,8 @@ def jitter_of(peaks: Floats) -> Uniform:
     >>> jitter_of(np.r_[1.0:2.0:9j]) == JITTER, jitter_of(np.r_[0.9, 1.1, 0.9, 1.1]) == IRREGULAR
     (True, True)
     """
-    number = np.arange(len(peaks))
-    trend = np.polynomial.Polynomial.fit(number, peaks, 1)
-    spread = np.std(peaks - trend(number)) / abs(np.mean(peaks))
+    number = np.arange(float(len(peaks)))
+    spread = np.std(line(number, peaks).deviations(number, peaks)) / abs(np.mean(peaks))
     return IRREGULAR if spread > SPREAD else JITTER
 
 
