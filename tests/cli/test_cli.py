@@ -7,10 +7,13 @@ import signal
 import subprocess
 import sys
 from contextlib import contextmanager
+from functools import partial
+from io import StringIO
 from pathlib import Path
 
 import numpy as np
 import pytest
+from rich.console import Console
 from tests.waiting import INTERRUPTIBLE, PATIENCE, until
 
 import stiction as st
@@ -382,9 +385,32 @@ def test_work_that_lasts_says_so_through_a_pipe(capsys, monkeypatch):
     assert capsys.readouterr() == ("", "")
 
 
-@pytest.mark.parametrize("verb", ["plot", "stability", "map"])
-def test_drawing_is_not_silent(verb, tmp_path, monkeypatch, capsys):
-    """A map of 18 runs said nothing for 12 s."""
+def test_a_terminal_shows_no_percentage_of_work_whose_share_is_not_told(monkeypatch):
+    """An analysis of 4 million samples showed "0 %" for half a minute."""
+    screen = StringIO()
+    terminal = partial(Console, file=screen, force_terminal=True, width=100)
+    monkeypatch.setattr(progress, "Console", lambda **_: terminal())
+    monkeypatch.setattr(progress, "PATIENCE", 0.0)
+    with progress.progress("analysing") as report:
+        until(lambda: "analysing" in screen.getvalue(), "the bar")
+        assert "%" not in screen.getvalue()
+        report(0.25)
+        until(lambda: " 25 %" in screen.getvalue(), "the share")
+
+
+@pytest.mark.parametrize(
+    ("verb", "titles"), [("import", ["reading"]), ("analyse", ["reading", "analysing"])]
+)
+def test_reading_is_not_silent(verb, titles, tmp_path, noted):
+    record = tmp_path / "record.csv"
+    record.write_text("t [s],F [N]\n" + "".join(f"{0.01 * i:.2f},1.0\n" for i in range(50)))
+    assert inside(verb, record) == 0
+    assert noted == titles
+
+
+@pytest.fixture
+def noted(monkeypatch):
+    """Return the titles of all progress that is shown."""
     begun = []
 
     @contextmanager
@@ -393,6 +419,12 @@ def test_drawing_is_not_silent(verb, tmp_path, monkeypatch, capsys):
         yield lambda fraction: None
 
     monkeypatch.setattr(progress, "progress", note)
+    return begun
+
+
+@pytest.mark.parametrize("verb", ["plot", "stability", "map"])
+def test_drawing_is_not_silent(verb, tmp_path, noted):
+    """A map of 18 runs said nothing for 12 s."""
     source = tmp_path / "source"
     slider = st.presets.nakano_popov_2020()
     if verb == "plot":
@@ -404,7 +436,7 @@ def test_drawing_is_not_silent(verb, tmp_path, monkeypatch, capsys):
         axes = {"phi": st.Grid("1 deg", "3 deg", 2)}
         st.sweep(st.Study(base=base, axes=axes, measures=["stick_count"]), source)
     assert inside(verb, source, "-o", tmp_path / "drawn.png") == 0
-    assert begun == ["drawing"]
+    assert noted == ["drawing"]
 
 
 def test_compilation_is_no_measure_of_the_time_left():

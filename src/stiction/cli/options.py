@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from stiction.presets import Preset
     from stiction.system.description import Description
     from stiction.system.slider import Slider
+    from stiction.trajectory import Trajectory
 
 Output = Annotated[Path, Parameter(name=("--output", "-o"))]
 MaybeOutput = Annotated[Path | None, Parameter(name=("--output", "-o"))]
@@ -215,11 +216,19 @@ def library_or_cache(library: Path | None) -> Path:
 
 def record_in(path: Path, measured: RecordOptions | None, trust: bool) -> Record:
     """Read a measured record, or a run as if it was measured."""
-    from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.record import as_record
 
+    return as_record(source_in(path, measured, trust))
+
+
+def source_in(path: Path, measured: RecordOptions | None, trust: bool) -> Trajectory | Record:
+    """Read a run, or a measured record; a bar is shown while that takes long."""
+    from stiction.analysis.measurement.reading import read_source
+    from stiction.cli.progress import progress
+
     said = (measured or RecordOptions()).arguments()
-    return as_record(read_source(path, trust=trust, **said))
+    with progress("reading"):
+        return read_source(path, trust=trust, **said)
 
 
 def record_or_none(

@@ -35,19 +35,24 @@ def progress(title: str) -> Iterator[Callable[[float], None]]:
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(bar_width=20),
-        TextColumn("{task.percentage:>3.0f} %"),
+        TextColumn("{task.fields[share]}"),
         TimeElapsedColumn(),
-        TextColumn("left"),
+        TextColumn("{task.fields[left]}"),
         TimeRemainingColumn(),
         console=console,
         transient=True,
     )
-    task = bar.add_task(title, total=1.0)
+    task = bar.add_task(title, total=None, share="", left="")  # how much it is, is not known yet
+
+    def advance(fraction: float) -> None:
+        share = f"{100 * fraction:3.0f} %"
+        bar.update(task, total=1.0, completed=fraction, share=share, left="left")
+
     timer = Timer(PATIENCE, bar.start)
     timer.daemon = True
     timer.start()
     try:
-        yield lambda fraction: bar.update(task, completed=fraction)
+        yield advance
     finally:
         timer.cancel()
         timer.join()

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import MaybeOutput, RecordOptions, Trust
+from stiction.cli.options import MaybeOutput, RecordOptions, Trust, source_in
 from stiction.cli.terminal import say
 
 
@@ -45,7 +45,6 @@ def analyse(
         report.
     """
     from stiction.analysis.export import write as write_tables
-    from stiction.analysis.measurement.reading import read_source
     from stiction.analysis.parts.cycles import each_cycle
     from stiction.analysis.parts.wording import rows_left_out
     from stiction.analysis.record import Record
@@ -57,7 +56,7 @@ def analyse(
     from stiction.storage.files import make_folder, usable_folder
     from stiction.text.sections import Section
 
-    source = read_source(result, trust=trust, **(measured or RecordOptions()).arguments())
+    source = source_in(result, measured, trust)
     folder = result.with_name(f"{result.stem}-analysis") if output is None else output
     usable_folder(folder)
     with progress("analysing"):
@@ -125,6 +124,7 @@ def import_(
         Write the guess as JSON, too. Example: --json guess.json.
     """
     from stiction.analysis.measurement.reading import read_records
+    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.storage.files import NETCDF, placeable, whole
 
@@ -133,7 +133,8 @@ def import_(
     if json is not None:
         placeable(json)
     said = (measured or RecordOptions()).arguments()
-    records = read_records([file, *files], **said)
+    with progress("reading"):
+        records = read_records([file, *files], **said)
     targets: list[Path] = []
     if output is not None:
         several = len(records) > 1

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import RecordOptions, Trust, record_or_none
+from stiction.cli.options import RecordOptions, Trust, record_or_none, source_in
 from stiction.cli.terminal import note
 
 
@@ -41,12 +41,11 @@ def explore(
     browser
         Open the browser; otherwise the address is printed, and it serves until Ctrl-C.
     """
-    from stiction.analysis.measurement.reading import is_run, read_source
+    from stiction.analysis.measurement.reading import is_run
     from stiction.explorer.door import explore as open_explorer
 
-    said = (measured or RecordOptions()).arguments()
     records = [each for each in source if each.suffix.lower() != ".toml" and not is_run(each)]
-    read = {each: read_source(each, **said) for each in records}
+    read = {each: source_in(each, measured, trust) for each in records}
     if not records:
         record_or_none(None, measured, trust, "name its file")
     opened = [read.get(each, each) for each in source]
