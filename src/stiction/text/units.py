@@ -421,3 +421,20 @@ def with_error(value: float, error: float, unit: str) -> str:
     digit = first_decimal(shown)
     rounded, decimals = round(value / size, digit) + 0.0, max(0, digit)  # no -0
     return f"{rounded:.{decimals}f} ± {shown:.{decimals}f} {name}".rstrip()
+
+
+def at_least(bound: float, error: float, unit: str) -> str:
+    """Return a lower bound, rounded down to the first digit of its error; one above zero only.
+
+    Examples
+    --------
+    >>> at_least(1.10593, 7e-4, "N/s"), at_least(9377.0, 2100.0, "1/s²"), at_least(-0.1, 1.0, "N/s")
+    ('≥ 1.1059 N/s', '≥ 9000 1/s²', 'not determined')
+    """
+    if not bound > 0.0:
+        return "not determined"
+    size, name = suited_unit(bound, unit)
+    smallest = max(min(error, bound), ROUNDING * bound) / size
+    digit = first_decimal(smallest)
+    lower, decimals = floor(bound / size * 10.0**digit) / 10.0**digit, max(0, digit)
+    return f"≥ {lower:.{decimals}f} {name}".rstrip()

@@ -58,14 +58,16 @@ AT_REST, ROUNDING = 0.02, 1e-12  # of the largest force: a reading at rest, and 
 OF_MEDIAN = 1.22  # standard error of a median, over that of the mean without a tenth at each end
 LOADING_RATE, SWING = "stiffness times drive velocity", "stiffness over mass"  # quantities
 BY_RISE, BY_SLIPS = "rate at which the force rises", "duration of its slips"
+BOUNDS = (BY_RISE, BY_SLIPS)  # creep slows a rise; friction that weakens, or a filter, a slip
 
 
 class StatedQuantity(NamedTuple):
     """A quantity as the record shows it, with its standard error, and as it is stated.
 
     NaN where it is not known. The error is that of the scatter, and for the duration of slips of
-    what samples and noise hide; slips that friction makes longer may be farther off than that.
-    `low` and `high` bound the ratio of both where they agree. Where the cycles change once, it is
+    what samples and noise hide. The true value may be above what rises and slips show by more than
+    that: they give a lower bound. `low` and `high` bound the ratio of both where they agree. Where
+    the cycles change once, it is
     of some of them, a `part` of the record in words: those that start from `begin` on and before
     `end`, s.
     """
@@ -91,6 +93,11 @@ class StatedQuantity(NamedTuple):
     def ratio(self) -> float:
         """Found over stated."""
         return self.found / self.stated if self.stated else nan
+
+    @property
+    def at_least(self) -> float:
+        """The lower bound, two standard errors below what was found; NaN if it is none."""
+        return self.found - ERRORS_95 * self.error if self.how in BOUNDS else nan
 
     @property
     def agrees(self) -> bool | None:

@@ -14,26 +14,27 @@ from stiction.analysis.motion.metadata import (
     StatedQuantity,
 )
 from stiction.analysis.parts.wording import number
-from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.arrays import xr
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words, times, with_error
+from stiction.text.units import at_least, in_words, times, with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 ALLOWED = "possible"  # not the same, but the record gives a bound only, or a rough value
-NUMBERS = ("found", "error", "stated", "ratio")
+DOUBTED = "doubtful"  # so far above a bound that hardly anything explains it
+WRONG, AGREES = "contradicts", "agrees"
+NUMBERS = ("found", "error", "at_least", "stated", "ratio")
 TOLD = (SWING, LOADING_RATE)  # among the warnings
-ROUGH = {  # why a value may be farther from the truth than its error says
+WHY = {  # a value is a lower bound
     BY_SLIPS: (
-        "Stiffness over mass by the motion is rough, its error is that of the scatter alone: "
-        "friction that changes with speed makes a slip last longer than half a free swing, and "
-        "so does a load cell whose filter smears it."
+        "The duration of slips gives a lower bound of stiffness over mass: friction that weakens "
+        "with speed makes a slip last longer than half a free swing, and so does a load cell whose "
+        "filter smears it."
     ),
     BY_RISE: (
-        "The force may rise more slowly than stiffness times drive velocity: the mass creeps. The "
-        "error of its rate is that of the scatter alone."
+        "The rise of the force gives a lower bound of stiffness times drive velocity: while the "
+        "mass creeps, the force rises more slowly."
     ),
 }
 NOT_SHOWN = "not shown"
@@ -48,36 +49,39 @@ def section(found: Analysis) -> Section | None:
     known = {each.name: verdict(each) for each in its if verdict(each) not in ("", NOT_SHOWN)}
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
-    rough = [x.how for x in its if _is_rough(x)]
-    lines += [ROUGH[how] for how in dict.fromkeys(rough) if how in ROUGH]
+    bounds = dict.fromkeys(each.how for each in its if _is_bound(each))
+    lines += [WHY[how] for how in bounds]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
 
-def _is_rough(each: StatedQuantity) -> bool:
-    """Return whether a value is, or may be, farther from the truth than its error says."""
-    apart = each.stated - each.found
-    if each.how == BY_RISE and apart < 0.0:
-        return False  # creep does not make the force rise faster
-    if verdict(each) in ((ALLOWED,) if each.part else (ALLOWED, "")):
-        return True
-    return each.how == BY_RISE and each.agrees is True and apart > ERRORS_997 * each.error
+def _is_bound(each: StatedQuantity) -> bool:
+    """Return whether a value is a lower bound of the true one; not where that stated is below."""
+    return isfinite(each.at_least) and not each.stated < each.at_least
 
 
 def _agreement(known: Mapping[str, str]) -> str:
     """Return which quantities contradict the record as they are stated, in a sentence."""
-    wrong = [name for name, word in known.items() if word == "contradicts"]
-    names = " and ".join(wrong or known)
-    allowed = "does not contradict" if ALLOWED in known.values() else "agrees with"
-    return f"The record {'contradicts' if wrong else allowed} {names} as stated."
+    does = {
+        WRONG: WRONG,
+        DOUBTED: "casts doubt on",
+        ALLOWED: "does not contradict",
+        AGREES: "agrees with",
+    }
+    worst = next(word for word in does if word in known.values())
+    its = [name for name, word in known.items() if word == worst or worst in (ALLOWED, AGREES)]
+    return f"The record {does[worst]} {' and '.join(its)} as stated."
 
 
 def verdict(each: StatedQuantity) -> str:
-    """Return whether the record agrees with a stated value, only allows it, or contradicts it."""
+    """Return whether the record agrees with a stated value, allows, doubts or contradicts it."""
     limit = isnan(each.error)  # of what the record can show, not a value of it
-    if not each.agrees:
-        beyond = NOT_SHOWN if limit and each.unit == "Hz" else "contradicts"
-        return "" if each.agrees is None else beyond
-    return "agrees" if limit or each.is_same else ALLOWED
+    if each.agrees is None:
+        return ""
+    if each.agrees:
+        return AGREES if limit or each.is_same else ALLOWED
+    if limit and each.unit == "Hz":
+        return NOT_SHOWN
+    return DOUBTED if _is_bound(each) else WRONG
 
 
 def _sentence(each: StatedQuantity) -> str:
@@ -96,13 +100,19 @@ def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
     return [
         (
             each.name,
-            with_error(each.found, each.error, each.unit),
+            _shown(each),
             in_words(each.stated, each.unit) if isfinite(each.stated) else "",
             verdict(each),
             each.how,
         )
         for each in its
     ]
+
+
+def _shown(each: StatedQuantity) -> str:
+    if _is_bound(each):
+        return at_least(each.at_least, each.error, each.unit)
+    return with_error(each.found, each.error, each.unit)
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

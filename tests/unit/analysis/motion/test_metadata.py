@@ -25,7 +25,7 @@ from stiction.analysis.motion.metadata import (
     compare_metadata,
 )
 from stiction.analysis.motion.regime.kinds import HARMONIC
-from stiction.analysis.parts.metadata import _is_rough
+from stiction.analysis.parts.metadata import _is_bound
 from stiction.presets.preset import on_a_line
 
 RATE = 2000.0
@@ -64,7 +64,7 @@ def test_a_true_description_is_not_contradicted():
     assert "contradicts" not in said
 
 
-def test_a_rough_value_that_differs_is_possible_and_does_not_agree():
+def test_a_value_that_differs_is_possible_and_does_not_agree():
     true = {"stiffness": STIFFNESS, "drive_velocity": VELOCITY}
     its, said = compare(sawtooth(), mass=MASS / 1.4, **true)
     swing = its["stiffness over mass"]
@@ -111,11 +111,43 @@ def test_slips_in_which_the_force_hesitates_tell_no_mass():
     assert "By the duration of its slips" not in said
 
 
-def test_a_rough_value_is_called_so_where_nothing_is_stated_to_compare_it_with():
+def test_a_bound_is_called_so_where_nothing_is_stated_to_compare_it_with():
     its, said = compare(sawtooth(), stiffness=STIFFNESS, drive_velocity=VELOCITY)
-    assert its["stiffness over mass"].agrees is None
-    assert "Stiffness over mass by the motion is rough" in said
-    assert "The force may rise more slowly" not in said  # the stated rate agrees
+    swing = its["stiffness over mass"]
+    assert swing.agrees is None
+    assert swing.at_least == pytest.approx(swing.found - 2.0 * swing.error, rel=0.02)
+    assert f"≥ {swing.at_least:.0f}"[:4] in said
+    assert "The duration of slips gives a lower bound of stiffness over mass" in said
+
+
+@pytest.mark.parametrize("cut_off", [0.7, 1.5, 4.0])
+@pytest.mark.parametrize("weaker", [0.3, 0.7])
+def test_what_slips_and_rises_show_is_a_bound_behind_filters_and_beside_creep(cut_off, weaker):
+    """Two errors of the scatter hold k/m in 39 of 100 filtered runs, and k V in 29 of 100."""
+    law = st.ExponentialWeakening(mu_0=0.6, mu_inf=0.6 * weaker, v_f="10 mm/s")
+    rig = {"mass": "80 g", "k_x": "2.3 kN/m", "k_y": "0.9 MN/m", "normal_load": "4 N"}
+    slider = st.Slider(**rig, phi="2 deg", friction=law, drive=st.ConstantVelocity("2 mm/s"))
+    run = st.simulate(slider, "10 s", sample_rate="2 kHz")
+    swing = slider.natural_frequency_x
+    filtered = st.measure(run, st.Sensor(noise="1 mN", bandwidth=cut_off * swing), seed=1)
+    known = {"stiffness": 2300.0, "mass": 0.08, "drive_velocity": 0.002, "normal_load": 4.0}
+    its, said = compare(filtered.force, filtered.time, **known)
+    shown = [its[name] for name in (SWING, LOADING_RATE) if name in its]
+    assert shown
+    for each in shown:
+        assert 0.0 < each.at_least < each.stated
+        assert _is_bound(each)
+    assert "contradicts" not in said
+
+
+def test_slips_that_are_far_too_long_make_a_mass_doubtful():
+    """Of a lower bound a larger value is no contradiction."""
+    true = {"stiffness": STIFFNESS, "drive_velocity": VELOCITY}
+    _, said = compare(sawtooth(), mass=MASS / 4.0, **true)
+    assert "The record casts doubt on stiffness over mass as stated" in said
+    row = next(line for line in said.splitlines() if line.startswith("  stiffness over mass"))
+    assert "≥" in row
+    assert "doubtful" in row
 
 
 @pytest.mark.parametrize(
@@ -155,12 +187,12 @@ def test_a_rate_of_loading_contradicts_by_more_than_its_errors(faster, agrees):
     assert rate.agrees is agrees
 
 
-@pytest.mark.parametrize(("found", "rough"), [(0.8, True), (1.11, False)])
-def test_creep_is_no_reason_why_a_force_rises_faster(found, rough):
+@pytest.mark.parametrize(("found", "bound"), [(0.8, True), (1.11, False)])
+def test_creep_is_no_reason_why_a_force_rises_faster(found, bound):
     rate = StatedQuantity(LOADING_RATE, "N/s", found, 0.01, 1.0, 0.48, 1.12, BY_RISE)
     assert rate.agrees
     assert not rate.is_same
-    assert _is_rough(rate) is rough
+    assert _is_bound(rate) is bound
 
 
 def test_the_rest_in_a_vibration_is_not_taken_for_a_heavier_mass():
