@@ -2,42 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.shared import shared_change
+from stiction.analysis.motion.changes.sliding import sliding
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
-from stiction.analysis.signals.correlated_noise import (
-    ERRORS_997,
-    error_of_few,
-    whole_correlation_time,
-)
+from stiction.analysis.signals.correlated_noise import ERRORS_997, error_of_few
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import line, slope_in_lasting_noise
 from stiction.arrays import Floats
 
 SURE, LIKELY = 4.0, ERRORS_997  # standard errors of a drift, in a sentence and in errors alone
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
-PARTS = 20  # number of means of a force without cycles, over its second half
+PARTS = 40  # number of means of a force without cycles, over the second half of its sliding
 MOST_MEANS = 1000  # of the middles of cycles: more would take long
 FEWEST_CYCLES = 4  # cycles that show a drift
-LASTING = 1.0  # of its rate, by which that of the two halves may differ
-Slope = Callable[[Floats, Floats], tuple[float, float]]  # of a line, and its standard error
+LASTING = 0.5  # of its rate, by which that of each half may differ
 
 
 class Drift(NamedTuple):
     """A steady change of the force (N/s), its standard error, and the total change (N).
 
-    start : when it is seen to begin, s: a force without cycles loads before its second half.
+    start : when it is seen to begin, s: without cycles in the second half of the sliding.
     sure : whether there is one; stands_out : whether it is so large that it is worth a sentence.
-    likely : the rate at which peaks and troughs change alike, perhaps by chance, N/s; or 0.
+    likely : the rate at which peaks and troughs, or sliding, change perhaps by chance, N/s; or 0.
     shared : by how much they are off on average if any change that they share is the zero, N.
     """
 
@@ -60,30 +55,43 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     """Fit a line to the middles between peaks and troughs, or to a force without cycles.
 
     The standard error allows for neighbours that deviate alike. A force that stays at several
-    levels changes from one to the next, and shows none.
+    levels changes from one to the next, and shows none; nor does one whose halves change otherwise,
+    as where a record ends while the spring is unloaded: the error is NaN.
     """
     shared = 0.0
-    fit: Slope = slope_in_lasting_noise
     if len(cycles) >= FEWEST_CYCLES:
         times = float(record.time[0]), cycles["peak_time"]
         shared = shared_change(*times, cycles["peak"], cycles["trough"])
         at = 0.5 * (cycles["peak_time"] + cycles["trough_time"])
         middle = 0.5 * (cycles["peak"] + cycles["trough"])
         start = float(record.time[0])
-    elif not len(cycles) and len(record) >= 4 * PARTS and not levels(record):
-        half = len(record) // 2
-        at, middle = (part_means(each[half:], PARTS) for each in (record.time, record.force))
-        start, fit = float(record.time[half]), _slope_of_means
+    elif not len(cycles) and (last := _late(record)) and not levels(record):
+        at, middle = (part_means(each[last], PARTS) for each in (record.time, record.force))
+        start = float(record.time[last.start])
     else:
         likely = _likely_rate(cycles)
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
     at, middle = (part_means(each, MOST_MEANS) for each in (at, middle))
-    rate, error = fit(at, middle)
+    rate, error = slope_in_lasting_noise(at, middle)
+    if not _goes_on(at, middle, rate):
+        error = np.nan
     change = rate * (float(record.time[-1]) - start)
     large = abs(change) > WORTH * abs(float(middle.mean()))
-    sure = abs(rate) > SURE * error and _goes_on(at, middle, rate, fit)
-    likely = 0.0 if sure else _likely_rate(cycles)
-    return Drift(rate, error, change, start, bool(large and sure), bool(sure), likely, shared)
+    sure = abs(rate) > SURE * error
+    if sure:
+        likely = 0.0
+    else:
+        likely = _likely_rate(cycles) if len(cycles) else rate * (abs(rate) > LIKELY * error)
+    return Drift(rate, error, change, start, large and sure, sure, likely, shared)
+
+
+def _late(record: Record) -> slice | None:
+    """Return the second half of the sliding, in which it has settled; None of too few samples."""
+    if not len(record):
+        return None
+    slides = sliding(record)
+    half = (slides.first + slides.last) // 2
+    return slice(half, slides.last) if slides.last - half >= PARTS else None
 
 
 def _likely_rate(cycles: CycleTable) -> float:
@@ -148,33 +156,22 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     return friction.with_errors(**further)
 
 
-def _slope_of_means(at: Floats, force: Floats) -> tuple[float, float]:
-    """Return the slope of a line through means of a force without cycles, and its standard error.
-
-    As many means count as one as noise lasts for, by their deviations: a restricted likelihood as
-    for cycles takes what ends the sliding, such as an unloading, for a sure drift.
-    """
-    found = line(at, force)
-    alike = whole_correlation_time(found.deviations(at, force))
-    return found.slope, error_of_few(found.slope_error * alike**0.5, len(at) / alike - 2.0)
-
-
-def _goes_on(at: Floats, middle: Floats, rate: float, fit: Slope) -> bool:
-    """Return whether both halves change at about this rate: a single loading is not drift."""
+def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:
+    """Return whether each half changes at about this rate: a single loading is not drift."""
     if len(at) < 2 * FEWEST_CYCLES:
         return True
     half = len(at) // 2
-    halves = [fit(at[part], middle[part]) for part in (slice(half), slice(half, None))]
-    (first, first_error), (second, second_error) = halves
-    apart = SURE * float(np.hypot(first_error, second_error)) + LASTING * abs(rate)
-    return abs(first - second) < apart
+    halves = (
+        slope_in_lasting_noise(at[part], middle[part]) for part in (slice(half), slice(half, None))
+    )
+    return all(abs(its - rate) <= SURE * error + LASTING * abs(rate) for its, error in halves)
 
 
 def detrend(record: Record) -> Record:
     """Return a record without the steady drift of its force.
 
     The line is zero at the first sample, which is taken as correct. A force without cycles shows
-    its drift in the second half of the record only, and changes from there on only. Friction that
+    its drift in the second half of the sliding, and is changed from there on. Friction that
     changes steadily is removed like drift.
 
     Parameters

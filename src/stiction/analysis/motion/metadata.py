@@ -434,5 +434,5 @@ def _drift(cycles: CycleTable, drift: Drift | None) -> StatedQuantity | None:
     """Return the steady change of the force."""
     if drift is None:
         return None
-    how = "line through the middles of cycles" if len(cycles) else "its second half"
+    how = "line through the middles of cycles" if len(cycles) else "second half of the sliding"
     return StatedQuantity("drift of the force", "N/s", drift.rate, drift.error, nan, nan, nan, how)

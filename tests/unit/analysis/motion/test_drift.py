@@ -152,6 +152,42 @@ def test_a_force_at_several_levels_shows_no_drift():
         assert np.isfinite(drift.error) == drift.sure == known
 
 
+def seen_of(force):
+    """Return the drift of a force without cycles, over a minute, in little noise."""
+    time = np.linspace(0.0, 60.0, 3000)
+    noise = 5e-3 * np.random.default_rng(2).normal(size=len(time))
+    record = st.Record(time=time, force=force(time) + noise)
+    return find_drift(record, swings(record).lasting)
+
+
+@pytest.mark.parametrize("ends", ["unloads", "turns"])
+def test_a_drift_of_sliding_is_seen_before_the_drive_turns_or_unloads(ends):
+    """What ended the sliding hid each drift: the error was hundreds of times as large."""
+    last = {"unloads": 0.0, "turns": -2.0}[ends]
+    drift = seen_of(lambda t: np.interp(t, [48.0, 50.0], [2.0, last]) + 2e-3 * t)
+    assert drift.sure
+    assert drift.error < 2e-4
+    assert abs(drift.rate - 2e-3) < 2.0 * drift.error
+
+
+def test_a_force_that_begins_to_be_unloaded_shows_no_drift():
+    drift = seen_of(lambda t: np.interp(t, [54.0, 75.0], [2.0, 0.0]))
+    assert np.isnan(drift.error)
+    assert drift.possible == 0.0
+
+
+@pytest.mark.parametrize(
+    ("errors", "sure", "likely"), [(2.9, False, False), (3.1, False, True), (4.1, True, False)]
+)
+def test_a_drift_of_sliding_is_likely_before_it_is_sure(errors, sure, likely):
+    chance = seen_of(lambda t: 2.0 + 0.0 * t)
+    rate = errors * chance.error
+    drift = seen_of(lambda t: 2.0 + (rate - chance.rate) * t)
+    assert drift.sure == sure
+    assert drift.likely == pytest.approx(likely * rate, rel=1e-6)
+    assert drift.possible == pytest.approx((sure or likely) * rate, rel=1e-6)
+
+
 SHAPES = {
     "settles": lambda way: 1.0 - np.exp(-way / 0.2),
     "jumps": lambda way: 1.0 * (way > 0.3),
