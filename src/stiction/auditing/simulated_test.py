@@ -46,7 +46,7 @@ SLIDES, OSCILLATES, UNSETTLED = "slides", "oscillates", "unsettled"
 CALM = 0.02  # of the drive's speed: a smaller deviation is steady sliding
 DECAYED, KEPT = 0.5, 0.8  # of a deviation, a quarter of the run later: dies out, lasts
 AS_FAST = 0.5  # of the rate at which small disturbances decay: it does so, too
-LOADING = 0.5  # of the drive's speed: a mass that stays slower has not slipped
+SLIPPED = 0.5  # of the drive's speed: a mass that stays slower has not slipped
 
 
 class Shares(NamedTuple):
@@ -252,7 +252,7 @@ def final_state(run: Trajectory, growth: float = nan) -> str:
     third = late & ~last
     if not third.any():  # it ended before
         return UNSETTLED
-    if speed[late].max() < LOADING:
+    if speed[late].max() < SLIPPED:
         return STUCK
     deviation = np.abs(speed - 1.0)
     if speed[late].min() <= 0.0:

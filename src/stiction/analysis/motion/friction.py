@@ -32,7 +32,7 @@ from stiction.arrays import TINY, Floats
 from stiction.recording.noise import rounding_error, white_noise
 from stiction.text.quantity_text import percent
 
-LOADING = 16  # of them, at least, lie before the first cycle: a shorter loading is not resolved
+LOADING_MEANS = 16  # at least, before the first cycle: a shorter loading is not resolved
 FEWEST_SAMPLES = COURSE_PARTS  # with fewer the kind of motion is not known, either
 STANDS_OUT = 4.0  # standard deviations of the noise of a mean
 PEAK = 0.02  # of the rise: the fall after a maximum that makes it a peak
@@ -196,7 +196,7 @@ def _find_break_away(
     if len(cycles):
         before, first = np.searchsorted(time, [cycles["start"][0], cycles["trough_time"][0]])
         until = max(FEWEST_SAMPLES, int(first) + 1)
-        end = min(end, max(until, MEANS_OF_RECORD // LOADING * int(before)))
+        end = min(end, max(until, MEANS_OF_RECORD // LOADING_MEANS * int(before)))
     smooth = without_spikes(force[:end])
     forces = part_means(smooth, MEANS_OF_RECORD)
     typical = float(np.median(np.diff(part_starts(end, MEANS_OF_RECORD), append=end)))

@@ -9,7 +9,7 @@ from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
 from stiction.arrays import TINY, Floats, Indices
 from stiction.recording.noise import dither_remainder, white_noise
 
-LOADING = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
+STRAIGHT_PART = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 # A loading is not straight if its line comes from so far above the trough, or if it deviates so
 # far from it, over what it gains; and by more than so many standard deviations of noise
 LIFTS, STEPS = 0.05, 0.03
@@ -89,13 +89,13 @@ def rounding_of_rates(force: Floats, rise: float) -> float:
     step = resolution(force)
     if not step or rise <= 0.0:
         return 0.0
-    steps = (LOADING[1] - LOADING[0]) * rise / step
+    steps = (STRAIGHT_PART[1] - STRAIGHT_PART[0]) * rise / step
     return float(ROUNDED * dither_remainder(force, step) * steps**-1.5)
 
 
 def _window(time: Floats, start: Floats, until: Floats) -> tuple[Indices, Indices]:
     """Return first and last sample of the straight part of each rise."""
-    begin, end = (samples_from(time, start + part * (until - start)) for part in LOADING)
+    begin, end = (samples_from(time, start + part * (until - start)) for part in STRAIGHT_PART)
     begin = np.minimum(begin, len(time) - 2)
     return begin, np.maximum(end, begin + 1)
 

@@ -167,4 +167,4 @@ def by_course(found: Features, given: Circumstances) -> str:
     if fallen[-1] > fallen[:-1].max():  # a slip ends the run
         return kinds.UNDETERMINED
     loading = late / drive if drive else late / early
-    return kinds.STUCK if loading >= force_course.LOADING else kinds.UNDETERMINED
+    return kinds.STUCK if loading >= force_course.STILL_STICKS else kinds.UNDETERMINED

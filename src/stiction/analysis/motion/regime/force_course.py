@@ -46,7 +46,7 @@ from stiction.analysis.signals.turning_points import CLEAR
 
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
-LOADING = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
+STILL_STICKS = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
 # Times the scatter about it, and share of the mean force: by more a force wanders that slides, or
 # the mass sticks and slips more slowly than the record shows. Measured steady sliding: 3.7
 SMOOTH, VARIES = 5.0, 0.05
@@ -146,7 +146,7 @@ def _loading(
     kept = way.late_rate / way.early_rate if way.early_rate else inf
     evidence |= {"one_way": way.one_way, "rate_kept": kept}
     loading = way.late_rate / drive if drive else kept
-    if loading < LOADING:
+    if loading < STILL_STICKS:
         return Regime(UNDETERMINED, 0.0, evidence)
     sure = way.one_way * min(loading, 1.0) * sure
     if not drive and abs(record.force[0]) > BEGINS_UNLOADED * largest_magnitude(record.force):
