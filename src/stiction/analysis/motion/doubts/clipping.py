@@ -37,33 +37,36 @@ def without_cut_off(
     friction: Friction, record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]
 ) -> Friction:
     """Return the friction without what peaks and troughs do not show that are cut off at ends."""
-    cut = {each.name: each.value for each in ends}
-    end, broke = cut.get("largest"), friction.break_away
+    end = next((each.value for each in ends if each.name == "largest"), None)
+    broke = friction.break_away
     if end is not None and broke is not None and _breaks_at(record, cycles, broke, end):
         reason = f"the peak is cut off: it is {in_words(broke.force, 'N')} or more"
         friction = friction._replace(
             break_away=None, missing=friction.missing | {"break_away": reason}
         )
-    cut, what = _cut_values(record, cycles, ends), cut_off(record, cycles, ends)
-    if "largest" in cut and friction.static is not None:
+    reached = _ends_reached(record, cycles, ends)
+    if "largest" in reached and friction.static is not None:
         least = in_words(friction.static.force, "N")
-        friction = friction.without_static(f"{what}: it is {least} or more")
-    if cut and friction.kinetic is not None:
+        friction = friction.without_static(f"{_in_words(reached)}: it is {least} or more")
+    if reached and friction.kinetic is not None:
         bounds = {"largest": "more", "least": "less"}
-        bound = f": it is {in_words(friction.kinetic.force, 'N')} or {bounds[next(iter(cut))]}"
-        friction = friction.without_kinetic(what + bound * (len(cut) == 1))
+        bound = f": it is {in_words(friction.kinetic.force, 'N')} or {bounds[reached[0]]}"
+        friction = friction.without_kinetic(_in_words(reached) + bound * (len(reached) == 1))
     return friction
 
 
 def cut_off(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> str:
     """Return what of the cycles is cut off at ends, in words; '' if nothing is."""
-    cut = _cut_values(record, cycles, ends)
-    return f"the {' and '.join(ENDS[name] for name in cut)} are cut off" if cut else ""
+    return _in_words(_ends_reached(record, cycles, ends))
 
 
-def _cut_values(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> dict[str, float]:
-    """Return the value (N) of each end, by its name, that the cycles reach."""
-    return {each.name: each.value for each in ends if _is_reached(record, cycles, each.value)}
+def _in_words(reached: Sequence[str]) -> str:
+    return f"the {' and '.join(ENDS[name] for name in reached)} are cut off" if reached else ""
+
+
+def _ends_reached(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> list[str]:
+    """Return the names of the ends that the cycles reach."""
+    return [each.name for each in ends if _is_reached(record, cycles, each.value)]
 
 
 def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: float) -> bool:
