@@ -36,8 +36,8 @@ from stiction.inference.simulated.library import (
 )
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
+from stiction.recording.part import begin_and_end
 from stiction.system.slider import Slider
-from stiction.text.suggestion import begin_and_end
 
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"

@@ -33,10 +33,10 @@ from stiction.inference.suitability import (
 )
 from stiction.recording.coloured_noise import coloured_noise
 from stiction.recording.noise import ROUNDING_SPREAD, lattice, resolved_noise
+from stiction.recording.part import begin_and_end
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
-from stiction.text.suggestion import begin_and_end
 from stiction.trajectory import Trajectory
 
 Source = Record | Trajectory | str | Path  # of a record: a run is taken as if measured

@@ -22,8 +22,10 @@ from stiction.analysis.record import Record
 from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.inference.cycles import LEAST_CYCLES, Cycles
+from stiction.recording.part import begin_and_end
+from stiction.recording.strokes import by_strokes
 from stiction.system.slider import Slider
-from stiction.text.suggestion import Suggestion, begin_and_end, by_strokes
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip

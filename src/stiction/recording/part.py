@@ -63,3 +63,8 @@ def part_between(
             f"go from {in_words(float(time[0]), 's')} to {in_words(float(time[-1]), 's')}"
         )
     return part_of(found, slice(first, last), "a part")
+
+
+def begin_and_end() -> str:
+    """Return the arguments by which a part of a file is read."""
+    return f"{Suggestion('begin', of='')}, {Suggestion('end')}"

@@ -87,3 +87,11 @@ def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
         )
     samples, way = parts[number - 1]
     return part_of(found, samples, f"stroke {number} of {len(parts)}", way)
+
+
+def by_strokes() -> str:
+    """Return how a record of a drive that goes to and fro is divided, for a message."""
+    return (
+        "the strokes by themselves: where a file has the drive's displacement, "
+        f"{Suggestion('stroke', 1)} reads the first"
+    )

@@ -89,16 +89,3 @@ def as_option(its: Suggestion) -> str:
     value = "=".join(*its.value.items()) if isinstance(its.value, dict) else str(its.value)
     quote = "" if value.isalnum() else '"' if "'" in value else "'"
     return f"{option} {quote}{value}{quote}"
-
-
-def begin_and_end() -> str:
-    """Return how a part of a file is read."""
-    return f"{Suggestion('begin', of='')}, {Suggestion('end')}"
-
-
-def by_strokes() -> str:
-    """Return how a record of a drive that goes to and fro is divided."""
-    return (
-        "the strokes by themselves: where a file has the drive's displacement, "
-        f"{Suggestion('stroke', 1)} reads the first"
-    )

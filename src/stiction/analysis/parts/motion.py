@@ -28,9 +28,10 @@ from stiction.analysis.parts.wording import number
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
+from stiction.recording.strokes import by_strokes
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
-from stiction.text.suggestion import Suggestion, by_strokes
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, times, with_error
 from stiction.trajectory import Trajectory
 
