@@ -25,12 +25,9 @@ from stiction.analysis.motion.doubts.warnings import (
 from stiction.analysis.motion.doubts.zero import why_no_friction
 from stiction.analysis.motion.drift import find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
-from stiction.analysis.motion.metadata import (
-    LOADING_RATE,
-    StatedQuantity,
-    compare_metadata,
-    other_velocity,
-)
+from stiction.analysis.motion.metadata.comparison import compare_metadata
+from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE, other_velocity
+from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import STICK_SLIP, UNDETERMINED
 from stiction.analysis.record import Record

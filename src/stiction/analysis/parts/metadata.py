@@ -6,13 +6,9 @@ from collections.abc import Mapping
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.metadata import (
-    BY_RISE,
-    BY_SLIPS,
-    LOADING_RATE,
-    SWING,
-    StatedQuantity,
-)
+from stiction.analysis.motion.metadata.loading_rate import BY_RISE, LOADING_RATE
+from stiction.analysis.motion.metadata.quantity import StatedQuantity
+from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS, SWING
 from stiction.analysis.parts.wording import number
 from stiction.arrays import xr
 from stiction.text.sections import Section, Table
@@ -49,12 +45,12 @@ def section(found: Analysis) -> Section | None:
     known = {each.name: verdict(each) for each in its if verdict(each) not in ("", NOT_SHOWN)}
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
-    bounds = dict.fromkeys(each.how for each in its if _is_bound(each))
+    bounds = dict.fromkeys(each.how for each in its if _is_shown_as_bound(each))
     lines += [WHY[how] for how in bounds]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
 
-def _is_bound(each: StatedQuantity) -> bool:
+def _is_shown_as_bound(each: StatedQuantity) -> bool:
     """Return whether a value is a lower bound of the true one; not where that stated is below."""
     return isfinite(each.at_least) and not each.stated < each.at_least
 
@@ -81,7 +77,7 @@ def verdict(each: StatedQuantity) -> str:
         return AGREES if limit or each.is_same else ALLOWED
     if limit and each.unit == "Hz":
         return NOT_SHOWN
-    return DOUBTED if _is_bound(each) else WRONG
+    return DOUBTED if _is_shown_as_bound(each) else WRONG
 
 
 def _sentence(each: StatedQuantity) -> str:
@@ -110,7 +106,7 @@ def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
 
 
 def _shown(each: StatedQuantity) -> str:
-    if _is_bound(each):
+    if _is_shown_as_bound(each):
         return at_least(each.at_least, each.error, each.unit)
     return with_error(each.found, each.error, each.unit)
 

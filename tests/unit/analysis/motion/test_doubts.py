@@ -23,7 +23,8 @@ from stiction.analysis.motion.doubts.sampling import (
     with_supposed_filter,
 )
 from stiction.analysis.motion.friction import Friction, Measured, friction_of
-from stiction.analysis.motion.metadata import BY_SLIPS, StatedQuantity
+from stiction.analysis.motion.metadata.quantity import StatedQuantity
+from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS
 from stiction.presets.preset import on_a_line
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import fastest_slip

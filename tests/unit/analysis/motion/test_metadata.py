@@ -14,18 +14,13 @@ from tests.parts import assess
 import stiction as st
 from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.metadata import (
-    BY_RISE,
-    LOADING_RATE,
-    SWING,
-    StatedQuantity,
-    _drive_velocity,
-    _loading_rate,
-    _median_error,
-    compare_metadata,
-)
+from stiction.analysis.motion.metadata.comparison import compare_metadata
+from stiction.analysis.motion.metadata.drive_velocity import drive_velocity
+from stiction.analysis.motion.metadata.loading_rate import BY_RISE, LOADING_RATE, _loading_rate
+from stiction.analysis.motion.metadata.quantity import StatedQuantity, median_error
+from stiction.analysis.motion.metadata.stiffness_over_mass import SWING
 from stiction.analysis.motion.regime.kinds import HARMONIC
-from stiction.analysis.parts.metadata import _is_bound
+from stiction.analysis.parts.metadata import _is_shown_as_bound
 from stiction.presets.preset import on_a_line
 
 RATE = 2000.0
@@ -136,7 +131,7 @@ def test_what_slips_and_rises_show_is_a_bound_behind_filters_and_beside_creep(cu
     assert shown
     for each in shown:
         assert 0.0 < each.at_least < each.stated
-        assert _is_bound(each)
+        assert _is_shown_as_bound(each)
     assert "contradicts" not in said
 
 
@@ -168,7 +163,7 @@ def test_a_wrong_description_is_contradicted(wrong, quantity, ratio):
 def test_the_error_of_a_median_is_its_own():
     """Of normal values that of their trimmed mean holds 90 % only."""
     values = np.random.default_rng(6).standard_normal((1000, 40))
-    off = [abs(np.median(each)) / _median_error(each) for each in values]
+    off = [abs(np.median(each)) / median_error(each) for each in values]
     assert np.mean(np.array(off) < 2.0) == pytest.approx(0.954, abs=0.015)
 
 
@@ -189,10 +184,10 @@ def test_a_rate_of_loading_contradicts_by_more_than_its_errors(faster, agrees):
 
 @pytest.mark.parametrize(("found", "bound"), [(0.8, True), (1.11, False)])
 def test_creep_is_no_reason_why_a_force_rises_faster(found, bound):
-    rate = StatedQuantity(LOADING_RATE, "N/s", found, 0.01, 1.0, 0.48, 1.12, BY_RISE)
+    rate = StatedQuantity(LOADING_RATE, "N/s", found, 0.01, 1.0, 0.48, 1.12, BY_RISE, is_bound=True)
     assert rate.agrees
     assert not rate.is_same
-    assert _is_bound(rate) is bound
+    assert _is_shown_as_bound(rate) is bound
 
 
 def test_the_rest_in_a_vibration_is_not_taken_for_a_heavier_mass():
@@ -279,10 +274,10 @@ def test_a_drive_that_moves_in_steps_does_not_contradict_its_mean_velocity(noise
         length = travel[-1] / steps
         there = length * (travel // length + np.minimum(travel % length / length / share, 1.0))
         record = st.Record(time=TIME, force=sawtooth(), drive_position=there + white)
-        mean = _drive_velocity(record.model_copy(update={"drive_velocity": VELOCITY}))
+        mean = drive_velocity(record.model_copy(update={"drive_velocity": VELOCITY}))
         assert mean.found == pytest.approx(VELOCITY, rel=0.02 + 0.5 / steps)
         assert mean.agrees
-        fast = _drive_velocity(record.model_copy(update={"drive_velocity": 4.0 * VELOCITY / share}))
+        fast = drive_velocity(record.model_copy(update={"drive_velocity": 4.0 * VELOCITY / share}))
         assert fast.agrees is False
 
 

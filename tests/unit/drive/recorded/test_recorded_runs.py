@@ -13,7 +13,8 @@ from tests.systems import STEADY
 
 import stiction as st
 from stiction.analysis.motion.cycle_columns import table_of
-from stiction.analysis.motion.metadata import LOADING_RATE, compare_metadata
+from stiction.analysis.motion.metadata.comparison import compare_metadata
+from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
 from stiction.drive.program import nominal_velocity
 from stiction.solver.problem import Bend, Bends
 from stiction.solver.segments import segments

@@ -9,13 +9,12 @@ import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import (
+from stiction.analysis.motion.metadata.quantity import FEWEST_SAMPLES, StatedQuantity
+from stiction.analysis.motion.metadata.stiffness_over_mass import (
     BY_SLIPS,
-    FEWEST_PER_FALL,
     MOST_HIDDEN,
     REACH,
     SLOW_SLIP,
-    StatedQuantity,
 )
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
@@ -136,7 +135,7 @@ def doubt_few_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt falls of the force of few samples, and the slip speeds that they give."""
     fall = _usual_fall(record, cycles)
     samples = fall * record.sample_rate
-    if not samples < FEWEST_PER_FALL:
+    if not samples < FEWEST_SAMPLES:
         return
     interval = 0.1 * max(fall, 1.0 / record.sample_rate)
     slow = interval > SLOWLY  # nobody samples in nanohertz

@@ -27,11 +27,9 @@ from stiction.analysis.motion.doubts.sampling import (
 from stiction.analysis.motion.doubts.zero import doubt_zero, is_about_zero
 from stiction.analysis.motion.drift import WORTH, Drift, is_shown
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import (
-    LOADING_RATE,
-    SWING,
-    StatedQuantity,
-)
+from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
+from stiction.analysis.motion.metadata.quantity import StatedQuantity
+from stiction.analysis.motion.metadata.stiffness_over_mass import SWING
 from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import ACROSS, Record, across_force
 from stiction.analysis.signals.clipping import FlatEnd

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata import AT_REST, first_reading
+from stiction.analysis.motion.metadata.comparison import AT_REST, first_reading
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude

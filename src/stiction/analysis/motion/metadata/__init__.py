@@ -1,0 +1,1 @@
+"""What a record says of its apparatus, beside what is stated of it."""
