@@ -22,7 +22,7 @@ from scipy.signal import lfilter  # type: ignore[attr-defined]
 from scipy.special import ndtr
 
 import stiction as st
-from stiction.analysis.motion.doubts.sampling import hidden_way
+from stiction.analysis.motion.doubts.creep_distance import hidden_way
 
 Floats = NDArray[np.float64]
 LOAD = 10.0  # N

@@ -11,11 +11,8 @@ from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import cut_off, without_cut_off
-from stiction.analysis.motion.doubts.sampling import (
-    hidden_way,
-    with_smear,
-    with_supposed_filter,
-)
+from stiction.analysis.motion.doubts.creep_distance import unseen_creep
+from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
     turns_round,
@@ -23,7 +20,7 @@ from stiction.analysis.motion.doubts.warnings import (
     warnings_of_run,
 )
 from stiction.analysis.motion.doubts.zero import why_no_friction
-from stiction.analysis.motion.drift import find_drift, is_shown, with_drift
+from stiction.analysis.motion.drift import Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
 from stiction.analysis.motion.metadata.comparison import compare_metadata
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE, other_velocity
@@ -34,7 +31,6 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
 from stiction.recording.noise import rounding_error
-from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 OF_STICKING = ("mu_static", "stick_slope", "stiffness", "creep_distance")  # columns of cycles
@@ -112,7 +108,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
     halting = cycles["hesitations"] > 0.0 if record.position is None else other
     sticking = cycles.part(~(other | apart | halting)) if regime.loads else none
-    missing = _meaningless(record, cycles, regime, stated)
+    missing = _meaningless(record, cycles, regime, stated, shown)
     cut = cut_off(record, cycles, ends)
     if cut and record.position is None:
         missing |= {name: cut for name in BY_DROP if name not in missing}
@@ -171,6 +167,7 @@ def _meaningless(
     cycles: CycleTable,
     regime: Regime,
     stated: tuple[StatedQuantity, ...] = (),
+    drift: Drift | None = None,
 ) -> dict[str, str]:
     """Return the columns that are meaningless for a motion, or as things are stated, and why."""
     if not len(cycles):
@@ -187,10 +184,8 @@ def _meaningless(
     known = cycles["creep_distance"][~np.isnan(cycles["creep_distance"])]
     if not len(known):
         return {}
-    hidden = hidden_way(record)
-    if 0.0 <= np.median(known) < hidden:
-        why = f"noise and the time between samples hide about {in_words(hidden, 'm')} of it"
-        return {"creep_distance": why}
+    if unseen := unseen_creep(record, cycles, drift):
+        return {"creep_distance": unseen}
     if not np.median(known) < 0.0:
         return {}
     if any(each.agrees for each in rates):

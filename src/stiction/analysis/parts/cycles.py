@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from math import floor, isfinite
+from math import floor, inf, isfinite
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.analysis.motion.doubts.sampling import hidden_way
+from stiction.analysis.motion.cycle_columns import table_of
+from stiction.analysis.motion.doubts.creep_distance import hidden_way, way_of_lag
 from stiction.analysis.parts.wording import SHOWN, number, with_spread
 from stiction.arrays import xr
 from stiction.text.columns import Quantity, grid
@@ -63,15 +64,22 @@ def section(found: Analysis) -> Section:
 
 
 def _hidden_ways(found: Analysis) -> list[str]:
-    """Return how much of the ways noise and samples hide, if that is worth a word."""
+    """Return how much of the ways noise, samples and a filter hide, if that is worth a word."""
     hidden = hidden_way(found.record)
-    known = (float(found.cycles[name].mean()) for name in WAYS if name not in found.missing)
-    if not any(hidden > HIDDEN * way for way in known):
-        return []
-    return [
-        "Noise and the time between samples hide when a slip begins: creep may be up to "
-        f"{in_words(hidden, 'm', 2)} longer, and slip as much shorter."
-    ]
+    lag = way_of_lag(found.record, table_of(found.cycles))
+    ways = {name: float(found.cycles[name].mean()) for name in WAYS if name not in found.missing}
+    lines = []
+    if any(hidden > HIDDEN * way for way in ways.values()):
+        lines.append(
+            "Noise and the time between samples hide when a slip begins: creep may be up to "
+            f"{in_words(hidden, 'm', 2)} longer, and slip as much shorter."
+        )
+    if lag > HIDDEN * ways.get("creep_distance", inf):
+        lines.append(
+            f"Slips last long: if a filter smears them, creep is up to {in_words(lag, 'm', 2)} "
+            "shorter."
+        )
+    return lines
 
 
 def _hesitations(table: xr.Dataset) -> list[str]:

@@ -96,7 +96,7 @@ def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
     return [
         (
             each.name,
-            _shown(each),
+            _value_in_words(each),
             in_words(each.stated, each.unit) if isfinite(each.stated) else "",
             verdict(each),
             each.how,
@@ -105,7 +105,7 @@ def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
     ]
 
 
-def _shown(each: StatedQuantity) -> str:
+def _value_in_words(each: StatedQuantity) -> str:
     if _is_shown_as_bound(each):
         return at_least(each.at_least, each.error, each.unit)
     return with_error(each.found, each.error, each.unit)

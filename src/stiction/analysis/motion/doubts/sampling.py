@@ -39,8 +39,6 @@ SHARP = 5.0
 # Of the rise from sample to sample: so far, on average, peaks are above the last sample before a
 # sudden fall. Of a fall of two samples they are by half of that, and so on: it begins slowly
 BETWEEN = 0.5
-# Standard deviations of noise, by which the force seems to rise too far while the spring is loaded
-ON_BOTH_ENDS = 2.0
 # Periods of the cut-off, after which a filter has forgotten; samples of each; times its cut-off,
 # from which on another filter does nothing beside it
 MEMORY, FINE, ALONE = 10.0, 40.0, 30.0
@@ -104,7 +102,7 @@ def _samples(count: int) -> str:
     return f"{count} samples have" if count > 1 else "One sample has"
 
 
-def _usual_fall(record: Record, cycles: CycleTable) -> float:
+def usual_fall(record: Record, cycles: CycleTable) -> float:
     """Return how long a fall of the force takes, s; infinite without cycles.
 
     Under slow loading the noise makes some sample far from the fall the largest, or the smallest.
@@ -131,9 +129,14 @@ def _usual_fall(record: Record, cycles: CycleTable) -> float:
     return float(np.median(falls - longer / record.sample_rate))
 
 
+def drawn_out(fall: float, stated: float) -> float:
+    """Return by how much a fall (s) is longer, in quadrature, than half a swing with a k/m, s."""
+    return float(max(fall**2 - pi**2 / stated, 0.0) ** 0.5)
+
+
 def doubt_few_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
     """Doubt falls of the force of few samples, and the slip speeds that they give."""
-    fall = _usual_fall(record, cycles)
+    fall = usual_fall(record, cycles)
     samples = fall * record.sample_rate
     if not samples < FEWEST_SAMPLES:
         return
@@ -177,7 +180,7 @@ def doubt_filter(record: Record, cycles: CycleTable) -> Iterator[str]:
     sensor = (record.sensors or {}).get("force")
     if sensor is None:
         return
-    fall = _usual_fall(record, cycles)
+    fall = usual_fall(record, cycles)
     if fall * sensor.cut_off < SHARP:
         yield (
             f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
@@ -194,7 +197,7 @@ def with_smear(friction: Friction, record: Record, cycles: CycleTable) -> Fricti
     """
     if not len(cycles):
         return friction
-    rate, fall = record.sample_rate, _usual_fall(record, cycles)
+    rate, fall = record.sample_rate, usual_fall(record, cycles)
     lasts = max(fall * rate - 1.0, 1.0)  # samples: a fall seems to last one more
     lower = BETWEEN / lasts * cycles.median("stick_slope") / rate
     between = hypot(lower, _above_samples(record, cycles))
@@ -215,20 +218,6 @@ def _above_samples(record: Record, cycles: CycleTable) -> float:
     return max(float(np.median(cycles["peak"] - largest)), 0.0)
 
 
-def hidden_way(record: Record) -> float:
-    """Return how much of creep and slip noise and samples hide, m; 0 where the position is known.
-
-    The largest force is too early, and too high, by noise; the mass seems to slip from there on. Of
-    100 random records creep is so much too short in the median that 0.63 times this is missing, and
-    1.2 times in 5.
-    """
-    if record.position is not None or not record.stiffness or not record.drive_velocity:
-        return 0.0
-    force = ON_BOTH_ENDS * white_noise(record.force) + resolution(record.force)
-    between = abs(record.drive_velocity) / record.sample_rate
-    return float(force / record.stiffness + between)
-
-
 def with_supposed_filter(
     friction: Friction, record: Record, cycles: CycleTable, stated: Sequence[StatedQuantity]
 ) -> Friction:
@@ -243,11 +232,11 @@ def with_supposed_filter(
     sensor = (record.sensors or {}).get("force")
     if sensor is not None and sensor.filters:
         return friction
-    fall = _usual_fall(record, cycles)
-    longer = fall**2 - pi**2 / its.stated
-    if not longer > 0.0:  # of other slips than those that are too long
+    fall = usual_fall(record, cycles)
+    longer = drawn_out(fall, its.stated)
+    if not longer:  # of other slips than those that are too long
         return friction
-    peak, trough = _smear(cycles, fall, (LowPass(longer**-0.5, 2),))
+    peak, trough = _smear(cycles, fall, (LowPass(1.0 / longer, 2),))
     return friction.with_errors(break_away=peak, static=peak, kinetic=0.5 * max(peak, trough))
 
 

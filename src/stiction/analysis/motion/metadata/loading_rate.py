@@ -38,7 +38,7 @@ def loading_rates(
     slopes, starts = cycles["stick_slope"], cycles["start"]
     stated = record.loading_rate or nan
     # a drift of the load cell seems to load the spring; one of friction does not
-    off = abs(_rate_of_troughs(cycles) if drift is None else drift.rate)
+    off = abs(rate_of_drift(cycles, drift))
     alike = rounding_of_rates(
         record.force, float(np.median(cycles["peak"] - cycles["start_force"]))
     )
@@ -70,8 +70,13 @@ def _part_in_words(begin: float, end: float) -> str:
     return f"from {in_words(begin, 's')} to {in_words(end, 's')}"
 
 
-def _rate_of_troughs(cycles: CycleTable) -> float:
-    """Return the rate at which the troughs of a few cycles change, N/s: too few to tell a drift."""
+def rate_of_drift(cycles: CycleTable, drift: Drift | None) -> float:
+    """Return the rate of a drift, N/s; without one, that at which the troughs change.
+
+    A few cycles are too few to tell a drift.
+    """
+    if drift is not None:
+        return drift.rate
     at, force = (
         np.append(cycles[first], cycles[last][-1:])
         for first, last in (("start", "trough_time"), ("start_force", "trough"))
