@@ -121,6 +121,8 @@ def test_theory_over_the_plane(store):
         ([], {"friction.mu_in": 0.15}, "did you mean 'friction.mu_inf'"),
         ([], {"phi": 3}, "degree or radian"),
         ([], {"phi": "3 mm"}, "'3 mm' is in mm, not a unit of an angle"),
+        (["mean_force"], {"friction.mu_inf": 0.15}, "mean_force: the study did not store it, but "),
+        ([], {"V": "3 m/s"}, "3 m/s is beyond the study, which has 1 to 4 mm/s"),
         ([], {"friction.mu_inf": 15}, "15 is beyond the study, which has 0.15 to 0.18"),
     ],
 )

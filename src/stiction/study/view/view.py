@@ -19,10 +19,10 @@ from stiction.study.store import seal
 from stiction.study.store.kept import stored_variables
 from stiction.study.store.store import CHECKED, group_at, open_study
 from stiction.study.variables.fast_regime import KINDS
-from stiction.study.variables.measures import FORMERLY
+from stiction.study.variables.measures import FORMERLY, MEASURES
 from stiction.text.paths import canonical_path
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import Quantity
+from stiction.text.units import Quantity, in_words, span
 from stiction.text.validation import unknown_name
 
 REGIME = "regime"
@@ -94,8 +94,8 @@ def beyond(known: Coordinate, wanted: float) -> Iterator[str]:
     values = np.unique(known.values)
     gaps = np.diff(values)
     if len(gaps) and not -gaps[0] <= 2.0 * (wanted - values[0]) <= 2.0 * np.ptp(values) + gaps[-1]:
-        ends = f"{values[0]:.6g} to {values[-1]:.6g} {known.unit}".rstrip()
-        yield f"{wanted:.6g} {known.unit}".rstrip() + f" is beyond the study, which has {ends}"
+        ends = span(values[0], values[-1], known.unit)
+        yield f"{in_words(wanted, known.unit)} is beyond the study, which has {ends}"
 
 
 def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
@@ -163,7 +163,13 @@ def strange_measures(data: xr.Dataset, measures: Sequence[str]) -> Iterator[Faul
     """Yield a fault for each measure that a study does not have."""
     kept = kept_measures(data)
     for name in measures:
-        if FORMERLY.get(name, name) not in kept:
+        if (now := FORMERLY.get(name, name)) in MEASURES and now not in kept:
+            yield Fault(
+                name,
+                f"the study did not store it, but {', '.join(sorted(kept)) or 'no measure'}; add "
+                "it to `measures` of the study, and sweep into another store",
+            )
+        elif now not in kept:
             yield Fault(name, unknown_name("measure", name, kept))
 
 

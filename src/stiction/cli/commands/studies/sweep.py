@@ -129,7 +129,7 @@ def sweep(
             if refine is not None:
                 found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
-        say(f"{output}: stopped; the same command continues", error=True)
+        say(f"{output}: stopped{_so_far(study, output)}; the same command continues", error=True)
         return 130
     conclude(output, result)
     if found is not None and not (quiet or json_lines):
@@ -137,6 +137,17 @@ def sweep(
     if not (quiet or json_lines):
         say(f"next: stiction map {argument(output)}{trust_in(study.base.slider)}")
     return 1 if result.failed else 0
+
+
+def _so_far(study: Study, store: Path) -> str:
+    """Return how many runs of a stopped study are done; empty where the store was not made yet."""
+    from stiction.study.store.store import open_store
+    from stiction.study.view.summary import summary
+
+    with suppress(StictionError, OSError):
+        found = summary(study, open_store(study, store))
+        return f" after {found.runs - found.pending} of {found.runs} runs"
+    return ""
 
 
 def doubts(study: Study) -> list[str]:
