@@ -38,6 +38,10 @@ OF_SLIDING = ("mu_kinetic", "slip_distance", "peak_slip_speed")  # and those of 
 # columns that a force alone gives by stiffness and drive velocity
 BY_STIFFNESS = ("creep_distance", "slip_distance", "peak_slip_speed")
 BY_DROP = ("creep_distance", "slip_distance")  # and by peaks and troughs
+HALTING = (
+    "not determined: the force hesitates in each cycle, and a small slip before the peak cannot be "
+    "distinguished from creep"
+)
 
 
 class Assessment(NamedTuple):
@@ -56,7 +60,7 @@ class Assessment(NamedTuple):
     warnings : tuple of str
         To be read first.
     missing : dict
-        The reason for each column that is blank.
+        The reason for each column that is blank, and for creep where no cycle shows it.
     """
 
     cycles: CycleTable
@@ -119,6 +123,8 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         if getattr(whole, name) is not None and getattr(friction, name) is None:
             missing[f"mu_{name}"] = friction.missing[name]
     given = cycles.blank(missing)
+    if regime.loads and halting.all():
+        missing |= dict.fromkeys(("creep", "misalignment"), HALTING)
     return Assessment(given, given.part(~apart), sticking, friction, stated, doubts, missing)
 
 

@@ -196,7 +196,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     analysis = Analysis(
         source, record, regime, its.cycles.as_dataset(), summary(its.usual.as_dataset()),
         creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
-        missing | its.missing | creep.missing, its.friction,
+        missing | creep.missing | its.missing, its.friction,
         its.warnings + subtracted_lines(found.lines, found.ringing), {"metadata": its.stated},
     )  # fmt: skip
     return _with_parts(analysis)

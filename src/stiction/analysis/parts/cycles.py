@@ -32,7 +32,7 @@ COLUMNS = {
 }
 LATE = 100.0  # of the time of all cycles: four digits do not tell starts so late apart
 WAYS, HIDDEN = ("creep_distance", "slip_distance"), 0.1  # a share of them that is worth a word
-UNLESS_NONE = ("hesitations",)
+COUNTS = ("hesitations",)  # exact; a count of none is not worth a row
 
 
 def section(found: Analysis) -> Section:
@@ -45,8 +45,9 @@ def section(found: Analysis) -> Section:
         row = found.summary.sel(quantity=quantity)
         mean, spread = float(row["mean"]), float(row["standard_deviation"])
         unit = str(row["unit"].values)
-        if isfinite(mean) and (quantity not in UNLESS_NONE or mean):
-            several = with_spread(spread, mean, unit)
+        if isfinite(mean) and (quantity not in COUNTS or mean):
+            exact = quantity in COUNTS and spread == 0.0
+            several = "0" if exact else with_spread(spread, mean, unit)
             rows.append((str(row["meaning"].values), in_words(mean, unit), several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
     left_out = count - int(found.summary["number"].sel(quantity="period"))
@@ -92,8 +93,9 @@ def _hesitations(table: xr.Dataset) -> list[str]:
     cycles = f"{some} of {table.sizes['cycle']} cycles"
     return [
         f"In {cycles} the force hesitates: before or within its fall it turns back, by up to "
-        f"{percent(most)} of that fall. Smaller hesitations, below {in_words(least, 'N')}, "
-        "cannot be distinguished from noise and ripple, and are not counted."
+        f"{percent(most)} of that fall. Rise and creep are counted from trough to peak, with such "
+        f"falls in them. Smaller hesitations, below {in_words(least, 'N')}, cannot be "
+        "distinguished from noise and ripple, and are not counted."
     ]
 
 

@@ -33,7 +33,8 @@ WHY = {  # a value is a lower bound
         "mass creeps, the force rises more slowly."
     ),
 }
-NOT_SHOWN = "not shown"
+SHOWABLE, NOT_SHOWN = "can be shown", "not shown"  # a frequency, by the record's samples
+UNSAID = ("", SHOWABLE, NOT_SHOWN)  # verdicts that neither agree nor contradict
 HEADINGS = ("quantity", "shown", "stated", "", "by the")
 
 
@@ -42,7 +43,7 @@ def section(found: Analysis) -> Section | None:
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
-    known = {each.name: verdict(each) for each in its if verdict(each) not in ("", NOT_SHOWN)}
+    known = {each.name: verdict(each) for each in its if verdict(each) not in UNSAID}
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
     bounds = dict.fromkeys(each.how for each in its if _is_shown_as_bound(each))
@@ -70,14 +71,18 @@ def _agreement(known: Mapping[str, str]) -> str:
 
 def verdict(each: StatedQuantity) -> str:
     """Return whether the record agrees with a stated value, allows, doubts or contradicts it."""
-    limit = isnan(each.error)  # of what the record can show, not a value of it
     if each.agrees is None:
         return ""
+    if _is_limit(each):
+        return SHOWABLE if each.agrees else NOT_SHOWN
     if each.agrees:
-        return AGREES if limit or each.is_same else ALLOWED
-    if limit and each.unit == "Hz":
-        return NOT_SHOWN
+        return AGREES if isnan(each.error) or each.is_same else ALLOWED
     return DOUBTED if _is_shown_as_bound(each) else WRONG
+
+
+def _is_limit(each: StatedQuantity) -> bool:
+    """Return whether it is the highest frequency that a record can show, not a value of it."""
+    return isnan(each.error) and each.unit == "Hz"
 
 
 def _sentence(each: StatedQuantity) -> str:
@@ -108,7 +113,7 @@ def _rows(its: tuple[StatedQuantity, ...]) -> list[tuple[str, ...]]:
 def _value_in_words(each: StatedQuantity) -> str:
     if _is_shown_as_bound(each):
         return at_least(each.at_least, each.error, each.unit)
-    return with_error(each.found, each.error, each.unit)
+    return "up to " * _is_limit(each) + with_error(each.found, each.error, each.unit)
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

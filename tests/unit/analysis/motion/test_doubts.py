@@ -13,6 +13,7 @@ from tests.drawn import inside
 from tests.parts import assess
 
 import stiction as st
+from stiction.analysis.assessment import HALTING
 from stiction.analysis.export import write
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
@@ -517,6 +518,20 @@ def test_a_rise_in_which_the_force_hesitates_shows_no_creep() -> None:
     assert len(its.cycles) > 12
     assert 0 < len(its.sticking) < len(its.cycles)
     assert its.sticking["hesitations"].max() == 0.0
+
+
+def test_a_small_slip_in_each_rise_leaves_no_creep_and_is_told_so() -> None:
+    """It said that no stick phase ends in a slip, beside a table of slips."""
+    time = np.arange(0.0, 15.9, 1e-3)
+    corners = np.cumsum([0.0, *np.tile([0.45, 0.05, 0.45, 0.05], 16)])
+    force = 2.0 + np.interp(time, corners, np.append(np.tile([0.0, 0.75, 0.4, 1.0], 16), 0.0))
+    found = st.analyse(st.Record(time=time, force=force, stiffness=1.0, drive_velocity=1.67))
+    assert (found.cycles["hesitations"].values == 1.0).all()
+    assert found.missing["creep"] == found.missing["misalignment"] == HALTING
+    said = " ".join(str(found).split())
+    assert "Creep Not determined: the force hesitates in each cycle" in said
+    assert "from trough to peak, with such falls in them" in said
+    assert "too small for a cycle of their own 1 0" in said
 
 
 @pytest.mark.parametrize(("noise", "named"), [(0.05, True), (1e-4, False)])

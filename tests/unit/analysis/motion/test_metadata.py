@@ -315,12 +315,14 @@ def test_a_drive_that_stands_in_noise_does_not_turn():
 @pytest.mark.parametrize(("across", "shown"), [(1e4, True), (1e7, False)])
 def test_a_transverse_oscillation_above_half_the_sample_rate_is_not_in_the_record(across, shown):
     its, said = compare(sawtooth(), mass=MASS, stiffness_across=across)
-    each = its["frequencies up to, and the transverse one"]
+    each = its["transverse natural frequency"]
     assert each.stated == pytest.approx((across / MASS) ** 0.5 / (2.0 * np.pi), rel=1e-12)
     assert each.agrees == shown
     assert ("The transverse oscillation, at 2.251 kHz, is not in this record" in said) != shown
     assert ("not shown" in said) != shown
     assert "contradict the record" not in said  # it did, of a stiffness that was right
+    assert ("up to 800 Hz" in said, "can be shown" in said) == (True, shown)
+    assert "frequency as stated" not in said  # to be able to show it is not to agree with it
 
 
 def test_the_cut_off_of_a_sensor_counts_too():

@@ -78,7 +78,7 @@ def _transverse_frequency(record: Record) -> StatedQuantity | None:
     sensor = (record.sensors or {}).get("force")
     how = "0.4 of the sample rate, or the sensor's cut-off"
     shown = highest if sensor is None else min(highest, sensor.cut_off)
-    name = "frequencies up to, and the transverse one"
+    name = "transverse natural frequency"
     return StatedQuantity(name, "Hz", shown, nan, frequency, 1.0, float("inf"), how)
 
 
