@@ -34,7 +34,7 @@ from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
 from stiction.plotting.inference.posterior import ParameterAxis, draw_parameter, panels_of
-from stiction.plotting.maps import Side, draw_slice
+from stiction.plotting.maps import Side, draw_measure, draw_slice
 from stiction.plotting.page.canvas import canvas, figure_of, fix_ticks
 from stiction.plotting.page.parameter import Scale, label_decades
 from stiction.plotting.page.save import png, save, write
@@ -56,7 +56,7 @@ from stiction.plotting.run.law import plot_law
 from stiction.plotting.run.lines import draw_line, envelope, mean_course, oscillations
 from stiction.plotting.run.overview import GAP, LINE, SERIES, plot_glance, plot_run
 from stiction.plotting.run.time_series import cut_open, draw_slip_speed
-from stiction.plotting.shades import COLORS
+from stiction.plotting.shades import COLORS, measure_shades
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
@@ -1125,3 +1125,18 @@ def test_times_to_a_slip_of_less_than_two_decades_do_not_touch() -> None:
     boxes.sort(key=lambda box: box.x0)
     assert len(boxes) > 1
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
+
+
+@pytest.mark.parametrize(("least", "low", "end"), [(1e-3, 0.1, "min"), (0.05, 0.05, "neither")])
+def test_swings_that_died_out_do_not_take_the_colours_of_the_others(least, low, end):
+    """Six decades of them left two shades for a map of stick-slip."""
+    values = np.geomspace(0.1, 10.0, 400).reshape(20, 20)
+    values[0, :5] = least, *[1e-7 if least < 0.01 else 0.1] * 4
+    shades = measure_shades(values)
+    assert shades.log
+    assert shades.limits == pytest.approx((low, 10.0), rel=0.2)
+    side = Side(Scale("$\\mu$", 1.0, "1"), np.linspace(0.1, 0.2, 20), False)
+    mesh, _ = draw_measure(mpl.figure.Figure().add_subplot(), side, side, values, "amplitude (N)")
+    assert mesh.colorbar.extend == end
+    low, high = measure_shades(np.array([[1e-9, 1.0]])).limits  # a bar must have a length
+    assert low < high

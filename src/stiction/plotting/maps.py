@@ -100,8 +100,9 @@ def draw_measure(
         rasterized=True,
     )  # fmt: skip
     _frame(ax, x, y)
-    bar = ax.figure.colorbar(mesh, ax=ax, label=label, pad=0.02)
     low, high = shades.limits
+    beyond = "min" if (values < low).any() else "neither"
+    bar = ax.figure.colorbar(mesh, ax=ax, label=label, pad=0.02, extend=beyond)
     if shades.log and high < PLAINLY * low:
         for formatted in (bar.ax.yaxis.set_major_formatter, bar.ax.yaxis.set_minor_formatter):
             formatted(sparse(low))
