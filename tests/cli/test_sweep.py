@@ -15,7 +15,10 @@ from tests.waiting import INTERRUPTIBLE, PATIENCE
 import stiction as st
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.cli import main, tally
+from stiction.study.variables.measures import MEASURES
 from stiction.study.view.view import kinds
+
+EVERY_MEASURE = ", ".join(sorted(MEASURES))  # and no former name
 
 STUDY = """
 [study]
@@ -100,6 +103,7 @@ def test_failing_runs_are_counted_and_the_first_is_named(config, tmp_path, capsy
     [
         (('to = "4 deg"', "to = 4"), "axes.phi.to: degree or radian?"),
         (('"peak_force"', '"peak_forse"'), "study.measures: unknown measure 'peak_forse'; did you"),
+        (('"peak_force"', '"?"'), f"study.measures: unknown measure '?'; known: {EVERY_MEASURE}"),
         (("[axes.phi]", "[axes.phy]"), "axes.phy: unknown parameter 'phy'; did you mean 'phi'?"),
         (("[axes", "[axis"), "axes: missing"),
         (("[study]", "[stuyd]"), "stuyd: unknown table"),

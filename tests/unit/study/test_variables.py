@@ -49,6 +49,7 @@ def test_the_paper_s_cycle(paper, paper_run):
     data = paper_run.data
     peak = largest_spring_force(paper_run.samples, 1e3).force
     assert value("peak_force", paper) == pytest.approx(peak, rel=2e-6)
+    assert value("mu_static", paper) == pytest.approx(peak / PAPER.normal_load, rel=2e-6)
     assert value("peak_velocity", paper) == pytest.approx(float(data["V_X"].max()), rel=5e-3)
     cycles = st.analysis.find_cycles(st.analysis.record_of(paper_run))
     assert value("cycles", paper) == cycles.sizes["cycle"]
@@ -64,6 +65,13 @@ def test_the_paper_s_cycle(paper, paper_run):
     late = data["spring_x"].sel(time=slice(3.75, None))
     assert value("mean_force", paper) == pytest.approx(float(late.mean()), rel=1e-3)
     assert value("amplitude", paper) == pytest.approx(0.5 * float(np.ptp(late.values)), rel=1e-3)
+
+
+def test_a_load_that_varies_gives_no_coefficient():
+    loaded = PAPER.replace(load=st.protocols.load_ramp(["20 N"], ramp="0.1 s"))
+    run = run_in_study(loaded, "0.2 s")
+    assert value("peak_force", run) > 0.0
+    assert np.isnan(value("mu_static", run))
 
 
 def test_creep_before_the_first_slip(paper, paper_run):

@@ -58,12 +58,14 @@ def unknown_axes(tables: Mapping[str, Any], value: Any) -> Iterator[Fault]:
                 yield Fault(f"axes.{path}", said)
 
 
-def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]:
-    """Return distinct names; refuse unknown ones."""
+def named_ones(
+    value: Any, what: str, known: Collection[str], former: Collection[str] = ()
+) -> tuple[str, ...]:
+    """Return distinct names, known or former ones; refuse others, with the known ones."""
     if isinstance(value, str) or not hasattr(value, "__iter__"):
         raise ValueError(f"{echo(value)} is not a list of {what}s; known: {', '.join(known)}")
     wanted = tuple(dict.fromkeys(str(each) for each in value))
-    strange = [name for name in wanted if name not in known]
+    strange = [name for name in wanted if name not in known and name not in former]
     if strange:
         raise ValueError("; ".join(unknown_name(what, name, known) for name in strange))
     return wanted
@@ -71,7 +73,7 @@ def named_ones(value: Any, what: str, known: Collection[str]) -> tuple[str, ...]
 
 def measures_of(value: Any) -> tuple[str, ...]:
     """Return names of measures, with old names replaced."""
-    known = named_ones(value, "measure", {**MEASURES, **FORMERLY})
+    known = named_ones(value, "measure", MEASURES, FORMERLY)
     return tuple(dict.fromkeys(by_new_names(known, FORMERLY, "measure")))
 
 

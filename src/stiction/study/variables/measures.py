@@ -44,12 +44,23 @@ def _mean(values: np.ndarray) -> float:
     return float(values.sum()) / len(values) if len(values) else nan
 
 
+def _over_load(force: float, run: ObservedRun) -> float:
+    """Return a force over the normal load, NaN where that varies."""
+    slider = run.description.slider
+    return force / slider.normal_load if slider.load is None else nan
+
+
 MEASURES: dict[str, Measure] = {
     "regime": Measure(
         "1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS, lambda run: True
     ),
     "peak_force": Measure(
         "N", "largest spring force along x, k_x u_x", lambda run: run.features.peak
+    ),
+    "mu_static": Measure(
+        "1",
+        "apparent static friction coefficient: largest spring force along x over a constant load",
+        lambda run: _over_load(run.features.peak, run),
     ),
     "mean_force": Measure(
         "N",

@@ -55,6 +55,8 @@ def sweep(
         count = 20
         spacing = "log"
 
+    The reference lists the measures; `measures = ["?"]` is refused with the names of all.
+
     There are ready studies: `stiction sweep --preset yaw-angle -o yaw.zarr`, then `stiction map
     yaw.zarr`.
 
