@@ -91,7 +91,8 @@ def test_every_command_explains_itself(name, capsys):
     assert inside(name, "--help") == 0
     text = capsys.readouterr().out
     assert f"stiction {name}" in text
-    assert len(text.splitlines()) > 8
+    lacks = f"its docstring lacks an example, or what its arguments are:\n{text}"
+    assert len(text.splitlines()) > 8, lacks
 
 
 @pytest.mark.parametrize("name", COMMANDS)

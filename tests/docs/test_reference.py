@@ -74,4 +74,5 @@ def test_each_name_has_an_example(name):
     if short.replace("_", "-") in PRESETS or short in ("nakano_popov_2020", SERVER):
         return  # every preset is run by tests/unit/presets, and is used alike
     short = MADE_BY.get(short, short)
-    assert ">>> " in (inspect.getdoc(FOUND[name]) or "") or f".{short}(" in GALLERY
+    shown = ">>> " in (inspect.getdoc(FOUND[name]) or "") or f".{short}(" in GALLERY
+    assert shown, f"{name} lacks an example in its docstring, or in a script of docs/gallery"

@@ -36,7 +36,8 @@ BENCHMARKS = sorted((ROOT / "benchmarks").rglob("*.py"))
 def test_no_room_has_more_than_a_dozen_files():
     rooms = {path.parent for tree in TREES for path in (ROOT / tree).rglob("*.py")}
     sizes = {room: len({*room.glob("*.py")} - {room / "__init__.py"}) for room in rooms}
-    assert {str(room): size for room, size in sizes.items() if size > DOZEN} == {}
+    full = [f"{room.relative_to(ROOT)} has {size}" for room, size in sizes.items() if size > DOZEN]
+    assert not full, f"more files than a dozen: {', '.join(full)}; divide the room, or use another"
 
 
 @pytest.mark.parametrize("path", BENCHMARKS, ids=lambda path: str(path.relative_to(ROOT)))
@@ -73,7 +74,8 @@ def test_a_file_is_used_by_another():
             continue
         name = ".".join(path.relative_to(room).with_suffix("").parts)
         own = sum(each in names for each in (name, path.stem))
-        assert times[name] + times[path.stem] > own, path
+        line = f"{path.relative_to(ROOT)} is used by no file; register it in a line."
+        assert times[name] + times[path.stem] > own, f"{line} See CONTRIBUTING, Adding things"
 
 
 def test_each_part_of_the_benchmark_is_there():
