@@ -247,11 +247,30 @@ def read(description: Description, value: Any) -> Law:
     if text.endswith(".toml"):
         return read_law(friction_table(text), finder_for_descriptions(Path(text).parent))
     if ":" in text:  # named by the user, not by a file
-        return read_law({"law": text}, finder_for_descriptions(Path(), trust=True))
+        return read_own_law(description, text)
     if text in LAWS:
         return comparable(LAWS[text], description)
     other = f"(or a table {EXAMPLE}, a .toml file, file.py:Class)"
     raise DescriptionError.of("law", f"{unknown_name('law', text, LAWS)} {other}")
+
+
+def read_own_law(description: Description, name: str) -> Law:
+    """Read a user's law by its name: with its defaults, or comparable if it lacks some of them."""
+    located: list[Any] = []
+    find = finder_for_descriptions(Path(), trust=True)
+
+    def locate(name: str, text: str | None) -> type[Any]:
+        located.append(find(name, text))
+        kind: type[Any] = located[0]
+        return kind
+
+    try:
+        return read_law({"law": name}, locate)
+    except DescriptionError:
+        kind = located[0] if located else None
+        if set(getattr(kind, "_fields", ())) <= set(getattr(kind, "_field_defaults", ())):
+            raise
+    return comparable(kind, description)
 
 
 def comparable(kind: Any, description: Description) -> Law:

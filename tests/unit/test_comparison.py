@@ -29,6 +29,12 @@ from stiction.result.table import as_table
 from stiction.simulation import automatic_times
 
 WEAKENING = st.ExponentialWeakening(mu_0=0.20, mu_inf=0.15, v_f=0.01)
+# a method of the law in `examples/mylaw.py`, which has lost all at 1000 v_c
+LIKE = """
+    @classmethod
+    def like(kind, static, kinetic, speed):
+        return kind(static, (static - kinetic) / log1p(1e3), speed / 1e3)
+"""
 PANELS = {"force", "words", "X", "speed", "portrait", "rest", "held"}
 
 
@@ -180,6 +186,22 @@ def test_laws_are_read_in_every_form(described: st.Description, tmp_path: Path) 
     forms = ["coulomb", ' {law = "coulomb", mu_0 = 0.15}', path, {"law": "coulomb", "mu_0": 0.16}]
     laws = read_laws(described, [*forms, st.Coulomb(0.18)])
     assert [law.mu_0 for law in laws] == [0.15, 0.15, 0.17, 0.16, 0.18]
+
+
+def test_a_user_s_law_by_name_is_like_the_described_one_or_says_what_to_write(
+    described: st.Description, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It said that three parameters were missing."""
+    monkeypatch.chdir(tmp_path)
+    text = (Path(__file__).parents[2] / "examples" / "mylaw.py").read_text("utf-8")
+    Path("bare.py").write_text(text)
+    with pytest.raises(st.DescriptionError, match=r"write a table with its parameters: mu_0, b, v"):
+        read_laws(described, ["bare.py:Logarithmic"])
+    Path("comparable.py").write_text(text + LIKE)
+    (law,) = read_laws(described, ["comparable.py:Logarithmic"])
+    shared = traits(described.slider.law, 1e-3, 0.1)
+    assert law.mu_0 == pytest.approx(shared.static, rel=1e-3)
+    assert law.coefficient(1e3 * law.v_c) == pytest.approx(shared.kinetic, rel=1e-3)
 
 
 def test_a_law_by_name_is_in_proportion_to_the_apparatus(described: st.Description) -> None:

@@ -41,7 +41,8 @@ def compare(
     A law given by name alone gets parameters comparable with the law in CONFIG: the same
     friction coefficients at rest and in fast slip, and the same slip speed in between. Laws that
     have no plateau to fall to, such as power-law-weakening, have the same slope at rest. Rate and
-    state has the friction in fast slip at this speed, V*, and that at rest at V*/10000.
+    state has the friction in fast slip at this speed, V*, and that at rest at V*/10000. Your own
+    law has its defaults, or such parameters if its class has a method `like`.
 
     Exit status: 0 if every run reached its duration, 1 if one ended earlier (it is still drawn),
     2 if a law or the description cannot be simulated.
