@@ -62,6 +62,19 @@ def copied(libraries, tmp_path):
     return shutil.copytree(libraries, tmp_path / "libraries")
 
 
+def test_the_figures_say_what_their_lines_and_regions_are(found):
+    first, *others = st.plotting.plot_posterior(found)
+    assert words_of(first) == ["prior", "posterior", "95 %"]
+    assert not any(each.get_legend() for each in others)
+    pairs = st.plotting.plot_corner(found)
+    assert words_of(pairs[0, 1])[2:] == ["95 %", "95 % of a pair", "50 % of a pair"]
+
+
+def words_of(ax):
+    """The entries of a panel's legend."""
+    return [text.get_text() for text in ax.get_legend().get_texts()]
+
+
 def test_the_fit_finds_the_parameters_within_their_intervals(found):
     truth = {"phi": np.radians(2.5), "k_x": 2300.0, "mu_0": 0.625, "mu_inf": 0.375}
     # fixed seeds: each interval of 95 % holds the truth

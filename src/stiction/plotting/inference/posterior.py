@@ -7,7 +7,9 @@ from math import ceil
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
@@ -26,6 +28,7 @@ ACROSS = 3, 4  # panels in a row, at least and at most
 BINS = 40
 FEW_BINS = 24  # of a posterior, whose draws repeat
 SHARES = (0.95, 0.5)  # of the posterior inside each contour
+SHADES = ("#BBD6E8", BLUE)  # of these regions
 SMOOTH = 1.2  # bins: width of the smoothing of a two-dimensional histogram
 OUTER = 0.002  # share of the prior beyond each end of an axis
 PLAIN = {"deg": " (deg)", "1": ""}  # units without a metric prefix, as on axes
@@ -56,9 +59,16 @@ def plot_posterior(fit: Fit, axes: Sequence[Axes] | None = None) -> NDArray[np.o
             said = estimate.name not in fit.unidentified
             draw_parameter(ax, axis_of(fit, name), fit.data[name], fit.prior[name], said)
         panels[0].legend(  # above: a posterior may stand anywhere in the panel
-            loc="lower left", bbox_to_anchor=(-0.03, 1.0), ncols=2, handlelength=1.0
-        )
+            handles=meanings(panels), loc="lower left", bbox_to_anchor=(-0.03, 1.0), ncols=3,
+            columnspacing=1.0, handlelength=1.0,
+        )  # fmt: skip
     return np.array(panels, dtype=object)
+
+
+def meanings(panels: Sequence[Axes]) -> list[Artist]:
+    """Return one handle for each thing that some panels show."""
+    shown = (zip(*ax.get_legend_handles_labels(), strict=True) for ax in panels)
+    return [*{label: handle for each in shown for handle, label in each}.values()]
 
 
 def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequence[Axes]:
@@ -128,8 +138,9 @@ def draw_parameter(
             heights, its.values_at(edges), facecolor=face, edgecolor=edge, label=label, **look
         )
     if identified:
-        for edge in its.values_at(np.quantile(posterior, BOUNDS_95)):
-            ax.axvline(edge, color=BLUE, linewidth=0.8, linestyle=(0, (4, 2)))
+        bounds = its.values_at(np.quantile(posterior, BOUNDS_95))
+        for edge, words in zip(bounds, ("95 %", None), strict=True):
+            ax.axvline(edge, color=BLUE, linewidth=0.8, linestyle=(0, (4, 2)), label=words)
     else:
         ax.set_title("not identifiable", color=GREY)
     use_scale(ax, "x", its.log)
@@ -189,6 +200,12 @@ def plot_corner(
                 grid[i, j].set_xlim(near)
             for i in range(j):
                 grid[j, i].set_ylim(near)
+        if count > 1:  # beside the diagonal
+            regions = (
+                Patch(facecolor=shade, label=f"{share:.0%} of a pair".replace("%", " %"))
+                for shade, share in zip(SHADES, SHARES, strict=True)
+            )
+            grid[0, 1].legend(handles=[*meanings([grid[0, 0]]), *regions], loc="upper left")
         if axes is None:
             grid[0, 0].figure.align_xlabels(grid[-1])
     return np.asarray(grid, dtype=object)
@@ -211,7 +228,7 @@ def draw_pair(ax: Axes, fit: Fit, x: str, y: str) -> None:
     ]
     edges = sorted({*levels, float(smooth.max())})
     if len(edges) == len(levels) + 1:
-        ax.contourf(*centres, smooth.T, levels=edges, colors=["#BBD6E8", BLUE])
+        ax.contourf(*centres, smooth.T, levels=edges, colors=SHADES)
     use_scale(ax, "x", own[0].log)
     use_scale(ax, "y", own[1].log)
 
