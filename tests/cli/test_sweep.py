@@ -210,3 +210,18 @@ def test_each_part_of_a_map_that_is_not_named_is_told_by_its_option(tmp_path, ca
     said = capsys.readouterr().err
     assert "--at 'phi' is not NAME=VALUE" in said
     assert "--at '1 mm/s' is not NAME=VALUE" in said
+
+
+def test_a_refinement_says_where_its_changes_are(config, tmp_path, capsys):
+    """They were drawn by `stiction map` alone."""
+    text = config.read_text().replace('duration = "50 ms"', 'duration = "3 s"')
+    text = text.replace('"peak_force"', '"regime"').replace('values = ["1 mm/s", "2 mm/s"]', "@")
+    text = text.replace('from = "1 deg"\nto = "4 deg"\ncount = 4', 'values = ["8 deg", "12 deg"]')
+    config.write_text(text.replace("@", 'values = ["1 mm/s"]'))
+    store = tmp_path / "a.zarr"
+    assert inside("sweep", config, "-o", store, "--refine", "phi = 1 deg", "--threads", 1) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    table = store / "refined" / "phi" / "changes"
+    assert f"wrote {table}, which xarray.open_zarr reads" in said
+    (width,) = xr.open_zarr(table, consolidated=False)["half_width"].values
+    assert 0.0 < width <= 0.5

@@ -103,6 +103,7 @@ def sweep(
     from stiction.study.execution.refine import refine as halve
     from stiction.study.execution.refine import request
     from stiction.study.execution.sweep import sweep as do
+    from stiction.study.view.view import CHANGES, REFINED
 
     found = None
     faults = Faults()
@@ -135,7 +136,9 @@ def sweep(
         return 130
     conclude(output, result)
     if found is not None and not (quiet or json_lines):
+        table = output / REFINED / found.attrs["along"] / CHANGES
         say(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
+        say(f"wrote {table}, which xarray.open_zarr reads")
     if not (quiet or json_lines):
         say(f"next: stiction map {argument(output)}{trust_in(study.base.slider)}")
     return 1 if result.failed else 0
