@@ -867,6 +867,6 @@ def test_the_command_line(config, tmp_path, capsys):
     forget_laws()
     capsys.readouterr()
     assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png") == 2
-    assert "run the stored text: --trust; the arrays" in capsys.readouterr().err
+    assert "trust the source, allow it: --trust; in Python" in capsys.readouterr().err
     assert not (tmp_path / "b.png").exists()
     assert inside("plot", tmp_path / "a.nc", "--output", tmp_path / "b.png", "--trust") == 0

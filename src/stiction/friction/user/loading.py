@@ -62,8 +62,8 @@ def finder_for_results(trust: bool = False) -> Find:
             return law_in(run(Text(_relative(file), text), f"<{file}>"), kind, name)
         raise fault(
             f"{echo(name)} is a user's law, and the code stored with it is not run without "
-            "permission: import its module first; or, if you trust the source, run the stored "
-            f"text: {TRUST}; the arrays can be read without it: xarray.open_dataset"
+            f"permission: if you trust the source, allow it: {TRUST}; in Python you may import its "
+            "module first instead; the arrays can be read without it: xarray.open_dataset"
         )
 
     return find
