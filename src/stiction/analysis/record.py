@@ -11,7 +11,7 @@ from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
 from stiction.analysis.signals.robust import inner_product, uniform_mean
-from stiction.arrays import Floats
+from stiction.arrays import Floats, xr
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
@@ -22,6 +22,7 @@ from stiction.recording.origin import Origin
 from stiction.recording.request import KNOWN, SignedForce
 from stiction.recording.sensor import Sensor
 from stiction.recording.stored import write_stored
+from stiction.storage.table_files import write_tables
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.text.samples import as_numbers, samples_to_si
@@ -429,6 +430,32 @@ class Record(Described):
         numbers = {name: value for name, value in known.items() if value is not None}
         channels = {"time": self.time, **self.channels()}
         return write_stored(path, channels, numbers, self.sensors or {}, self.origin)
+
+    def export(self, path: str | Path) -> list[Path]:
+        """Write the channels as CSV, Parquet or MATLAB, in SI; return the paths.
+
+        `stiction.read_record` reads such a file. Tell it which column is a displacement, and what
+        `save` stores beside the channels: the apparatus, and the sensors.
+
+        Raises
+        ------
+        ResultError
+            If the format is unknown, needs a missing package, or the file cannot be written.
+
+        Examples
+        --------
+        >>> import numpy as np, stiction as st, tempfile
+        >>> record = st.Record(time=np.arange(3.0), force=np.array([0.0, 1.0, 0.5]))
+        >>> (path,) = record.export(tempfile.mkdtemp() + "/data.csv")
+        >>> path.read_text().splitlines()[:2]
+        ['time [s],force [N]', '0.0,0.0']
+        """
+        columns = {
+            name: ("time", values, {"units": KINDS[name].unit})
+            for name, values in self.channels().items()
+        }
+        time = ("time", self.time, {"units": "s"})
+        return write_tables({"record": xr.Dataset(columns, {"time": time})}, path, {})
 
     def _repr_html_(self) -> str:
         stated = {name: getattr(self, name) for name in KNOWN} | {"normal_load": self.stated_load}

@@ -193,3 +193,18 @@ def test_a_remedy_is_what_whoever_called_can_write(tmp_path, capsys, read, remed
     assert told.rstrip().endswith(
         f"{path}: column 2 'force' states no unit of the force along the drive; {remedy}"
     )
+
+
+def test_the_channels_of_an_exported_record_are_read_again(tmp_path):
+    run = st.simulate(st.presets.nakano_popov_2020(), "0.1 s", sample_rate="10 kHz")
+    sensors = {"force": st.Sensor(noise="2 mN"), "position": st.Sensor(unit="m")}
+    record = st.measure(run, sensors, sample_rate="1 kHz")
+    for name in ("data.csv", "data.mat"):
+        (path,) = record.export(tmp_path / name)
+        again = st.read_record(path, position="position")
+        assert again.channels().keys() == record.channels().keys() == {"force", "position"}
+        np.testing.assert_array_equal(again.time, record.time)
+        for channel, values in record.channels().items():
+            np.testing.assert_array_equal(again.channels()[channel], values)
+    with pytest.raises(st.ResultError, match="\\.csv"):
+        record.export(tmp_path / "data.xyz")
