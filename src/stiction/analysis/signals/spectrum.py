@@ -15,7 +15,9 @@ from stiction.trajectory import Trajectory
 
 BLOCK = 2**17  # samples taken at once from what can be sliced, 1 MB
 AT_ONCE = 2**18  # samples in the windows that are transformed at once, 2 MB
-UNEVEN = 0.1  # of a step between two samples: more than times that are rounded differ by
+# Of a step between two samples: more than rounded times differ by. A run is sampled evenly, or at
+# other times on purpose; the clock of a record jitters and leaves samples out, see `even_grid`
+UNEVEN = 0.1
 
 
 def spectrum(force: Floats) -> tuple[Floats, float]:
