@@ -11,16 +11,15 @@ from stiction.recording.noise import dither_remainder, white_noise
 
 STRAIGHT_PART = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 # A loading is not straight if its line comes from so far above the trough, or if it deviates so
-# far from it, over what it gains; and by more than so many standard deviations of noise
-LIFTS, STEPS = 0.05, 0.03
-LIFTED, AWAY = 3.0, 2.0
+# far from it, over what it gains; and by more than so many standard deviations of noise, from
+# whose lowest samples a trough is
+LIFTS, STEPS, NOISE = 0.05, 0.03, 3.0
 # Times as much bends a whole rise: less may be a drive whose velocity varies, or a filter's swing
 GROSSLY = 5.0
-PRECISE = 0.05  # relative error by noise of the rate of half as long a rise
 # Relative error of rates by a line through a single step: in 420 records of 2 to 20 steps a drop
 # their median is off by 0.10 at most, as a standard error
 ROUNDED = 0.1
-FEWEST = 8  # samples between first and last of a straight part, of which half as many are enough
+FEWEST = 4  # samples between first and last of a straight part, of which half as many are enough
 
 
 def loaded_until(
@@ -32,7 +31,7 @@ def loaded_until(
     come from the trough by far, or is none: half as long a rise is looked at, and so on until it is
     straight, as long as it has samples; the straightest counts.
     """
-    noise, step = white_noise(force), resolution(force)
+    hidden = NOISE * white_noise(force) + resolution(force)
     until, rises = peak_time.copy(), np.arange(len(start))
     straightest, ends = np.full(len(start), np.inf), peak_time.copy()
     while len(rises):
@@ -40,17 +39,13 @@ def loaded_until(
         fit = fit_pieces(time, force, begin, end, 1)
         level, slope = fit.coefficients[:, 0], fit.coefficients[:, 1] / fit.half
         lifted = level - slope * (fit.middle - start[rises]) - start_force[rises]
-        lifted = np.maximum(lifted - LIFTED * noise - step, 0.0)
-        away = np.maximum(_deviation(fit, time, force, begin, end) - AWAY * noise - step, 0.0)
+        away = _deviation(fit, time, force, begin, end)
         gained = np.maximum(slope * (time[end] - start[rises]), TINY)
-        bent = np.maximum(lifted / LIFTS, away / STEPS) / gained
+        bent = np.maximum((lifted - hidden) / LIFTS, (away - hidden) / STEPS) / gained
         bent[(ends[rises] == peak_time[rises]) & (bent < GROSSLY)] = 0.0
         better = bent < straightest[rises]
         straightest[rises[better]], until[rises[better]] = bent[better], ends[rises[better]]
-        # half as long a rise gains half as much or more, four fifths of it in its straight part
-        gains = np.maximum(0.4 * (lifted + gained), TINY)
-        error = noise * np.sqrt(12.0 / (0.5 * (end - begin))) / gains
-        rises = rises[(bent > 1.0) & (end - begin >= FEWEST) & (error < PRECISE)]
+        rises = rises[(bent > 1.0) & (end - begin >= FEWEST)]
         ends[rises] = 0.5 * (start[rises] + ends[rises])
     return until
 
