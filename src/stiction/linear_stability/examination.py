@@ -23,10 +23,10 @@ from stiction.linear_stability.linear import (
     steady_sliding,
 )
 from stiction.linear_stability.roots import Critical, critical
-from stiction.names import draw, old_attributes, own_picture
+from stiction.names import draw, old_attributes
 from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
-from stiction.text.sections import Section, Table, as_html, as_text
+from stiction.text.sections import Report, Section, Table
 from stiction.text.units import Quantity, in_words
 
 OVER = ("phi", "drive.velocity")
@@ -35,7 +35,7 @@ Ends = Sequence[Quantity]
 
 
 @dataclass(frozen=True, repr=False)
-class Stability:
+class Stability(Report):
     """Steady sliding, its modes, and the parameters at which they begin to grow.
 
     Parameters
@@ -59,13 +59,6 @@ class Stability:
     def __repr__(self) -> str:
         """Return a one-line summary."""
         return f"<Stability: {self.sliding.verdict}; over {', '.join(self.over)}>"
-
-    def __str__(self) -> str:
-        """Return the report as text."""
-        return as_text(self.tables())
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables()) + own_picture(self)
 
     @property
     def slider(self) -> Slider:
