@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.creep.curve import integral
 from stiction.analysis.record import Record
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
@@ -97,12 +98,6 @@ def _evenly(time: Floats, values: Floats, step: float) -> Floats:
     return np.interp(np.arange(time[0], time[-1] + 0.5 * step, step), time, values)
 
 
-def _integral(time: Floats, values: Floats) -> Floats:
-    """Return the integral (trapezoids) from the first sample to each."""
-    steps = np.diff(time) * 0.5 * (values[1:] + values[:-1])
-    return np.concatenate([[0.0], np.cumsum(steps)])
-
-
 def load_change(record: Record, begin: Floats, end: Floats) -> float:
     """Return how far the load goes up and down, over its mean, in the stick phase of most change.
 
@@ -112,9 +107,9 @@ def load_change(record: Record, begin: Floats, end: Floats) -> float:
     time, load = _load_readings(record)
     if len(time) < 2 or not record.load_variation() > 0.0:
         return 0.0
-    area = _integral(time, load)
     edges = np.linspace(begin, end, PARTS + 1)
-    means = np.diff(np.interp(edges, time, area), axis=0) / np.diff(edges, axis=0)
+    areas = integral(time, load, np.clip(edges, time[0], time[-1]))
+    means = np.diff(areas, axis=0) / np.diff(edges, axis=0)
     changes = np.abs(np.diff(means, axis=0)).sum(axis=0) / means.mean(axis=0)
     return float(np.fmax.reduce(changes, initial=0.0))
 

@@ -261,19 +261,19 @@ def between_rests(
     time, position = record.time[near], position[near]
     ends = np.clip(np.stack([edges - reach, edges + reach]), time[0], time[-1])
     ends[:, at_rest | (edges < start + reach) | (edges > slip - reach)] = np.nan
-    average = np.diff(_integral(time, position, ends), axis=0)[0] / np.diff(ends, axis=0)[0]
+    average = np.diff(integral(time, position, ends), axis=0)[0] / np.diff(ends, axis=0)[0]
     place = np.where(np.isnan(average), np.interp(edges, time, position), average)
     if at_rest.any():
         its = sticks[np.searchsorted(rests, edges[at_rest])]
         last = np.searchsorted(time, its[:, 1], side="right").clip(1) - 1
         place[at_rest] = np.where(time[last] >= its[:, 0], position[last], place[at_rest])
     passed = np.diff(edges)
-    force = np.diff(_integral(time, record.force[near], edges)) / passed
+    force = np.diff(integral(time, record.force[near], edges)) / passed
     unknown = np.full(len(passed), np.nan)
     return Bins(np.diff(place) / passed, unknown, force, slip - edges[1:], slip - edges[:-1])
 
 
-def _integral(time: Floats, values: Floats, at: Floats) -> Floats:
+def integral(time: Floats, values: Floats, at: Floats) -> Floats:
     """Return the integral (trapezoids) from the first sample to each time `at`."""
     steps = 0.5 * np.diff(time) * (values[1:] + values[:-1])
     which = np.searchsorted(time, at, side="right").clip(1, len(time) - 1) - 1
