@@ -65,7 +65,7 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
         at = 0.5 * (cycles["peak_time"] + cycles["trough_time"])
         middle = 0.5 * (cycles["peak"] + cycles["trough"])
         start = float(record.time[0])
-    elif not len(cycles) and (last := _late(record)) and not levels(record):
+    elif not len(cycles) and (last := _late(record)) and len(levels(record)) < 2:
         at, middle = (part_means(each[last], PARTS) for each in (record.time, record.force))
         start = float(record.time[last.start])
     else:
