@@ -28,9 +28,9 @@ LASTING = 0.5  # of its rate, by which that of each half may differ
 
 
 class Drift(NamedTuple):
-    """A steady change of the force (N/s), its standard error, and the total change (N).
+    """A steady change of the force (N/s), its standard error, and the change while it is seen (N).
 
-    start : when it is seen to begin, s: without cycles in the second half of the sliding.
+    start, end : when it is seen, s: without cycles in the second half of the sliding.
     sure : whether there is one; stands_out : whether it is so large that it is worth a sentence.
     likely : the rate at which peaks and troughs, or sliding, change perhaps by chance, N/s; or 0.
     shared : by how much they are off on average if any change that they share is the zero, N.
@@ -44,6 +44,7 @@ class Drift(NamedTuple):
     sure: bool = False
     likely: float = 0.0
     shared: float = 0.0
+    end: float = np.nan
 
     @property
     def possible(drift) -> float:
@@ -64,10 +65,10 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
         shared = shared_change(*times, cycles["peak"], cycles["trough"])
         at = 0.5 * (cycles["peak_time"] + cycles["trough_time"])
         middle = 0.5 * (cycles["peak"] + cycles["trough"])
-        start = float(record.time[0])
+        seen = record.time[[0, -1]]
     elif not len(cycles) and (last := _late(record)) and len(levels(record)) < 2:
         at, middle = (part_means(each[last], PARTS) for each in (record.time, record.force))
-        start = float(record.time[last.start])
+        seen = record.time[[last.start, last.stop - 1]]
     else:
         likely = _likely_rate(cycles)
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
@@ -75,14 +76,15 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     rate, error = slope_in_lasting_noise(at, middle)
     if not _goes_on(at, middle, rate):
         error = np.nan
-    change = rate * (float(record.time[-1]) - start)
+    start, end = map(float, seen)
+    change = rate * (end - start)
     large = abs(change) > WORTH * abs(float(middle.mean()))
     sure = abs(rate) > SURE * error
     if sure:
         likely = 0.0
     else:
         likely = _likely_rate(cycles) if len(cycles) else rate * (abs(rate) > LIKELY * error)
-    return Drift(rate, error, change, start, large and sure, sure, likely, shared)
+    return Drift(rate, error, change, start, large and sure, sure, likely, shared, end)
 
 
 def _late(record: Record) -> slice | None:
@@ -135,14 +137,14 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
 
     The zero is right at the first sample, as `detrend` takes it. Each is off by what it drifts
     until then: peaks and means by that of the middle of their times, where there are no cycles the
-    mean by that of the second half. A drift may be that of friction instead: then they are right,
+    mean by that where it is seen. A drift may be that of friction instead: then they are right,
     at that time.
     """
     rate = drift.possible
     if rate == drift.shared == 0.0:
         return friction
     first = float(record.time[0])
-    middle = peak = 0.5 * (drift.start + float(record.time[-1]))
+    middle = peak = 0.5 * (drift.start + drift.end)
     if len(cycles):
         peak = float(cycles["peak_time"].mean())
         middle = 0.5 * (peak + float(cycles["trough_time"].mean()))

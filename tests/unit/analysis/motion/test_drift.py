@@ -20,7 +20,8 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.signals.correlated_noise import standard_error
 
 RATE, BEGIN = -0.01, 100.0  # N/s, s
-KNOWN = Drift(RATE, 1e-4, 0.0, BEGIN, stands_out=False, sure=True)
+END = BEGIN + 50.0
+KNOWN = Drift(RATE, 1e-4, 0.0, BEGIN, stands_out=False, sure=True, end=END)
 PEAKS, TROUGHS = np.array([20.0, 27.0, 34.0, 41.0]), np.array([24.0, 31.0, 38.0, 45.0])
 
 
@@ -115,6 +116,7 @@ def test_a_mean_without_cycles_is_off_by_the_drift_until_its_middle():
     record = LOADED.model_copy(update={"force": np.full(len(TIME), 4.0)})
     slid = with_drift(Friction(None, None, exact(4.0), {}), record, swings(record).lasting, late)
     assert slid.kinetic.error == pytest.approx(0.4)
+    assert further(LOADED, 0, late._replace(end=BEGIN + 40.0))[2] == pytest.approx(0.35)
     assert slid.break_away is None
 
 
@@ -167,6 +169,8 @@ def test_a_drift_of_sliding_is_seen_before_the_drive_turns_or_unloads(ends):
     drift = seen_of(lambda t: np.interp(t, [48.0, 50.0], [2.0, last]) + 2e-3 * t)
     assert drift.sure
     assert drift.error < 2e-4
+    assert (drift.start, drift.end) == pytest.approx((24.0, 48.0), abs=1.0)
+    assert drift.change == pytest.approx(24.0 * drift.rate, rel=0.04)
     assert abs(drift.rate - 2e-3) < 2.0 * drift.error
 
 
