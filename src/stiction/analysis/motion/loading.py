@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
@@ -20,6 +21,11 @@ GROSSLY = 5.0
 # their median is off by 0.10 at most, as a standard error
 ROUNDED = 0.1
 FEWEST = 4  # samples between first and last of a straight part, of which half as many are enough
+# A rise that rings falls from the top of its first swing, by so much of the height of that top over
+# the line from trough to peak; and it goes on more slowly than the flank of that swing, as it does
+# not after a small slip
+BACK, FLANK = 0.4, 1.5
+RANGE = 10.0  # standard deviations of noise: of a million samples
 
 
 def loaded_until(
@@ -29,9 +35,11 @@ def loaded_until(
 
     A mass may slide, or creep, for most of a rise. Then the line through its first half does not
     come from the trough by far, or is none: half as long a rise is looked at, and so on until it is
-    straight, as long as it has samples; the straightest counts.
+    straight, as long as it has samples; the straightest counts. Where the force rings after a slip,
+    that would be the flank of a swing: there half of the rise counts after all.
     """
-    hidden = NOISE * white_noise(force) + resolution(force)
+    noise, step = white_noise(force), resolution(force)
+    hidden = NOISE * noise + step
     until, rises = peak_time.copy(), np.arange(len(start))
     straightest, ends = np.full(len(start), np.inf), peak_time.copy()
     while len(rises):
@@ -47,6 +55,9 @@ def loaded_until(
         straightest[rises[better]], until[rises[better]] = bent[better], ends[rises[better]]
         rises = rises[(bent > 1.0) & (end - begin >= FEWEST)]
         ends[rises] = 0.5 * (start[rises] + ends[rises])
+    shorter = until < peak_time
+    its = start[shorter], until[shorter], peak_time[shorter]
+    until[shorter] = np.where(_are_flanks(time, force, *its, RANGE * noise + step), its[2], its[1])
     return until
 
 
@@ -59,6 +70,32 @@ def _deviation(fit: Fits, time: Floats, force: Floats, begin: Indices, end: Indi
     x = (time[at] - fit.middle[piece]) / fit.half[piece]
     away = force[at] - fit.coefficients[piece, 0] - fit.coefficients[piece, 1] * x
     return np.asarray(np.sqrt(np.add.reduceat(away**2, first) / counts))
+
+
+def _are_flanks(
+    time: Floats, force: Floats, start: Floats, until: Floats, peak_time: Floats, hidden: float
+) -> NDArray[np.bool_]:
+    """Return which rises begin, until a time, with the flank of a swing, as a load cell rings.
+
+    The mean of such swings is about zero over the whole rise. Noise hides a force of `hidden` (N).
+    """
+    first, last = (samples_from(time, each) for each in (start, peak_time))
+    last = np.clip(last, 1, len(time) - 1)
+    middle = np.minimum(samples_from(time, 0.5 * (until + peak_time)), last - 1)
+    late = fit_pieces(time, force, middle, last, 1)
+    found = loading_rate(time, force, start, until) > FLANK * late.coefficients[:, 1] / late.half
+    for at in np.flatnonzero(found):
+        rise = slice(first[at], last[at] + 1)
+        lead, fall = _swing(time[rise], force[rise])
+        found[at] = fall > max(BACK * lead, hidden)
+    return found
+
+
+def _swing(time: Floats, force: Floats) -> tuple[float, float]:
+    """Return how far a force comes above the line to its end, and how far it falls from there."""
+    lead = force - np.interp(time, time[[0, -1]], force[[0, -1]])
+    top = int(np.argmax(lead))
+    return float(lead[top]), float(force[top] - force[top:].min())
 
 
 def loading_rate(time: Floats, force: Floats, start: Floats, until: Floats) -> Floats:
