@@ -409,9 +409,12 @@ class Record(Described):
 
     def before(self, end: float) -> Self:
         """Return the part of the record before a time, s."""
-        last = int(np.searchsorted(self.time, end))
-        cut = {name: values[:last] for name, values in self.channels().items()}
-        return self.model_copy(update={"time": self.time[:last], **cut})
+        return self.part(slice(int(np.searchsorted(self.time, end))))
+
+    def part(self, samples: slice) -> Self:
+        """Return some of the samples, with all that is known of them."""
+        cut = {name: values[samples] for name, values in self.channels().items()}
+        return self.model_copy(update={"time": self.time[samples], **cut})
 
     def channels(self) -> dict[str, Floats]:
         """Return the measured channels by name, (n,) each, in SI; the force first."""

@@ -79,6 +79,13 @@ class EvenGrid:
         return int(np.count_nonzero(np.diff(self.missing, prepend=False) & self.missing))
 
     @property
+    def joined(self) -> Floats:
+        """(n,) times of the samples if each gap lasted for one step, s."""
+        steps = np.diff(self.time)
+        steps[np.diff(self.places) > ONE_MISSING] = self.step
+        return np.concatenate([self.time[:1], self.time[0] + np.cumsum(steps)])
+
+    @property
     def crowded(self) -> float:
         """The share of samples that follow the one before too closely."""
         return float(np.mean(np.diff(self.places) < CROWDED))
@@ -94,10 +101,15 @@ class EvenGrid:
         return np.asarray(np.abs(self._off) > EVEN)
 
     @property
+    def has_gaps(self) -> bool:
+        """Whether so much of the time lies in gaps that a spectrum cannot be computed."""
+        return bool(self.missing.mean() > MOST_MISSING)
+
+    @property
     def serves(self) -> bool:
         """Whether a spectrum can be computed on the grid."""
         even = self.coarse or self.crowded <= MOST_CROWDED
-        return bool(even and self.missing.mean() <= MOST_MISSING)
+        return even and not self.has_gaps
 
     def on(self, values: Floats) -> Floats:
         """Return values at the times of the grid, from those at the record's own times."""
@@ -182,7 +194,7 @@ def why_not(grid: EvenGrid | None) -> str:
     if grid.serves:
         return ""
     remedy = f"analyse a part without gaps ({begin_and_end()}), or sample it evenly"
-    if grid.missing.mean() > MOST_MISSING:
+    if grid.has_gaps:
         return (
             f"{percent(grid.missing.mean())} of the time lies in gaps between samples, and a "
             f"spectrum allows {percent(MOST_MISSING)}: {remedy}"

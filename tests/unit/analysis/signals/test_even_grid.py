@@ -154,3 +154,11 @@ def test_the_grid_is_the_line_of_least_squares_through_the_times(step, jitter):
     slope, start = np.polyfit(number, time, 1)
     found = line(number, time)
     assert (found.slope, found.offset) == pytest.approx((slope, start), rel=1e-12)
+
+
+def test_gaps_last_for_one_step_where_parts_are_joined():
+    time = 5.0 + 0.1 * np.delete(np.arange(100.0), [*range(20, 45), *range(60, 61)])
+    grid = even_grid(time)
+    assert grid.has_gaps
+    assert np.diff(grid.joined) == pytest.approx(np.where(np.diff(time) > 0.15, 0.1, np.diff(time)))
+    assert grid.joined[0] == time[0]

@@ -55,6 +55,7 @@ FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
 # so many samples from stick to stick show the cycles, though their falls differ in size
 FEWEST_STICKS, LATE, SHOWN = 3, 0.25, 16.0
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
+WITHOUT_CYCLES = (SETTLING, STEADY, STUCK)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
 MANY_SAMPLES = 64.0  # a cycle: no quicker line has been folded back to it
 
@@ -116,7 +117,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
         return Regime(UNDETERMINED, 0.0, {"driven": found.driven})
     if found.few is not None:
         return Regime(UNDETERMINED, 0.0, _single_slip(record, found, found.few), STICK_SLIP)
-    seen = _while_it_slides(record, found)
+    seen = _beside_gaps(record, _while_it_slides(record, found))
     stays = levels(record) if record.slip_speed is None else []
     if len(stays) > 1:
         return seen._replace(evidence=seen.evidence | {"levels": len(stays)})
@@ -153,6 +154,28 @@ def _while_it_slides(record: Record, found: Swings) -> Regime:
     before, later = (abs(float(np.median(part))) for part in np.split(record.force, [end]))
     name = "unloaded" if later < NO_LOAD * before else "turned"
     return seen._replace(evidence=seen.evidence | {name: float(record.time[end])})
+
+
+def _beside_gaps(record: Record, seen: Regime) -> Regime:
+    """Return a kind of motion without cycles, unless the record without its gaps may have some.
+
+    Only a spectrum shows cycles that noise hides, and across long gaps it cannot be computed. Where
+    the parts between gaps are joined, cycles change their phase there, but a spectrum shows them.
+    """
+    grid = even_grid(record.time)
+    unsure = seen.kind in WITHOUT_CYCLES and record.slip_speed is None
+    if not unsure or grid is None or not grid.has_gaps:
+        return seen
+    joined = record.model_copy(update={"time": grid.joined})
+    left = even_grid(joined.time)
+    if left is None or left.has_gaps:
+        return seen
+    its = regime_of(joined, swings(joined))
+    if its.kind in WITHOUT_CYCLES:
+        return seen._replace(confidence=min(seen.confidence, its.confidence))
+    other = its.runner_up if its.kind == UNDETERMINED else its.kind
+    gaps = {"gaps": float(grid.missing.mean())}
+    return Regime(UNDETERMINED, 0.0, seen.evidence | gaps, other)
 
 
 def _or_transverse(record: Record, seen: Regime, *last: float) -> Regime:

@@ -133,6 +133,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
         _whole,
     ),
     "quick_fall": ("by {} in the median", _force),
+    "gaps": ("{} of the time lies in gaps; without them it shows no such motion", percent),
     "few_periods": (
         "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
         _frequency,

@@ -872,3 +872,30 @@ def test_a_record_of_less_than_a_cycle_does_not_show_whether_the_mass_slides(cou
     assert "drift" not in " ".join(found.warnings)
     slides = np.minimum(force[:2400], 0.3)
     assert st.analyse(st.Record(time=share[:2400], force=slides)).friction.kinetic is not None
+
+
+def with_gaps(record: st.Record, number: int) -> st.Record:
+    """Return a record without a third of its samples, in as many gaps."""
+    at = np.arange(len(record)) * number / len(record)
+    kept = at % 1.0 < 2 / 3
+    return st.Record(time=record.time[kept], force=record.force[kept])
+
+
+def test_slips_that_noise_hides_are_no_steady_sliding_because_of_gaps() -> None:
+    """A spectrum shows them, but not across gaps: 36 of 40 were taken for sliding."""
+    found = []
+    for number in range(40):
+        record, _, _ = in_noise(np.random.default_rng([5, number]))
+        found.append(st.analysis.classify(with_gaps(record, 2)))
+    wrong = [each for each in found if each.kind in ("steady sliding", "settling", "stuck")]
+    assert len(wrong) <= 2
+    assert any("of the time lies in gaps" in str(each) for each in found)
+
+
+def test_steady_sliding_with_gaps_is_known() -> None:
+    for number in range(10):
+        noise = np.random.default_rng([6, number]).normal(size=6000)
+        steady = st.Record(time=1e-3 * np.arange(6000), force=2.0 + 0.05 * noise)
+        seen = st.analysis.classify(with_gaps(steady, 4))
+        assert seen.kind == "steady sliding"
+        assert seen.confidence > 0.7
