@@ -168,12 +168,14 @@ def _describe_unclear_force(found: Analysis) -> str:
             "The mass sticks and slips, too often for so few samples to show it: sample the run at "
             f"{in_words(evidence['rate_needed'], 'Hz')} or more."
         )
-    if evidence.get("backward", 0.0) <= 0.5:
+    against = "against" in evidence
+    if evidence.get("backward", 0.0) <= 0.5 and not against:
         return ""
     fast = "The force falls slowly and rises fast"
-    if float(found.record.force.mean()) <= 0.0:
+    if against or float(found.record.force.mean()) <= 0.0:
+        its = "The force is against the drive in all cycles" if against else fast
         return (
-            f"{fast}: it is recorded with the other sign, in all likelihood. Analyse it with "
+            f"{its}: it is recorded with the other sign, in all likelihood. Analyse it with "
             f"force=-force, {_with_other_sign(found)}."
         )
     return (

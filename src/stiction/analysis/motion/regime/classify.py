@@ -10,7 +10,7 @@ from stiction.analysis.motion.changes.cycles import BELOW
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
-from stiction.analysis.motion.course import COURSE_PARTS
+from stiction.analysis.motion.course import BEGINS_UNLOADED, COURSE_PARTS
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.disturbance import RESIDUE
@@ -47,6 +47,7 @@ from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
+from stiction.analysis.signals.turning_points import without_spikes
 from stiction.recording.noise import white_noise
 from stiction.trajectory import Trajectory
 
@@ -112,7 +113,8 @@ def regime_of(record: Record, found: Swings) -> Regime:
         return _or_transverse(record, Regime(SETTLING, sure, evidence), *last)
     if len(found.table):
         period = found.lasting.mean("period")
-        return _or_hum(record, period, SAME, by_parts(record, found))
+        seen = _unless_against(record, found.lasting, by_parts(record, found))
+        return _or_hum(record, period, SAME, seen)
     if found.driven:
         return Regime(UNDETERMINED, 0.0, {"driven": found.driven})
     if found.few is not None:
@@ -154,6 +156,21 @@ def _while_it_slides(record: Record, found: Swings) -> Regime:
     before, later = (abs(float(np.median(part))) for part in np.split(record.force, [end]))
     name = "unloaded" if later < NO_LOAD * before else "turned"
     return seen._replace(evidence=seen.evidence | {name: float(record.time[end])})
+
+
+def _unless_against(record: Record, cycles: CycleTable, seen: Regime) -> Regime:
+    """Return the kind of some cycles; undetermined where a wrong sign may give them its shape.
+
+    Where a record begins unloaded and its peaks are all negative, or the zero is known, it is not
+    the zero that is off. Then the force falls slowly where it seems to rise, as it does in a hold.
+    """
+    if seen.kind not in (STICK_SLIP, TRANSITIONAL) or record.slider is not None:
+        return seen
+    least = -float(cycles["peak"].max())
+    begins = abs(float(without_spikes(record.force)[0]))
+    if least <= 0.0 or (record.zero is None and begins > BEGINS_UNLOADED * least):
+        return seen
+    return Regime(UNDETERMINED, 0.0, {"cycles": len(cycles), "against": least})
 
 
 def _beside_gaps(record: Record, seen: Regime) -> Regime:

@@ -51,6 +51,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
         "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
         percent,
     ),
+    "against": ("all peaks are against the drive, by {} or more, though its zero is right", _force),
     "still_share": (
         "the slip speed stays below a tenth of the drive velocity for {} of it",
         percent,

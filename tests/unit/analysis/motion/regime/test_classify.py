@@ -899,3 +899,32 @@ def test_steady_sliding_with_gaps_is_known() -> None:
         seen = st.analysis.classify(with_gaps(steady, 4))
         assert seen.kind == "steady sliding"
         assert seen.confidence > 0.7
+
+
+def slide_hold_slide(sign: float, begin: float = 0.0) -> st.Record:
+    """Return sliding at 6 N after a loading, with four holds that relax by 10 %."""
+    corners = [(0.0, 0.0), (1.0, 6.0)]
+    for hold in 10.0 + 20.0 * np.arange(4):
+        corners += [(hold, 6.0), (hold + 1.0, 5.6), (hold + 5.0, 5.4), (hold + 5.2, 6.4)]
+        corners += [(hold + 5.6, 6.0)]
+    time = np.arange(begin, 85.0, 0.01)
+    force = np.interp(time, *np.array(corners).T)
+    force += 0.01 * np.random.default_rng(7).normal(size=len(time))
+    return st.Record(time=time, force=sign * force, normal_load=10.0)
+
+
+def test_holds_recorded_with_the_other_sign_are_no_stick_slip() -> None:
+    """Upside down, the force rises slowly in a hold, then falls: it was stick-slip for sure."""
+    found = st.analyse(slide_hold_slide(-1.0))
+    assert found.regime.kind == "undetermined"
+    assert "against" in found.regime.evidence
+    assert "recorded with the other sign" in str(found)
+    zeroed = slide_hold_slide(-1.0, begin=5.0).model_copy(update={"zero": 0.0})
+    assert "against" in st.analysis.classify(zeroed).evidence
+
+
+def test_stick_slip_keeps_its_kind_behind_a_zero_that_is_off() -> None:
+    """Its peaks are negative, too, but it does not begin with an unloaded spring."""
+    time, force, _ = between(sawtooth(np.random.default_rng(1), 20, 1.0), 500.0)
+    found = st.analysis.classify(st.Record(time=time, force=force - 8.0))
+    assert found.kind == "stick-slip"
