@@ -47,6 +47,7 @@ from stiction.analysis.signals.turning_points import CLEAR
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
 STILL_STICKS = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
+FASTEST = 1.1  # times stiffness times drive velocity: no spring is loaded faster, as it is known
 # Times the scatter about it, and share of the mean force: by more a force wanders that slides, or
 # the mass sticks and slips more slowly than the record shows. Measured steady sliding: 3.7
 SMOOTH, VARIES = 5.0, 0.05
@@ -85,7 +86,7 @@ def _without_slips(record: Record, found: Swings) -> Regime:
     if drive:
         evidence["rate_over_drive"] = way.late_rate / drive
     late = min(max(way.late_span, _toggles(record)) / way.span, 1.0) if way.span > 0.0 else 1.0
-    rising = way.change > 0.0 and way.one_way >= ONE_WAY
+    rising = _rises(way) and (record.load is None or _rises(_under_one_load(record)))
     slides = not rising or 0.0 < max(abs(way.early_rate), abs(way.late_rate)) < SLOW * drive
     end = float(record.time[-1])
     if record.slider and stops_with_drive(record.slider.motion, end, record.slip_speed):
@@ -114,6 +115,19 @@ def _without_slips(record: Record, found: Swings) -> Regime:
     if fall := final_fall(record.time, record.force):
         return Regime(UNDETERMINED, 0.0, evidence | dict(zip(FINAL_FALL, fall, strict=True)))
     return _loading(record, way, drive, 1.0 - vibrates, evidence)
+
+
+def _rises(way: Course) -> bool:
+    return way.change > 0.0 and way.one_way >= ONE_WAY
+
+
+def _under_one_load(record: Record) -> Course:
+    """Return the course of a force over its load: friction grows with the load, a spring does not.
+
+    Where the load lifts off, the force is as it is.
+    """
+    load = record.relative_load()
+    return course(record.time, record.force / np.where(np.isfinite(load), load, 1.0))
 
 
 def _vibration(
@@ -149,7 +163,8 @@ def _loading(
     if loading < STILL_STICKS:
         return Regime(UNDETERMINED, 0.0, evidence)
     sure = way.one_way * min(loading, 1.0) * sure
-    if not drive and abs(record.force[0]) > BEGINS_UNLOADED * largest_magnitude(record.force):
+    explained = drive and loading < FASTEST
+    if not explained and abs(record.force[0]) > BEGINS_UNLOADED * largest_magnitude(record.force):
         return Regime(STUCK, 0.5 * sure, evidence, STEADY)  # as likely, it drifts
     return Regime(STUCK, sure, evidence)
 

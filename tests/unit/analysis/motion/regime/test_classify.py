@@ -928,3 +928,35 @@ def test_stick_slip_keeps_its_kind_behind_a_zero_that_is_off() -> None:
     time, force, _ = between(sawtooth(np.random.default_rng(1), 20, 1.0), 500.0)
     found = st.analysis.classify(st.Record(time=time, force=force - 8.0))
     assert found.kind == "stick-slip"
+
+
+@pytest.mark.parametrize(("friction", "kind"), [(0.2, "steady sliding"), (0.0, "stuck")])
+def test_a_force_that_rises_with_its_load_is_no_loading_of_the_spring(
+    friction: float, kind: str
+) -> None:
+    """On a tilted plate friction may rise by chance as fast as the spring is loaded."""
+    for random, (rise,) in enumerate(inside(10, (0.1, 0.4))):
+        noise = np.random.default_rng([8, random]).normal(size=(2, 2000))
+        time = np.linspace(0.0, 1.0, 2000)
+        load = 10.0 * (1.0 + rise * time)
+        force = (friction * load if friction else 2.0 * rise * time) + 5e-3 * noise[0]
+        record = st.Record(
+            time=time,
+            force=force,
+            load=load + 0.05 * noise[1],
+            stiffness=1e3,
+            drive_velocity=2e-3 * rise,
+        )
+        assert st.analysis.classify(record).kind == kind
+
+
+def test_a_force_that_rises_faster_than_its_spring_is_loaded_may_drift() -> None:
+    """It begins loaded, too; by stiffness and drive velocity it was stuck for sure."""
+    time = np.linspace(0.0, 1.0, 2000)
+    known = {"stiffness": 1e3, "drive_velocity": 1e-3}
+    begun = 5.0 + 3e-3 * np.random.default_rng(1).normal(size=len(time))
+    seen = st.analysis.classify(st.Record(time=time, force=begun + 1.4 * time, **known))
+    assert seen.confidence <= 0.5
+    sure = st.analysis.classify(st.Record(time=time, force=begun + 0.9 * time, **known))
+    assert sure.kind == "stuck"
+    assert sure.confidence > 0.8
