@@ -14,7 +14,7 @@ from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.kinds import HARMONIC, STEADY, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
-from stiction.analysis.signals.correlated_noise import ERRORS_997, error_of_few
+from stiction.analysis.signals.correlated_noise import ERRORS_997, error_of_few, statistics
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import line, slope_in_lasting_noise
 from stiction.arrays import Floats
@@ -25,6 +25,8 @@ PARTS = 40  # number of means of a force without cycles, over the second half of
 MOST_MEANS = 1000  # of the middles of cycles: more would take long
 FEWEST_CYCLES = 4  # cycles that show a drift
 LASTING = 0.5  # of its rate, by which that of each half may differ
+SETTLING_MEANS = 64  # of a force while a mass slides
+EARLY, LATE = slice(4, 8), slice(32, None)  # of them
 
 
 class Drift(NamedTuple):
@@ -33,7 +35,8 @@ class Drift(NamedTuple):
     start, end : when it is seen, s: without cycles in the second half of the sliding.
     sure : whether there is one; stands_out : whether it is so large that it is worth a sentence.
     likely : the rate at which peaks and troughs, or sliding, change perhaps by chance, N/s; or 0.
-    shared : by how much they are off on average if any change that they share is the zero, N.
+    shared : by how much they are off on average if any change that they share is the zero, N; of a
+    force without cycles by how much it settles while the mass slides.
     """
 
     rate: float
@@ -69,6 +72,7 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     elif not len(cycles) and (last := _late(record)) and len(levels(record)) < 2:
         at, middle = (part_means(each[last], PARTS) for each in (record.time, record.force))
         seen = record.time[[last.start, last.stop - 1]]
+        shared = _settled_by(record)
     else:
         likely = _likely_rate(cycles)
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
@@ -156,6 +160,21 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     for name in ("static", "kinetic"):
         further[name] = max(further[name], drift.shared)
     return friction.with_errors(**further)
+
+
+def _settled_by(record: Record) -> float:
+    """Return by how much a force settles while a mass slides, N; 0 if perhaps by chance.
+
+    That is from early in the sliding, but after friction has fallen from a break-away, to its
+    second half, of which kinetic friction is the mean.
+    """
+    slides = sliding(record)
+    means = part_means(record.force[slides.first : slides.last], SETTLING_MEANS)
+    if len(means) < SETTLING_MEANS:
+        return 0.0
+    (early, error, _), (late, late_error, _) = map(statistics, (means[EARLY], means[LATE]))
+    settled = abs(early - late)
+    return settled if settled > LIKELY * np.hypot(error, late_error) else 0.0
 
 
 def _goes_on(at: Floats, middle: Floats, rate: float) -> bool:

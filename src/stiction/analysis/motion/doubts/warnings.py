@@ -30,11 +30,18 @@ from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import SWING
-from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
+from stiction.analysis.motion.regime.kinds import (
+    HARMONIC,
+    SETTLING,
+    STEADY,
+    STICK_SLIP,
+    TRANSITIONAL,
+)
 from stiction.analysis.record import ACROSS, Record, across_force
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.hum import Line, of_mains
+from stiction.analysis.signals.robust import largest_magnitude
 from stiction.text.quantity_text import percent
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, times
@@ -279,6 +286,16 @@ def _remedy_of_mass(ratio: float, kind: str) -> str:
     )
 
 
+def _settling(record: Record, drift: Drift, kind: str) -> Iterator[str]:
+    """Say that a zero may settle while a mass slides, which its force alone cannot tell."""
+    if kind in (STEADY, SETTLING) and drift.shared > WORTH * largest_magnitude(record.force):
+        yield (
+            f"While the mass slides, the force settles by {in_words(drift.shared, 'N', 2)}. The "
+            "errors of friction allow for a zero of the load cell that does so. A record without "
+            "contact would show it."
+        )
+
+
 def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Iterator[str]:
     """Doubt the load cell where the force drifts, unless it follows a load that varies."""
     if record.load_variation() > VARIES:
@@ -298,7 +315,10 @@ def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Itera
             f"coefficients with it. If it is the load cell, {remedy}; in Python, analyse "
             "st.analysis.detrend(record)."
         )
-    if drift.stands_out or not len(cycles):
+    if drift.stands_out:
+        return
+    if not len(cycles):
+        yield from _settling(record, drift, kind)
         return
     worth = WORTH * abs(float(cycles["peak"].mean()))
     if abs(drift.likely) * float(record.time[-1] - record.time[0]) > worth:
