@@ -10,8 +10,9 @@ import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic_core import PydanticCustomError
 
+from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
-from stiction.arrays import Floats, xr
+from stiction.arrays import Floats, Indices, xr
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
@@ -195,6 +196,7 @@ class Record(Described):
     load_unit: str = "N"
     drive_position_unit: str = "m"
     _same_time: int = PrivateAttr(0)
+    _repeats: int = PrivateAttr(1)
     _of_run: OfRun | None = PrivateAttr(None)
 
     @model_validator(mode="before")
@@ -290,6 +292,23 @@ class Record(Described):
     def same_time(self) -> int:
         """Number of samples that were given the same time as the one before."""
         return self._same_time
+
+    @property
+    def repeats(self) -> int:
+        """Number of samples for which each value of the force lasted: see `each_value_once`."""
+        return self._repeats
+
+    def each_value_once(self) -> Self:
+        """Return the record with each value of the force once, if a slow sensor repeats them all.
+
+        Repeated values have noise that differences do not show, and hide when peaks are.
+        """
+        first = first_of_each(self.force)
+        if first is None:
+            return self
+        found = self.part(first)
+        found._repeats = int(np.median(np.diff(first)))
+        return found
 
     @property
     def stated_load(self) -> float | None:
@@ -411,7 +430,7 @@ class Record(Described):
         """Return the part of the record before a time, s."""
         return self.part(slice(int(np.searchsorted(self.time, end))))
 
-    def part(self, samples: slice) -> Self:
+    def part(self, samples: slice | Indices) -> Self:
         """Return some of the samples, with all that is known of them."""
         cut = {name: values[samples] for name, values in self.channels().items()}
         return self.model_copy(update={"time": self.time[samples], **cut})
@@ -479,7 +498,7 @@ class Record(Described):
 
 
 def as_record(source: Trajectory | Record) -> Record:
-    """Return the record of a run, or a record as it is.
+    """Return the record of a run, or a record, of which a slow sensor gave each value once.
 
     Raises
     ------
@@ -487,7 +506,7 @@ def as_record(source: Trajectory | Record) -> Record:
         If `source` is neither.
     """
     if isinstance(source, Record):
-        return source
+        return source.each_value_once()
     if isinstance(source, Trajectory):
         return record_of(source)
     raise ResultError(

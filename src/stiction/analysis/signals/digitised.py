@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, Indices
 from stiction.recording.noise import dither_remainder, lattice, rounding_error
 
 MANY, COARSE = 100_000, 1e-4  # samples examined for steps; smallest step, over the signal's range
@@ -12,6 +12,9 @@ FIRST = 1000  # values, among which those of a continuous signal are nearer than
 # Steps of a converter: the median fall that rounding makes. Without a wave it is one step, without
 # a line up to 1.50, in 482 staircases with noise up to 0.3 steps
 ROUNDED = 1.6
+# Values that a slow sensor gives several times each, as many times but for a jitter of its clock;
+# those of a ramp through steps of a converter differ by one step each
+ENOUGH_VALUES, JITTER, ONE_STEP = 16, 2, 1.5
 
 
 def resolution(values: Floats) -> float:
@@ -32,6 +35,16 @@ def resolution(values: Floats) -> float:
         return 0.0
     step = _smallest_step(some)
     return step if np.isfinite(step) and step >= least else 0.0
+
+
+def first_of_each(values: Floats) -> Indices | None:
+    """Return the first sample of each value, if a sensor gives each of them several times."""
+    first = np.flatnonzero(np.diff(values, prepend=np.nan) != 0.0)
+    lasts = np.diff(first)[1:]
+    if len(lasts) < ENOUGH_VALUES or lasts.min() < 2 or np.ptp(lasts) > JITTER:
+        return None
+    changes = np.abs(np.diff(values[first]))
+    return first if changes.max() > ONE_STEP * changes.min() else None
 
 
 def _smallest_step(values: Floats) -> float:

@@ -26,7 +26,6 @@ from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 
 SLOWLY = 1e3  # s between samples
-ENOUGH_VALUES = 16  # that are all repeated as often
 # Samples in a fall as they are seen, about one more than it lasts, and by which share the largest
 # rate of half a sine between straight lines is too low that cubics through five samples have; the
 # mean over all places of the samples
@@ -88,14 +87,12 @@ def doubt_times(record: Record) -> Iterator[str]:
 
 def doubt_repeats(record: Record) -> Iterator[str]:
     """Doubt a sample rate of which each value is recorded several times."""
-    lasts = np.diff(np.flatnonzero(np.diff(record.force, prepend=np.nan) != 0.0))[1:]
-    if len(lasts) < ENOUGH_VALUES or lasts.max() < 2 or np.ptp(lasts) > 1 or lasts.min() < 2:
-        return
-    times = int(np.median(lasts))
-    yield (
-        f"Each value is recorded {times} times: the sensor gives {record.sample_rate / times:.3g} "
-        f"values a second, fewer than the record has. Analyse time[::{times}] and force[::{times}]."
-    )
+    if record.repeats > 1:
+        yield (
+            f"Each value is recorded {record.repeats} times: the sensor gives "
+            f"{record.sample_rate:.3g} values a second, fewer than the record has. "
+            "Each counts once."
+        )
 
 
 def _samples(count: int) -> str:
