@@ -315,13 +315,16 @@ def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Itera
             f"coefficients with it. If it is the load cell, {remedy}; in Python, analyse "
             "st.analysis.detrend(record)."
         )
-    if drift.stands_out:
-        return
-    if not len(cycles):
+    elif not len(cycles):
         yield from _settling(record, drift, kind)
-        return
+    elif not drift.stands_out:
+        yield from _shared_change(drift, cycles, float(record.time[-1] - record.time[0]))
+
+
+def _shared_change(drift: Drift, cycles: CycleTable, lasts: float) -> Iterator[str]:
+    """Say that peaks and troughs, of cycles that last so long (s), may change with the zero."""
     worth = WORTH * abs(float(cycles["peak"].mean()))
-    if abs(drift.likely) * float(record.time[-1] - record.time[0]) > worth:
+    if abs(drift.likely) * lasts > worth:
         yield (
             f"Peaks and troughs change alike, by {in_words(drift.likely, 'N/s', 2)}: "
             f"{len(cycles)} cycles cannot tell whether by chance. The errors of friction allow for "
