@@ -39,8 +39,8 @@ OF_SLIDING = ("mu_kinetic", "slip_distance", "peak_slip_speed")  # and those of 
 BY_STIFFNESS = ("creep_distance", "slip_distance", "peak_slip_speed")
 BY_DROP = ("creep_distance", "slip_distance")  # and by peaks and troughs
 HALTING = (
-    "not determined: the force hesitates in each cycle, and a small slip before the peak cannot be "
-    "distinguished from creep"
+    "the force hesitates in each cycle, and a small slip before the peak cannot be distinguished "
+    "from creep"
 )
 
 
@@ -124,7 +124,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
             missing[f"mu_{name}"] = friction.missing[name]
     given = cycles.blank(missing)
     if regime.loads and halting.all():
-        missing |= dict.fromkeys(("creep", "misalignment"), HALTING)
+        missing |= dict.fromkeys(("creep", "misalignment"), f"not determined: {HALTING}")
     return Assessment(given, given.part(~apart), sticking, friction, stated, doubts, missing)
 
 
@@ -189,7 +189,8 @@ def _meaningless(
         return dict.fromkeys(BY_STIFFNESS, "stiffness or drive velocity contradict the force")
     known = cycles["creep_distance"][~np.isnan(cycles["creep_distance"])]
     if not len(known):
-        return {}
+        moves = np.isfinite(cycles["slip_distance"]).any()
+        return {"creep_distance": HALTING} if moves else {}
     if unseen := unseen_creep(record, cycles, drift):
         return {"creep_distance": unseen}
     if not np.median(known) < 0.0:

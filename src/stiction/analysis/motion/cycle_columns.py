@@ -12,7 +12,7 @@ from stiction.analysis.motion.loading import loaded_until, loading_rate, samples
 from stiction.analysis.record import Record
 from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.turning_points import without_spikes
-from stiction.arrays import Floats, xr
+from stiction.arrays import Floats, Indices, xr
 from stiction.result.table import UNSEEN_PEAK, mean_speeds
 
 # name: (unit, long name), as CF attributes
@@ -38,6 +38,7 @@ COLUMNS = {
 }
 UNSEEN = 0.25  # of a period without a sample: the cycle is not known
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
+SLIPPED = 0.1  # of the way from trough to peak, by small slips: it is not creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
 _THREE = ((0, -1), (1, None), (2, None))  # of troughs and peaks in turn: start, peak, trough
 TIMES = ("start", "peak_time", "trough_time")  # instants, whose mean is meaningless
@@ -123,6 +124,9 @@ def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) ->
         with np.errstate(divide="ignore", invalid="ignore"):  # of corners that fall together
             columns = _measure_cycles(record, without_spikes(record.force), corners)
         columns |= _count_hesitations(corners, dips)
+        stiffness = record.stiffness or columns["stiffness"]  # that of the spring, or an apparent
+        creep = columns["creep_distance"]
+        creep[_dips_of_rises(corners, dips) > SLIPPED * np.abs(stiffness * creep)] = np.nan
         longest = _longest_step(record.time, corners)
         gap = longest > UNSEEN * columns["period"]
         seen = ~gap | (longest < JUMP * np.median(np.diff(record.time)))
@@ -134,13 +138,24 @@ def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) ->
 
 def _count_hesitations(corners: Vertices, dips: Vertices) -> dict[str, Floats]:
     """Return number and depth of the hesitations of each cycle."""
-    start = corners.time[:-1:2]
-    cycle = np.searchsorted(start, dips.time, side="right") - 1
-    inside = (cycle >= 0) & (dips.time < corners.time[-1])
-    number = np.bincount(cycle[inside], minlength=len(start)).astype(np.float64)
-    deepest = np.zeros(len(start))
-    np.maximum.at(deepest, cycle[inside], dips.value[inside])
+    cycle, depth = _dips_until(corners.time[2::2], corners, dips)
+    number = np.bincount(cycle, minlength=len(corners.time) // 2).astype(np.float64)
+    deepest = np.zeros(len(number))
+    np.maximum.at(deepest, cycle, depth)
     return {"hesitations": number, "hesitation_depth": np.where(number > 0, deepest, np.nan)}
+
+
+def _dips_of_rises(corners: Vertices, dips: Vertices) -> Floats:
+    """Return by how much the force dips in each rise, N: by small slips."""
+    cycle, depth = _dips_until(corners.time[1::2], corners, dips)
+    return np.bincount(cycle, depth, len(corners.time) // 2).astype(np.float64)
+
+
+def _dips_until(ends: Floats, corners: Vertices, dips: Vertices) -> tuple[Indices, Floats]:
+    """Return the cycle of each dip before a time in it (s), and its depth (N)."""
+    cycle = np.searchsorted(corners.time[:-1:2], dips.time, side="right") - 1
+    inside = (cycle >= 0) & (dips.time < ends[cycle])
+    return cycle[inside], dips.value[inside]
 
 
 def _measure_cycles(record: Record, force: Floats, corners: Vertices) -> dict[str, Floats]:

@@ -93,9 +93,9 @@ def _hesitations(table: xr.Dataset) -> list[str]:
     cycles = f"{some} of {table.sizes['cycle']} cycles"
     return [
         f"In {cycles} the force hesitates: before or within its fall it turns back, by up to "
-        f"{percent(most)} of that fall. Rise and creep are counted from trough to peak, with such "
-        f"falls in them. Smaller hesitations, below {in_words(least, 'N')}, cannot be "
-        "distinguished from noise and ripple, and are not counted."
+        f"{percent(most)} of that fall. The rise is counted from trough to peak, with such falls "
+        f"in it. Smaller hesitations, below {in_words(least, 'N')}, cannot be distinguished from "
+        "noise and ripple, and are not counted."
     ]
 
 

@@ -45,6 +45,17 @@ def force():
     return run.data["time"].values, run.data["spring_x"].values
 
 
+CALIPER = st.Slider(
+    mass="12 kg",
+    k_x="4 kN/mm",
+    k_y="90 kN/mm",
+    phi="6 deg",
+    normal_load="5 kN",
+    friction=st.ExponentialWeakening(mu_0=0.45, mu_inf=0.36, v_f="20 mm/s"),
+    drive=st.ConstantVelocity("4 mm/s"),
+)
+
+
 def doubts_in_words(time: np.ndarray, force: np.ndarray, **changes: object) -> str:
     return " ".join(assess(st.Record(time=time, force=force, **KNOWN | changes)).warnings)
 
@@ -527,11 +538,35 @@ def test_a_small_slip_in_each_rise_leaves_no_creep_and_is_told_so() -> None:
     force = 2.0 + np.interp(time, corners, np.append(np.tile([0.0, 0.75, 0.4, 1.0], 16), 0.0))
     found = st.analyse(st.Record(time=time, force=force, stiffness=1.0, drive_velocity=1.67))
     assert (found.cycles["hesitations"].values == 1.0).all()
-    assert found.missing["creep"] == found.missing["misalignment"] == HALTING
+    assert found.missing["creep"] == found.missing["misalignment"] == f"not determined: {HALTING}"
+    assert found.missing["creep_distance"] == HALTING
     said = " ".join(str(found).split())
     assert "Creep Not determined: the force hesitates in each cycle" in said
-    assert "from trough to peak, with such falls in them" in said
+    assert "from trough to peak, with such falls in it" in said
     assert "too small for a cycle of their own 1 0" in said
+
+
+def test_small_slips_in_the_rise_are_no_creep_and_those_in_the_fall_hide_none() -> None:
+    """Of two slips a period all of the smaller one seemed to be creep."""
+    phases = np.cumsum([0.0, 0.40, 0.02, 0.53, 0.02, 0.01, 0.02])
+    whole = [0.0, 0.4, 0.4, 0.9, 0.6, 0.5, 0.0]  # N, a rise with creep and no small slip
+    in_rise, in_fall = [*whole], [*whole]
+    in_rise[2], in_fall[4:6] = 0.3, [0.6, 0.7]
+    time = np.arange(0.0, 20.0, 1e-3)
+    for shape, dips in ((whole, 0), (in_rise, 1), (in_fall, 1)):
+        force = 2.0 + np.interp(time % 1.0, phases, shape)
+        record = st.Record(time=time, force=force, stiffness=1.0, drive_velocity=1.2)
+        cycles = st.analysis.find_cycles(record)
+        assert (cycles["hesitations"].values == dips).all()
+        seen = cycles["creep_distance"].values
+        if shape is in_rise:
+            assert np.isnan(seen).all()
+        else:
+            assert seen == pytest.approx(1.2 * 0.95 - 0.9, rel=0.05)
+    run = st.simulate(CALIPER, "2 s", sample_rate="20 kHz")  # two slips a period
+    found = st.analyse(run)
+    assert found.missing["creep_distance"] == HALTING
+    assert np.isfinite(found.cycles["slip_distance"]).all()
 
 
 @pytest.mark.parametrize(("noise", "named"), [(0.05, True), (1e-4, False)])
