@@ -413,14 +413,29 @@ def with_error(value: float, error: float, unit: str) -> str:
     --------
     >>> with_error(0.97763, 0.0048, "N"), with_error(6.2e-5, 6e-7, "m/s"), with_error(2.0, 0.0, "N")
     ('978 ± 5 mN', '62.0 ± 0.6 µm/s', '2 N')
+    >>> with_error(1.31e9, 8.2e8, "1/s²")
+    '(1.3 ± 0.8)e9 1/s²'
     """
     if not ROUNDING * abs(value) < error < inf or not isfinite(value):
         return in_words(value, unit)
-    size, name = suited_unit(max(abs(value), error), unit)
+    size, power, name = _scale(max(abs(value), error), unit)
     shown = float(f"{error / size:.1g}")
     digit = first_decimal(shown)
     rounded, decimals = round(value / size, digit) + 0.0, max(0, digit)  # no -0
-    return f"{rounded:.{decimals}f} ± {shown:.{decimals}f} {name}".rstrip()
+    both = f"{rounded:.{decimals}f} ± {shown:.{decimals}f}"
+    return f"{f'({both}){power}' if power else both} {name}".rstrip()
+
+
+def _scale(largest: float, unit: str) -> tuple[float, str, str]:
+    """Return the size of what a number counts, a power of ten to write behind it, and the unit.
+
+    Only a large number of a unit without prefixes needs the power.
+    """
+    size, name = suited_unit(largest, unit)
+    if largest / size < LARGE:
+        return size, "", name
+    power = floor(log10(largest / size))
+    return size * 10.0**power, f"e{power}", name
 
 
 def at_least(bound: float, error: float, unit: str) -> str:
@@ -430,11 +445,13 @@ def at_least(bound: float, error: float, unit: str) -> str:
     --------
     >>> at_least(1.10593, 7e-4, "N/s"), at_least(9377.0, 2100.0, "1/s²"), at_least(-0.1, 1.0, "N/s")
     ('≥ 1.1059 N/s', '≥ 9000 1/s²', 'not determined')
+    >>> at_least(1.31e9, 2e8, "1/s²")
+    '≥ 1.3e9 1/s²'
     """
     if not bound > 0.0:
         return "not determined"
-    size, name = suited_unit(bound, unit)
+    size, power, name = _scale(bound, unit)
     smallest = max(min(error, bound), ROUNDING * bound) / size
     digit = first_decimal(smallest)
     lower, decimals = floor(bound / size * 10.0**digit) / 10.0**digit, max(0, digit)
-    return f"≥ {lower:.{decimals}f} {name}".rstrip()
+    return f"≥ {lower:.{decimals}f}{power} {name}".rstrip()
