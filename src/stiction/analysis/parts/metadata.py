@@ -7,7 +7,7 @@ from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.metadata.loading_rate import BY_RISE, LOADING_RATE
-from stiction.analysis.motion.metadata.quantity import StatedQuantity
+from stiction.analysis.motion.metadata.quantity import ALIKE, StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS, SWING
 from stiction.analysis.parts.wording import number
 from stiction.arrays import xr
@@ -46,7 +46,9 @@ def section(found: Analysis) -> Section | None:
     known = {each.name: verdict(each) for each in its if verdict(each) not in UNSAID}
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
-    bounds = dict.fromkeys(each.how for each in its if _is_shown_as_bound(each))
+    bounds = dict.fromkeys(
+        each.how for each in its if _is_shown_as_bound(each) and each.at_least > 0.0
+    )
     lines += [WHY[how] for how in bounds]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
@@ -75,9 +77,20 @@ def verdict(each: StatedQuantity) -> str:
         return ""
     if _is_limit(each):
         return SHOWABLE if each.agrees else NOT_SHOWN
+    if _is_shown_as_bound(each):
+        return _verdict_of_bound(each)
     if each.agrees:
         return AGREES if isnan(each.error) or each.is_same else ALLOWED
-    return DOUBTED if _is_shown_as_bound(each) else WRONG
+    return WRONG
+
+
+def _verdict_of_bound(each: StatedQuantity) -> str:
+    """Return the same for a lower bound: only one that is near what is stated agrees with it."""
+    if not each.agrees:
+        return DOUBTED
+    if not each.at_least > 0.0:  # nothing is shown
+        return ""
+    return AGREES if each.at_least >= (1.0 - ALIKE) * each.stated else ALLOWED
 
 
 def _is_limit(each: StatedQuantity) -> bool:

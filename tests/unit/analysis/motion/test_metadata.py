@@ -18,8 +18,9 @@ from stiction.analysis.motion.metadata.comparison import compare_metadata
 from stiction.analysis.motion.metadata.drive_velocity import drive_velocity
 from stiction.analysis.motion.metadata.loading_rate import BY_RISE, LOADING_RATE, _loading_rate
 from stiction.analysis.motion.metadata.quantity import StatedQuantity, median_error
-from stiction.analysis.motion.metadata.stiffness_over_mass import SWING
+from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS, SWING
 from stiction.analysis.motion.regime.kinds import HARMONIC
+from stiction.analysis.parts import metadata as parts_of_metadata
 from stiction.analysis.parts.metadata import _is_shown_as_bound
 from stiction.presets.preset import on_a_line
 
@@ -68,6 +69,41 @@ def test_a_value_that_differs_is_possible_and_does_not_agree():
     assert "possible" in row
     assert "agrees" not in row
     assert "not contradict stiffness over mass and stiffness times drive velocity as stated" in said
+
+
+@pytest.mark.parametrize(
+    ("found", "error", "verdict"),
+    [(0.96, 0.02, "agrees"), (0.8, 0.2, "possible"), (0.6, 0.3, "")],
+)
+def test_a_bound_agrees_only_where_it_is_near_what_is_stated(found, error, verdict):
+    """A bound of 300 1/s² agreed with a stated 750 1/s², and so did one below zero."""
+    its = StatedQuantity(SWING, "1/s²", found, error, 1.0, 0.4, 1.4, BY_SLIPS, is_bound=True)
+    assert its.agrees
+    assert parts_of_metadata.verdict(its) == verdict
+
+
+def test_no_sentence_agrees_with_what_is_not_determined(monkeypatch):
+    """The row said "not determined ... agrees", and the text that the record agrees."""
+    known = {"stiffness": STIFFNESS, "drive_velocity": VELOCITY, "mass": MASS}
+    found = st.analyse(st.Record(time=TIME, force=sawtooth(), **known))
+    its = [
+        each._replace(error=each.found) if each.quantity == "stiffness over mass" else each
+        for each in found.parts["metadata"]
+    ]
+    shown = parts_of_metadata.section(found._replace(parts={**found.parts, "metadata": tuple(its)}))
+    assert shown.sentences[0] == (
+        "The record agrees with stiffness times drive velocity as stated."
+    )
+    assert "duration of slips" not in " ".join(shown.sentences)
+
+
+@pytest.mark.parametrize("rests", [True, False])
+def test_a_force_that_rises_from_the_first_sample_on_shows_no_zero(rests):
+    """It showed "zero 14 ± 8 mN", half of what the spring is loaded by in the first readings."""
+    noise = 1e-4 * np.random.default_rng(2).standard_normal(len(TIME))
+    force = 0.2 * np.maximum(TIME - 1.0 * rests, 0.0) % 1.0 + noise
+    its, _ = compare(force, stiffness=STIFFNESS, mass=MASS)
+    assert ("zero" in its) is rests
 
 
 def test_the_error_of_the_mass_holds_what_samples_and_noise_hide_of_a_slip():

@@ -15,7 +15,9 @@ from stiction.analysis.motion.metadata.quantity import ALIKE, FEWEST_SAMPLES, St
 from stiction.analysis.motion.metadata.stiffness_over_mass import stiffness_over_mass
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
+from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
@@ -89,7 +91,10 @@ def first_reading(record: Record) -> Floats:
 
 
 def _zero(record: Record) -> StatedQuantity | None:
-    """Return the reading with which a record begins, where that is constant: a zero perhaps."""
+    """Return the reading with which a record begins, where that is constant: a zero perhaps.
+
+    It is none where the drive loads the spring from the first sample on.
+    """
     some = first_reading(record)
     if not len(some) or len(record) < 4 * len(some):
         return None
@@ -98,8 +103,11 @@ def _zero(record: Record) -> StatedQuantity | None:
     read = read if abs(read) > ROUNDING * largest else 0.0
     if not abs(read) < AT_REST * largest or spread > AT_REST * largest:
         return None
-    stated = 0.0 if record.zero is not None else nan
-    return StatedQuantity("zero", "N", read, spread, stated, nan, nan, "reading at its beginning")
+    its = line(record.time[: len(some)], some)
+    if abs(its.slope) > ERRORS_997 * its.slope_error:
+        return None
+    stated, how = 0.0 if record.zero is not None else nan, "first readings, with their spread"
+    return StatedQuantity("zero", "N", read, spread, stated, nan, nan, how)
 
 
 def _drift(cycles: CycleTable, drift: Drift | None) -> StatedQuantity | None:
