@@ -132,7 +132,7 @@ def _with_divergence(found: CreepFound, rate: float) -> CreepFound:
     mean, missing, its = found.mean, {**found.missing}, found.misalignment
     assert mean is not None
     if its is None:
-        missing["divergence"] = "not determined: without the misalignment, creep is not known"
+        missing["divergence"] = "not determined: by a force alone, it follows from the misalignment"
         return found._replace(missing=missing)
     divergence = attempt(missing, "divergence", lambda: _divergence(mean, its.F_0 / rate))
     return found._replace(divergence=divergence, missing=missing)

@@ -185,7 +185,9 @@ def without_loading(regime: Regime) -> str:
     """Return why the loading of a motion shows neither static friction nor stiffness."""
     if regime.kind == STICK_SLIP:
         return "here the mass sticks too shortly, and inertia adds to the peaks"
-    return f"this is {regime.kind}"
+    if regime.kind == STUCK:
+        return "here the mass does not slip"
+    return "here the force settles" if regime.kind == SETTLING else f"this is {regime.kind}"
 
 
 def _find_break_away(

@@ -63,7 +63,7 @@ def section(found: Analysis) -> Section:
     counts = found.creep["phases"].values
     usual = int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
     far, near = (found.creep.isel(bin=at) for at in (usual, 0))
-    long, short = (in_words(float(row["begin"]), "s") for row in (far, near))
+    long, short = (in_words(float(row["begin"]), "s", 2) for row in (far, near))
     V = drive_speed(found.source, found.record) or 0.0
     lasts = found.record.duration
     rests = RESTING
@@ -89,8 +89,8 @@ def section(found: Analysis) -> Section:
             lines.append("A motion in the last moments is the slip itself, which begins.")
     if d is not None:
         lines.append(
-            f"It diverges towards slip with the exponent {d.exponent:.3f} ± {d.exponent_error:.3f} "
-            "(1/2 by Eq. (8), corrected)."
+            "It diverges towards slip with the exponent "
+            f"{with_error(d.exponent, d.exponent_error, '1')} (1/2 by Eq. (8), corrected)."
         )
     if phi is not None:
         lines.append(
@@ -192,7 +192,7 @@ def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
             return rests
         if most > V > 0.0:  # the mass is faster than the drive in slips alone
             return UNKNOWN
-        return f"it creeps no faster than {in_words(most, 'm/s')} (two standard errors)"
+        return f"it creeps no faster than {in_words(most, 'm/s', 2)} (two standard errors)"
     known = with_error(value, error if error > SLIGHT * abs(value) else 0.0, "m/s")
     return f"it {'moves' if value > RAPID * V > 0.0 else 'creeps'} at {known}"
 

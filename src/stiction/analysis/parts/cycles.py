@@ -77,8 +77,8 @@ def _hidden_ways(found: Analysis) -> list[str]:
         )
     if lag > HIDDEN * ways.get("creep_distance", inf):
         lines.append(
-            f"Slips last long: if a filter smears them, creep is up to {in_words(lag, 'm', 2)} "
-            "shorter."
+            "If it is a filter that makes the slips last so long, creep is up to "
+            f"{in_words(lag, 'm', 2)} shorter."
         )
     return lines
 

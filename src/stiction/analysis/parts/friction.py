@@ -88,8 +88,8 @@ def _overshoot(found: Analysis) -> list[str]:
     if most < OVERSHOOT * abs(peak.force):
         return []
     return [
-        f"Of the peaks, up to {in_words(most, 'N')} may be inertia: the force goes on rising until "
-        "the mass is as fast as the drive."
+        f"Up to {in_words(most, 'N', 2)} of the peaks may be inertia: the force goes on rising "
+        "until the mass is as fast as the drive."
     ]
 
 

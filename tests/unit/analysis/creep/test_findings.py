@@ -149,7 +149,7 @@ def test_by_the_force_alone_creep_diverges_in_the_time_in_which_friction_is_load
     )
     assert findings._with_divergence(seen, 0.5).divergence.loading_time == SURE.F_0 / 0.5
     unknown = findings._with_divergence(seen._replace(misalignment=None), 0.5)
-    assert "without the misalignment" in unknown.missing["divergence"]
+    assert "follows from the misalignment" in unknown.missing["divergence"]
 
 
 def test_without_misalignment_none_is_missed():

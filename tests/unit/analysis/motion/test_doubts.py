@@ -497,7 +497,7 @@ def test_a_filter_of_the_load_cell_makes_no_creep(number: int, mass_is_known: bo
 @pytest.mark.parametrize("number", [2, 4, 10])
 def test_a_filter_of_the_load_cell_may_shorten_creep(number: int) -> None:
     record = slips(np.random.default_rng([3, number]), creep=0.8, noise=(-4.0, -3.0)).record
-    said = "Slips last long: if a filter smears them, creep is up to"
+    said = "If it is a filter that makes the slips last so long, creep is up to"
     assert said not in found_in(record)  # they last as mass and stiffness have it
     assert said in found_in(record.model_copy(update={"mass": None}))
 
@@ -515,7 +515,7 @@ def test_a_drift_of_few_cycles_makes_no_creep() -> None:
         found = st.analyse(known.record)
         if found.regime.kind == "stick-slip" and found.cycles.sizes["cycle"] >= 3:
             reasons.append(found.missing["creep_distance"])
-    assert any(each.startswith("a drift of the force may show") for each in reasons)
+    assert any(each.startswith("a drift of the force may look like") for each in reasons)
 
 
 def test_a_rise_in_which_the_force_hesitates_shows_no_creep() -> None:

@@ -29,8 +29,10 @@ def unseen_creep(record: Record, cycles: CycleTable, drift: Drift | None) -> str
     seen = float(np.nanmedian(cycles["creep_distance"]))
     ways = {
         "noise and the time between samples hide about {} of it": hidden_way(record),
-        "a filter of the load cell may show {} where the mass rests": way_of_lag(record, cycles),
-        "a drift of the force may show {}": _way_of_drift(record, cycles, drift),
+        "a filter of the load cell may look like {} of creep where the mass rests": way_of_lag(
+            record, cycles
+        ),
+        "a drift of the force may look like {} of creep": _way_of_drift(record, cycles, drift),
     }
     if not 0.0 <= seen < sum(ways.values()):
         return ""

@@ -98,13 +98,14 @@ def doubt_quiet(record: Record, friction: Friction, cycles: CycleTable) -> Itera
     first, last = float(cycles["start"][0]), float(cycles["trough_time"][-1])
     parts = {}
     if first - record.time[0] > least and friction.break_away is None:
-        parts[f"Before {in_words(first, 's')}"] = record.time <= first
+        parts["Before", first] = record.time <= first
     if record.time[-1] - last > least:
-        parts[f"After {in_words(last, 's')}"] = record.time >= last
-    for when, inside in parts.items():
-        lasts = in_words(float(np.ptp(record.time[inside])), "s")
+        parts["After", last] = record.time >= last
+    for (when, at), inside in parts.items():
+        bound, lasts = (in_words(each, "s") for each in (at, np.ptp(record.time[inside])))
+        long = f", for {lasts}," * (lasts != bound)
         yield (
-            f"{when} the force has no such cycles, for {lasts}: the report is of the cycles. "
+            f"{when} {bound}{long} the force has no cycles like those that this report describes. "
             "Analyse that part by itself."
         )
 

@@ -273,9 +273,10 @@ def _remedy_of_mass(ratio: float, kind: str) -> str:
             "turns makes it"
         )
     if ratio > 1.0:
+        motion = "swing" if kind == HARMONIC else "slip"
         return (
-            "check mass and stiffness; or a slip takes the spring across as well, as at a "
-            "misalignment of some degrees"
+            f"check mass and stiffness; or a {motion} strains the transverse spring as well, as at "
+            "a misalignment of some degrees"
         )
     if kind == HARMONIC:
         return "check mass and stiffness"

@@ -117,8 +117,8 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
         percent,
     ),
     "late_share": ("in the last quarter of the time it spans {} of this", percent),
-    "one_way": ("{} of all its ups and downs is this change", percent),
-    "rate_kept": ("at the end it changes at {} of the rate of the beginning", percent),
+    "one_way": ("this change is {} of the sum of its rises and falls", percent),
+    "rate_kept": ("its rate at the end is {} of that at the beginning", percent),
     "rate_over_drive": (
         "at the end its rate is {} of stiffness times drive velocity",
         percent,

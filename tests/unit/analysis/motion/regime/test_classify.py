@@ -391,7 +391,7 @@ def test_a_block_that_rests_for_half_of_a_cycle_sticks_and_slips(
     assert found.regime.kind == "stick-slip"
     assert found.regime.confidence > 0.9
     assert "The mass sticks and slips" in str(found)
-    assert "Of the peaks, up to" in str(found)
+    assert " of the peaks may be inertia" in str(found)
     assert "the slip speed stays below a tenth of the drive velocity for" in str(found.regime)
 
 
@@ -486,7 +486,7 @@ def test_a_long_part_without_cycles_is_named(ends: str) -> None:
     force += 0.005 * random.normal(size=len(time))
     told = " ".join(st.analyse(st.Record(time=time, force=force)).warnings)
     assert f"{ends.capitalize()} " in told
-    assert "the force has no such cycles, for" in told
+    assert "the force has no cycles like those that this report describes" in told
 
 
 @pytest.mark.parametrize("share", [0.02, 0.05, 0.1])
