@@ -822,7 +822,7 @@ def test_wild_samples_do_not_flatten_the_cycles() -> None:
     force[[3300, 3700]] = 99.9
     whole, part = plot_cycles(st.Record(time=time, force=force))
     assert whole.get_ylim()[1] < 3.0
-    assert [text.get_text() for text in whole.texts] == ["2 wild samples beyond"]
+    assert [text.get_text() for text in whole.texts] == ["2 samples beyond the axis"]
     assert not list(part.texts)
 
 

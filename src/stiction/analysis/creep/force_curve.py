@@ -221,8 +221,9 @@ def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) 
     """Raise an error with the reason, if the record does not determine the angle."""
     if abs(off) > 2.0 * WIDTHS[0]:
         raise ResultError(
-            f"not determined: the force rises at {times(1.0 / (1.0 + off), 3)} stiffness times "
-            "drive velocity as they are stated; measure both again"
+            "not determined: Eq. (7) fits the rises only with "
+            f"{times(1.0 / (1.0 + off), 3)} stiffness times drive velocity as stated; measure both "
+            "again"
         )
     if misfit > WORST:
         raise ResultError(

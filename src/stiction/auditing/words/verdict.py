@@ -77,10 +77,7 @@ def motions(found: Audit) -> list[str]:
             )
         return [what, f"Started from rest, the load cell shows {describe_motion(rest)}."]
     if rest.comes_to == OSCILLATES and sliding.comes_to == OSCILLATES:
-        lines = [
-            "It does not slide steadily: from rest, and when it is started sliding, it comes to "
-            f"{name}."
-        ]
+        lines = [f"It does not slide steadily: started from rest or sliding, it comes to {name}."]
         if rest.motion != sliding.motion:
             other = SEEN.get(sliding.motion, sliding.motion) + short_rest(sliding)
             lines = [

@@ -126,7 +126,7 @@ def _leave_out_wild(ax: Axes, force: Floats) -> None:
     room = MARGIN * (high - low)
     ax.set_ylim(low - room, high + room)
     beyond = int(np.count_nonzero((force < low) | (force > high)))
-    said = f"{beyond} wild sample{'s' * (beyond > 1)} beyond"
+    said = f"{beyond} sample{'s' * (beyond > 1)} beyond the axis"
     ax.text(0.5, 1.02, said, transform=ax.transAxes, ha="center", color=GREY)  # above all lines
 
 
