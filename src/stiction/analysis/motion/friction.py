@@ -187,6 +187,8 @@ def without_loading(regime: Regime) -> str:
         return "here the mass sticks too shortly, and inertia adds to the peaks"
     if regime.kind == STUCK:
         return "here the mass does not slip"
+    if regime.kind == UNDETERMINED:
+        return "the kind of motion here is undetermined"
     return "here the force settles" if regime.kind == SETTLING else f"this is {regime.kind}"
 
 

@@ -30,6 +30,7 @@ from stiction.presets.preset import on_a_line
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import fastest_slip
 from stiction.text.sections import as_text
+from stiction.text.suggestion import as_option, suggest
 
 KNOWN = {
     "normal_load": "10 N",
@@ -140,6 +141,8 @@ def test_a_zero_that_is_off_is_seen_and_taken_off(force) -> None:
         later, resting + 0.3
     )
     assert doubts_in_words(later, resting + 0.3, zero="0.3 N") == ""
+    with suggest(as_option):  # as the command line writes it
+        assert "give --zero '0.3 N'" in doubts_in_words(later, resting + 0.3)
     assert "against the drive" in doubts_in_words(time, newtons - 2.5)
 
 
@@ -601,7 +604,7 @@ def test_a_force_against_the_drive_has_no_break_away() -> None:
     untared = np.where(time < 2.0, time, 1.4 + 0.6 * np.exp(-4.0 * late)) - 3.0
     found = st.analyse(st.Record(time=time, force=untared + 0.1 * noise))
     assert found.friction.break_away.force == pytest.approx(-1.0, abs=0.02)
-    assert "give zero=" in " ".join(found.warnings)
+    assert "give zero, the reading without load" in " ".join(found.warnings)
 
 
 def test_a_force_in_kilonewtons_is_doubted_and_gives_no_distance() -> None:

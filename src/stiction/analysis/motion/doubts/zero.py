@@ -13,8 +13,10 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.recording.noise import white_noise
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
+ZERO = Suggestion("zero", of="")
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
 BOTH_SIGNS = 0.3  # of the largest force: so far it goes the other way where a drive turns
 NOISE = 5.0  # standard deviations: noise alone is as far from zero once in a million readings
@@ -50,7 +52,7 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
         yield (
             f"The mean friction is about zero, {in_words(friction.kinetic.force, 'N')}: the zero "
             "of the force is off, as behind an amplifier that lets no constant force through, or "
-            "the drive goes back and forth; give zero=, the reading without load."
+            f"the drive goes back and forth; give {ZERO}, the reading without load."
         )
         return
     if friction.kinetic is not None and friction.kinetic.force < 0.0:
@@ -63,7 +65,7 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
             return
         yield (
             f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
-            "zero of the force is off, or its sign; give zero=, the reading without load."
+            f"zero of the force is off, or its sign; give {ZERO}, the reading without load."
         )
         return
     if friction.break_away is None or record.zero is not None:
@@ -79,14 +81,14 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
     if _begins_at_rest(record, read, friction.break_away.force):
         yield (
             f"The record begins before the first loading, at {in_words(read, 'N')}: if the spring "
-            f"was unloaded, give zero='{read:.4g} N'{turned}."
+            f"was unloaded, give {ZERO._replace(value=f'{read:.4g} N')}{turned}."
         )
         return
     after = ", as after a turn of the drive" if read < 0.0 else ""
     yield (
         f"The record does not show the unloaded spring: from its first reading on, "
         f"{in_words(read, 'N')}, the force rises. The spring was loaded already{after}, or the "
-        "zero is off: give zero=, the reading without load."
+        f"zero is off: give {ZERO}, the reading without load."
     )
 
 

@@ -48,7 +48,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "rest_share": ("by this shape the mass rests or creeps for {} of it", percent),
     SLOWER: ("the mass is slower than the drive for {} of it", percent),
     "backward": (
-        "it falls slowly and rises fast, in {} of the cycles: is its sign right?",
+        "it falls slowly and rises fast in {} of the cycles, as with the other sign",
         percent,
     ),
     "against": ("all peaks are against the drive, by {} or more, though its zero is right", _force),
