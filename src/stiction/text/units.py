@@ -85,6 +85,7 @@ hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, includ
 ONE, DIMENSIONLESS = {"", "1"}, "dimensionless"  # units of numbers: of xarray's, of pint's
 LARGE = 1e6  # a number below it is written without a power of ten
 ROUNDING = 1e-12  # relative: what many sums of floating-point numbers are off by
+SMALLEST = 1e-30  # SI units: the last prefix, and an error that only keeps a divisor from zero
 FACTOR = 12  # digits of a factor that is exact, such as 0.45359237 of a pound
 LONGEST_QUANTITY = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
@@ -415,8 +416,10 @@ def with_error(value: float, error: float, unit: str) -> str:
     ('978 ± 5 mN', '62.0 ± 0.6 µm/s', '2 N')
     >>> with_error(1.31e9, 8.2e8, "1/s²")
     '(1.3 ± 0.8)e9 1/s²'
+    >>> with_error(0.0, 7e-151, "N/s")
+    '0 N/s'
     """
-    if not ROUNDING * abs(value) < error < inf or not isfinite(value):
+    if not max(ROUNDING * abs(value), SMALLEST) < error < inf or not isfinite(value):
         return in_words(value, unit)
     size, power, name = _scale(max(abs(value), error), unit)
     shown = float(f"{error / size:.1g}")
@@ -439,19 +442,22 @@ def _scale(largest: float, unit: str) -> tuple[float, str, str]:
 
 
 def at_least(bound: float, error: float, unit: str) -> str:
-    """Return a lower bound, rounded down to the first digit of its error; one above zero only.
+    """Return a lower bound, rounded down to the first digit of its error, and not down to zero.
+
+    One that is not above zero bounds nothing.
 
     Examples
     --------
     >>> at_least(1.10593, 7e-4, "N/s"), at_least(9377.0, 2100.0, "1/s²"), at_least(-0.1, 1.0, "N/s")
     ('≥ 1.1059 N/s', '≥ 9000 1/s²', 'not determined')
-    >>> at_least(1.31e9, 2e8, "1/s²")
-    '≥ 1.3e9 1/s²'
+    >>> at_least(9.7, 9.6, "N/s"), at_least(0.7, 0.1, "N/s"), at_least(1.31e9, 2e8, "1/s²")
+    ('≥ 9 N/s', '≥ 700 mN/s', '≥ 1.3e9 1/s²')
     """
     if not bound > 0.0:
         return "not determined"
     size, power, name = _scale(bound, unit)
-    smallest = max(min(error, bound), ROUNDING * bound) / size
-    digit = first_decimal(smallest)
-    lower, decimals = floor(bound / size * 10.0**digit) / 10.0**digit, max(0, digit)
+    shown, smallest = bound / size, max(error, ROUNDING * bound) / size
+    digit = max(first_decimal(smallest), -floor(log10(shown)))
+    steps = floor(round(shown * 10.0**digit, 6))  # 0.7 is 6.999... times 0.1
+    lower, decimals = steps / 10.0**digit, max(0, digit)
     return f"≥ {lower:.{decimals}f}{power} {name}".rstrip()
