@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.changes.levels import levels
@@ -42,6 +43,7 @@ HALTING = (
     "the force hesitates in each cycle, and a small slip before the peak cannot be distinguished "
     "from creep"
 )
+CHANGING = "the rate of loading goes on changing"
 
 
 class Assessment(NamedTuple):
@@ -89,8 +91,9 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
 def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a record, whose stated parameters may contradict its force."""
     cycles, turns = found.lasting, imposed_reversal(None, regime)
-    none, apart = cycles.part(slice(0)), cycles_apart(cycles)
-    friction = _friction(record, found, cycles.part(~apart), regime, turns)
+    apart = cycles_apart(cycles)
+    usual = cycles.part(~apart)
+    friction = _friction(record, found, usual, regime, turns)
     drift = find_drift(record, cycles)
     shown = drift if is_shown(drift, regime.kind) else None
     ends = flat_ends(record.force)
@@ -98,34 +101,48 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     if "slips_at" in regime.evidence and found.few is not None:
         kind, slips = STICK_SLIP, found.few
     stated = compare_metadata(record, kind, slips, shown, ends)
-    alike = none if turns else cycles  # those of two strokes are none
+    alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
     doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
     if record.load_variation() <= VARIES:
         friction = with_drift(friction, record, cycles, drift)
-    friction = with_supposed_filter(friction, record, cycles.part(~apart), stated)
+    friction = with_supposed_filter(friction, record, usual, stated)
     unreal = why_no_friction(friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)
-    whole, friction = friction, without_cut_off(friction, record, cycles.part(~apart), ends)
+    whole, friction = friction, without_cut_off(friction, record, usual, ends)
     other = other_velocity(stated, cycles)
     if other.any() and record.position is None:
         cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
-    halting = cycles["hesitations"] > 0.0 if record.position is None else other
-    sticking = cycles.part(~(other | apart | halting)) if regime.loads else none
+    sticking, why = _sticking(record, cycles, regime, other, apart)
     missing = _meaningless(record, cycles, regime, stated, shown)
     cut = cut_off(record, cycles, ends)
     if cut and record.position is None:
         missing |= {name: cut for name in BY_DROP if name not in missing}
-    if (turns or unreal) and len(cycles):
-        names = ("mu_static", "mu_kinetic") if unreal else ("mu_kinetic",)
-        missing |= dict.fromkeys(names, turns or unreal)
+    if len(cycles):
+        reasons = {"mu_static": unreal, "mu_kinetic": turns or unreal}
+        missing |= {name: reason for name, reason in reasons.items() if reason}
     for name in ("static", "kinetic"):
         if getattr(whole, name) is not None and getattr(friction, name) is None:
             missing[f"mu_{name}"] = friction.missing[name]
     given = cycles.blank(missing)
-    if regime.loads and halting.all():
-        missing |= dict.fromkeys(("creep", "misalignment"), f"not determined: {HALTING}")
+    if why:
+        missing |= dict.fromkeys(("creep", "misalignment"), f"not determined: {why}")
     return Assessment(given, given.part(~apart), sticking, friction, stated, doubts, missing)
+
+
+def _sticking(
+    record: Record,
+    cycles: CycleTable,
+    regime: Regime,
+    other: NDArray[np.bool_],
+    apart: NDArray[np.bool_],
+) -> tuple[CycleTable, str]:
+    """Return the cycles that creep before they slip, and the reason if none can; else ""."""
+    if not regime.loads:
+        return cycles.part(slice(0)), ""
+    halting = (cycles["hesitations"] > 0.0) & (record.position is None)
+    why = HALTING if halting.all() else CHANGING if other.all() else ""
+    return cycles.part(~(other | apart | halting)), why
 
 
 def _friction(

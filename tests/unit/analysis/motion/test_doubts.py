@@ -13,7 +13,7 @@ from tests.drawn import inside
 from tests.parts import assess
 
 import stiction as st
-from stiction.analysis.assessment import HALTING
+from stiction.analysis.assessment import CHANGING, HALTING
 from stiction.analysis.export import write
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
@@ -570,6 +570,22 @@ def test_small_slips_in_the_rise_are_no_creep_and_those_in_the_fall_hide_none() 
     found = st.analyse(run)
     assert found.missing["creep_distance"] == HALTING
     assert np.isfinite(found.cycles["slip_distance"]).all()
+
+
+def test_a_drive_that_goes_on_changing_leaves_no_creep_and_is_told_so() -> None:
+    """Beside its displacement, it was said that the force hesitates in each of its cycles."""
+    time = np.arange(0.0, 40.0, 1e-3)
+    way, slip = 0.3 * time + 0.01 * time**2, 0.8
+    slips = np.searchsorted(way, 1.0 + slip * np.arange(np.ceil((way[-1] - 1.0) / slip)))
+    since = np.clip((np.arange(len(time)) - slips[:, None]) / 50.0, 0.0, 1.0)
+    position = 0.5 * slip * (1.0 - np.cos(np.pi * since)).sum(axis=0)
+    force = way - position + 1e-3 * np.random.default_rng(1).normal(size=len(time))
+    known = {"stiffness": 1.0, "drive_velocity": 0.5}
+    for channel in ({}, {"position": position}):
+        found = st.analyse(st.Record(time=time, force=force, **known, **channel))
+        assert found.cycles["hesitations"].max() == 0.0
+        assert found.missing["creep"] == f"not determined: {CHANGING}"
+        assert found.missing["misalignment"] == found.missing["creep"]
 
 
 @pytest.mark.parametrize(("noise", "named"), [(0.05, True), (1e-4, False)])
