@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.shared import shared_change
-from stiction.analysis.motion.changes.sliding import sliding
+from stiction.analysis.motion.changes.sliding import Sliding, sliding
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.friction import Friction
@@ -69,10 +69,11 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
         at = 0.5 * (cycles["peak_time"] + cycles["trough_time"])
         middle = 0.5 * (cycles["peak"] + cycles["trough"])
         seen = record.time[[0, -1]]
-    elif not len(cycles) and (last := _late(record)) and len(levels(record)) < 2:
-        at, middle = (part_means(each[last], PARTS) for each in (record.time, record.force))
-        seen = record.time[[last.start, last.stop - 1]]
-        shared = _settled_by(record)
+    elif not len(cycles) and (slides := _lasting(record)) and len(levels(record)) < 2:
+        late = slice(slides.half, slides.last)
+        at, middle = (part_means(each[late], PARTS) for each in (record.time, record.force))
+        seen = record.time[[late.start, late.stop - 1]]
+        shared = _settled_by(record.force[slides.first : slides.last])
     else:
         likely = _likely_rate(cycles)
         return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
@@ -91,13 +92,10 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
     return Drift(rate, error, change, start, large and sure, sure, likely, shared, end)
 
 
-def _late(record: Record) -> slice | None:
-    """Return the second half of the sliding, in which it has settled; None of too few samples."""
-    if not len(record):
-        return None
-    slides = sliding(record)
-    half = (slides.first + slides.last) // 2
-    return slice(half, slides.last) if slides.last - half >= PARTS else None
+def _lasting(record: Record) -> Sliding | None:
+    """Return the sliding; None if its second half, in which it has settled, has too few samples."""
+    slides = sliding(record) if len(record) else None
+    return slides if slides and slides.last - slides.half >= PARTS else None
 
 
 def _likely_rate(cycles: CycleTable) -> float:
@@ -162,14 +160,13 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     return friction.with_errors(**further)
 
 
-def _settled_by(record: Record) -> float:
+def _settled_by(force: Floats) -> float:
     """Return by how much a force settles while a mass slides, N; 0 if perhaps by chance.
 
     That is from early in the sliding, but after friction has fallen from a break-away, to its
-    second half, of which kinetic friction is the mean.
+    second half, of which kinetic friction is the mean after a loading.
     """
-    slides = sliding(record)
-    means = part_means(record.force[slides.first : slides.last], SETTLING_MEANS)
+    means = part_means(force, SETTLING_MEANS)
     if len(means) < SETTLING_MEANS:
         return 0.0
     (early, error, _), (late, late_error, _) = map(statistics, (means[EARLY], means[LATE]))
@@ -193,7 +190,7 @@ def detrend(record: Record) -> Record:
 
     The line is zero at the first sample, which is taken as correct. A force without cycles shows
     its drift in the second half of the sliding, and is changed from there on. Friction that
-    changes steadily is removed like drift.
+    changes steadily is removed like drift. A force whose halves change otherwise is left as it is.
 
     Parameters
     ----------
@@ -210,7 +207,7 @@ def detrend(record: Record) -> Record:
     True
     """
     drift = find_drift(record, swings(record).lasting)
-    if not np.isfinite(drift.start):
+    if not np.isfinite(drift.error):
         return record
     force = record.force - drift.rate * np.maximum(record.time - drift.start, 0.0)
     force.setflags(write=False)

@@ -129,7 +129,7 @@ def test_a_steady_motion_shows_whether_its_force_drifts(kind):
 
 @pytest.mark.parametrize(("kind", "told"), [(STEADY, True), (SETTLING, False)])
 def test_a_drift_is_told_of_a_motion_that_shows_it(kind, told):
-    for start, where in ((BEGIN, "in all"), (BEGIN + 20.0, "from 120 s on")):
+    for start, where in ((BEGIN, "in all"), (BEGIN + 20.0, "from 120 s to 150 s")):
         drift = KNOWN._replace(stands_out=True, change=-0.5, start=start)
         said = [*_drift(LOADED, drift, kind, table([], []))]
         first = ["The force drifts by -10 mN/s", f" -500 mN {where}"]
@@ -175,9 +175,14 @@ def test_a_drift_of_sliding_is_seen_before_the_drive_turns_or_unloads(ends):
 
 
 def test_a_force_that_begins_to_be_unloaded_shows_no_drift():
+    """`detrend` took half a newton off it."""
     drift = seen_of(lambda t: np.interp(t, [54.0, 75.0], [2.0, 0.0]))
     assert np.isnan(drift.error)
     assert drift.possible == 0.0
+    time = np.linspace(0.0, 60.0, 3000)
+    record = st.Record(time=time, force=np.interp(time, [54.0, 75.0], [2.0, 0.0]))
+    assert np.isnan(find_drift(record, swings(record).lasting).error)
+    assert np.array_equal(st.analysis.detrend(record).force, record.force)
 
 
 @pytest.mark.parametrize(

@@ -43,6 +43,11 @@ class Sliding(NamedTuple):
     last: int
     falls: int
 
+    @property
+    def half(self) -> int:
+        """The sample in its middle; from there on it has settled."""
+        return (self.first + self.last) // 2
+
 
 def sliding(record: Record) -> Sliding:
     """Return the part of a record without cycles in which the mass slides: all of it, or less.

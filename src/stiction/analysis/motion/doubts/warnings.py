@@ -304,7 +304,7 @@ def _drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Itera
     if drift.stands_out and is_shown(drift, kind):
         late = drift.start > float(record.time[0])
         rate, begin = in_words(drift.rate, "N/s"), in_words(drift.start, "s")
-        where = f"from {begin} on" if late else "in all"
+        where = f"from {begin} to {in_words(drift.end, 's')}" if late else "in all"
         remedy = (
             f"analyse the parts before and after {begin} by themselves "
             f"({Suggestion('end', of='')}, {Suggestion('begin')})"

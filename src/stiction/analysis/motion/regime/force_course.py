@@ -207,7 +207,7 @@ def _loads_on(record: Record, span: float) -> bool:
     if abs(means[0]) > BEGINS_UNLOADED * largest_magnitude(means):
         return False
     slides = sliding(record)
-    later = record.force[(slides.first + slides.last) // 2 : slides.last]
+    later = record.force[slides.half : slides.last]
     return bool(np.ptp(part_means(later, PER_QUARTER)) > SETTLED * span)
 
 
