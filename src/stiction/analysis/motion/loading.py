@@ -12,8 +12,8 @@ from stiction.recording.noise import dither_remainder, white_noise
 
 STRAIGHT_PART = (0.1, 0.5)  # part of the rise that is straight: after the swing, before the creep
 # A loading is not straight if its line comes from so far above the trough, or if it deviates so
-# far from it, over what it gains; and by more than so many standard deviations of noise, from
-# whose lowest samples a trough is
+# far from it, over what it gains; and by more than so many standard deviations of noise, which
+# makes a trough so low: it is the lowest of some samples
 LIFTS, STEPS, NOISE = 0.05, 0.03, 3.0
 # Times as much bends a whole rise: less may be a drive whose velocity varies, or a filter's swing
 GROSSLY = 5.0

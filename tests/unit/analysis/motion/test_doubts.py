@@ -528,9 +528,11 @@ def test_a_rise_in_which_the_force_hesitates_shows_no_creep() -> None:
     levels = np.tile([0.0, 0.45, 0.45, 1.0, 0.0, 0.5, 0.3, 1.0], 8)
     force = 2.0 + np.interp(time, corners, np.append(levels, 0.0))
     force += 1e-3 * np.random.default_rng(2).standard_normal(len(time))
-    its = assess(st.Record(time=time, force=force))
+    record = st.Record(time=time, force=force)
+    its = assess(record)
     assert len(its.cycles) > 12
     assert 0 < len(its.sticking) < len(its.cycles)
+    assert re.search(r"too small for a cycle of their own 0\.5\d* 0\.5", found_in(record))
     assert its.sticking["hesitations"].max() == 0.0
 
 
@@ -696,7 +698,12 @@ def test_values_that_are_repeated_count_once(jitter: int) -> None:
         away = abs(found.friction.static.force - sawtooth(np.linspace(0.0, 1.0, 999)).max())
         assert away < 2.0 * found.friction.static.error
     ramp = np.rint(np.arange(4000) / 7.3)  # steps of a converter
-    assert st.Record(time=1e-3 * np.arange(4000), force=ramp).each_value_once().repeats == 1
+    time = 1e-3 * np.arange(4000)
+    for steps in (ramp, 0.1 * ramp):
+        assert st.Record(time=time, force=steps).each_value_once().repeats == 1
+    some = np.random.default_rng(31)  # values of a converter that last as noise has it
+    coarse = np.repeat(some.normal(size=4000), some.integers(1, 4, 4000))[:4000]
+    assert len(st.Record(time=time, force=coarse).each_value_once()) == 4000
 
 
 def test_words_say_no_more_than_a_force_shows() -> None:

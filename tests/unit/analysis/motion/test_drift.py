@@ -314,3 +314,16 @@ def test_a_zero_that_does_not_settle_adds_no_error():
             kinetic = found.friction.kinetic
             assert kinetic is not None
             assert kinetic.error < 2e-3  # N; that of the noise is 2e-4 N
+            record = sliding(np.broadcast_to(friction, time.shape), seed)
+            assert find_drift(record, swings(record).lasting).shared == 0.0
+
+
+@pytest.mark.parametrize("kind", [STEADY, SETTLING])
+@pytest.mark.parametrize(("share", "told"), [(0.95, False), (1.05, True)])
+def test_a_force_that_settles_is_told_from_2_percent_of_its_largest_on(kind, share, told):
+    drift = KNOWN._replace(sure=False, shared=share * 0.02 * np.abs(LOADED.force).max())
+    said = [*_drift(LOADED, drift, kind, table([], []))]
+    assert ["settles by" in each for each in said] == [True] * told
+    if kind == STEADY:  # a steady drift is told instead
+        (said,) = _drift(LOADED, drift._replace(stands_out=True), kind, table([], []))
+        assert "drifts by" in said

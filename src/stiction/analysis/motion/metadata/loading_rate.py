@@ -13,6 +13,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.loading import rounding_of_rates
 from stiction.analysis.motion.metadata.quantity import StatedQuantity, median_error
+from stiction.analysis.motion.regime.force_course import FASTEST
 from stiction.analysis.motion.regime.kinds import STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
@@ -21,7 +22,7 @@ from stiction.arrays import Floats
 from stiction.text.units import in_words
 
 LOADING_RATE, BY_RISE = "stiffness times drive velocity", "rate at which the force rises"
-FASTER, SLOWER = 1.1, 0.5  # rate of loading over stiffness times drive velocity
+SLOWER = 0.5  # rate of loading over stiffness times drive velocity, where the mass creeps
 
 
 def loading_rates(
@@ -48,7 +49,7 @@ def loading_rates(
         if steady_change(slopes) is None:
             return [whole]
         low, high = np.sort(line(starts, slopes).at(record.time[[0, -1]]))
-        passes = SLOWER * stated < high and low < FASTER * stated
+        passes = SLOWER * stated < high and low < FASTEST * stated
         return [whole._replace(stated=nan) if passes else whole]
     at = [-inf, *(float(starts[place.start]) for place in places[1:]), inf]
     parts = []
@@ -95,7 +96,7 @@ def _loading_rate(slopes: Floats, stated: float, off: float, alike: float) -> St
     error = hypot(median_error(slopes), off)
     # a single cycle tells no error, but by how much drift and steps may change it
     within = ERRORS_95 * (error if isfinite(error) else off) / stated
-    low, high = SLOWER - within, FASTER + within
+    low, high = SLOWER - within, FASTEST + within
     its = StatedQuantity(LOADING_RATE, "N/s", found, error, stated, low, high, BY_RISE)
     return its._replace(is_bound=True)
 

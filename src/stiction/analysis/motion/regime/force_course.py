@@ -47,7 +47,7 @@ from stiction.analysis.signals.turning_points import CLEAR
 ONE_WAY = 0.8  # of all ups and downs is change: a drift or a load, no wandering
 SETTLED = 0.1  # of the force's span is passed in the last quarter; of an even load it is 0.25
 STILL_STICKS = 0.5  # of the early rate, or of stiffness times drive velocity: it still sticks
-FASTEST = 1.1  # times stiffness times drive velocity: no spring is loaded faster, as it is known
+FASTEST = 1.1  # times stiffness times drive velocity, as both are known: nothing is loaded faster
 # Times the scatter about it, and share of the mean force: by more a force wanders that slides, or
 # the mass sticks and slips more slowly than the record shows. Measured steady sliding: 3.7
 SMOOTH, VARIES = 5.0, 0.05
