@@ -295,7 +295,7 @@ class Record(Described):
 
     @property
     def repeats(self) -> int:
-        """Number of samples for which each value of the force lasted: see `each_value_once`."""
+        """Number of samples for which each value of the force lasted (`each_value_once`)."""
         return self._repeats
 
     def each_value_once(self) -> Self:
