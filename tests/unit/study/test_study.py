@@ -210,6 +210,16 @@ def test_an_unknown_key_is_told_beside_the_keys_of_its_table():
         ),
         (
             "",
+            '[study]\nmeasures = ["peak_forse"]\nbase = 2\n',
+            [
+                "study.base: is not a key of this table; write [slider], [friction], [drive] and "
+                "[run]",
+                "axes: missing; write for example a table [axes.phi]",
+                "study.measures: unknown measure 'peak_forse'; did you mean 'peak_force'?",
+            ],
+        ),
+        (
+            "",
             f"[study]\nmeasurs = []\nseed = -1\n{AXIS}",
             [
                 "study.measurs: unknown key 'measurs'; did you mean 'measures'?",

@@ -236,19 +236,19 @@ class Study(Described):
         if not isinstance(own, Mapping):
             return {}, [Fault("study", f"must be a table [study], is {echo(own)}")]
         places = {"axes": "[axes.phi]", "base": "[slider], [friction], [drive] and [run]"}
-        if strange := [key for key in places if key in own]:
-            said = "is not a key of this table; write"
-            return {}, [Fault(f"study.{key}", f"{said} {places[key]}") for key in strange]
-        if axes is None:
-            return {}, [Fault("axes", "missing; write for example a table [axes.phi]")]
+        said = "is not a key of this table; write"
+        found = [Fault(f"study.{key}", f"{said} {places[key]}") for key in places if key in own]
+        if axes is None and "axes" not in own:
+            found.append(Fault("axes", "missing; write for example a table [axes.phi]"))
         keys = cls.model_fields.keys() - places
-        strange = [key for key in own if key not in keys]
-        found = [Fault(f"study.{key}", unknown_name("key", key, keys)) for key in strange]
+        strange = [key for key in own if key not in keys | places.keys()]
+        found += [Fault(f"study.{key}", unknown_name("key", key, keys)) for key in strange]
         own = {key: own[key] for key in own if key in keys}
         try:
             cls._make(own, axes, None)
         except DescriptionError as error:
-            found += [each for each in error.faults if each.path != "study.base"]
+            told = {"study.base", "axes" if axes is None else ""}
+            found += [each for each in error.faults if each.path not in told]
         return own, found
 
     @classmethod
