@@ -69,3 +69,14 @@ VERY_SLOW = st.Slider(
     friction=st.ExponentialWeakening(mu_0=0.2, mu_inf=0.15, v_f="1 mm/s"),
     drive=st.ConstantVelocity("20 um/s"),
 )
+
+# a brake caliper in creep groan: a large and a small slip in each period
+CALIPER = st.Slider(
+    mass="12 kg",
+    k_x="4 kN/mm",
+    k_y="90 kN/mm",
+    phi="6 deg",
+    normal_load="5 kN",
+    friction=st.ExponentialWeakening(mu_0=0.45, mu_inf=0.36, v_f="20 mm/s"),
+    drive=st.ConstantVelocity("4 mm/s"),
+)

@@ -7,7 +7,6 @@ import signal
 import subprocess
 import sys
 from contextlib import contextmanager
-from functools import partial
 from io import StringIO
 from pathlib import Path
 
@@ -389,8 +388,8 @@ def test_work_that_lasts_says_so_through_a_pipe(capsys, monkeypatch):
 def test_a_terminal_shows_no_percentage_of_work_whose_share_is_not_told(monkeypatch):
     """An analysis of 4 million samples showed "0 %" for half a minute."""
     screen = StringIO()
-    terminal = partial(Console, file=screen, force_terminal=True, width=100)
-    monkeypatch.setattr(progress, "Console", lambda **_: terminal())
+    terminal = Console(file=screen, force_terminal=True, width=100)
+    monkeypatch.setattr(progress, "Console", lambda **_: terminal)
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
     with progress.progress("analysing") as report:
         until(lambda: "analysing" in screen.getvalue(), "the bar")

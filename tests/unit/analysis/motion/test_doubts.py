@@ -11,6 +11,7 @@ from benchmarks.explore.records import between
 from benchmarks.explore.records import sawtooth as irregular
 from tests.drawn import inside
 from tests.parts import assess
+from tests.rigs import CALIPER
 
 import stiction as st
 from stiction.analysis.assessment import CHANGING, HALTING
@@ -44,17 +45,6 @@ KNOWN = {
 def force():
     run = st.simulate(st.presets.nakano_popov_2020(), 7.0, sample_rate=2e3)
     return run.data["time"].values, run.data["spring_x"].values
-
-
-CALIPER = st.Slider(
-    mass="12 kg",
-    k_x="4 kN/mm",
-    k_y="90 kN/mm",
-    phi="6 deg",
-    normal_load="5 kN",
-    friction=st.ExponentialWeakening(mu_0=0.45, mu_inf=0.36, v_f="20 mm/s"),
-    drive=st.ConstantVelocity("4 mm/s"),
-)
 
 
 def doubts_in_words(time: np.ndarray, force: np.ndarray, **changes: object) -> str:

@@ -24,7 +24,7 @@ LAG = 0.4
 
 def unseen_creep(record: Record, cycles: CycleTable, drift: Drift | None) -> str:
     """Return why the distance crept is not seen, or "": something else makes as much of it."""
-    if record.position is not None or not record.stiffness or not record.drive_velocity:
+    if not (spring := _spring(record)):
         return ""
     seen = float(np.nanmedian(cycles["creep_distance"]))
     ways = {
@@ -32,7 +32,7 @@ def unseen_creep(record: Record, cycles: CycleTable, drift: Drift | None) -> str
         "a filter of the load cell may look like {} of creep where the mass rests": way_of_lag(
             record, cycles
         ),
-        "a drift of the force may look like {} of creep": _way_of_drift(record, cycles, drift),
+        "a drift of the force may look like {} of creep": _way_of_drift(spring[0], cycles, drift),
     }
     if not 0.0 <= seen < sum(ways.values()):
         return ""
@@ -47,11 +47,11 @@ def hidden_way(record: Record) -> float:
     100 random records creep is so much too short in the median that 0.63 times this is missing, and
     1.2 times in 5.
     """
-    if record.position is not None or not record.stiffness or not record.drive_velocity:
+    if not (spring := _spring(record)):
         return 0.0
+    stiffness, speed = spring
     force = ON_BOTH_ENDS * white_noise(record.force) + resolution(record.force)
-    between = abs(record.drive_velocity) / record.sample_rate
-    return float(force / record.stiffness + between)
+    return float(force / stiffness + speed / record.sample_rate)
 
 
 def way_of_lag(record: Record, cycles: CycleTable) -> float:
@@ -60,14 +60,24 @@ def way_of_lag(record: Record, cycles: CycleTable) -> float:
     It lags behind the force, so that after a trough the rise seems to begin slowly. Zero where
     slips last no longer than mass and stiffness as stated have it, or the position is known.
     """
-    if record.position is not None or not record.stiffness or not len(cycles):
+    if not (spring := _spring(record)) or not len(cycles):
         return 0.0
-    stated = record.stiffness / record.mass if record.mass else inf
-    longer = drawn_out(usual_fall(record, cycles), stated)
-    return float(LAG * abs(record.drive_velocity or 0.0) * longer)
+    stiffness, speed = spring
+    stated = stiffness / record.mass if record.mass else inf
+    return LAG * speed * drawn_out(usual_fall(record, cycles), stated)
 
 
-def _way_of_drift(record: Record, cycles: CycleTable, drift: Drift | None) -> float:
+def _way_of_drift(stiffness: float, cycles: CycleTable, drift: Drift | None) -> float:
     """Return how much creep a drift shows in the median rise of the force, m."""
     rise = float(np.median(cycles["peak_time"] - cycles["start"]))
-    return abs(rate_of_drift(cycles, drift)) * rise / (record.stiffness or inf)
+    return abs(rate_of_drift(cycles, drift)) * rise / stiffness
+
+
+def _spring(record: Record) -> tuple[float, float] | None:
+    """Return stiffness (N/m) and speed of the drive (m/s) by which ways follow from a force.
+
+    None where the position is known, or they are not.
+    """
+    if record.position is not None or not record.stiffness or not record.drive_velocity:
+        return None
+    return record.stiffness, abs(record.drive_velocity)
