@@ -173,6 +173,8 @@ def _outliers(values: Floats) -> NDArray[np.bool_]:
     for width in range(1, LONGEST_GROUP + 1):
         left = jumps[(jumps >= BESIDE) & (jumps + width + 1 + BESIDE < len(values))]
         left = left[steps[left + width] > far]
+        if not left.size:
+            continue
         right = left + width + 1
         rise = values[right] - values[left]
         inside = left[:, None] + np.arange(1, width + 1)

@@ -181,14 +181,10 @@ def turning_points(values: Floats) -> TurningPoints:
     """
     counts = without_spikes(as_counts(values))
     levels = list(running_sums(counts))
-    step = typical_step(counts)
+    steps = [typical_step(each) / 2**level for level, each in enumerate(levels)]
     gaps = [
-        widest_gap(
-            all_heights(each) / 2**level,
-            max(step, typical_step(each) / 2**level),
-            len(each) / FEWEST_PER_CYCLE,
-        )
-        for level, each in enumerate(levels)
+        widest_gap(all_heights(each) / 2**level, max(steps[0], step), len(each) / FEWEST_PER_CYCLE)
+        for level, (each, step) in enumerate(zip(levels, steps, strict=True))
     ]
     clearest = max((gap.clearness for gap in gaps), default=0.0)
     if clearest < CLEAR and len(few := coarse_points(counts)):
@@ -206,13 +202,15 @@ def turning_points(values: Floats) -> TurningPoints:
     leg = float(np.median(np.abs(np.diff(levels[level][index])))) / width
     trough = np.diff(levels[level][index], append=0) > 0
     trough[-1:] = ~trough[-2:-1]
-    reach = [noise_reach(levels[i], gap.middle * 2**i) / 2**i for i in range(level + 1)]
-    quiet = next(i for i, noise in enumerate(reach) if noise < PLACING * leg or i == level)
+    for quiet in range(level + 1):
+        reach = noise_reach(levels[quiet], gap.middle * 2**quiet) / 2**quiet
+        if reach < PLACING * leg:
+            break
     for finer in range(level - 1, quiet - 1, -1):
         index = _locate(levels[finer], index, trough)
     unit = float(np.ptp(values)) / COUNTS
     means = values.min() + unit / 2**quiet * levels[quiet] if quiet else without_spikes(values)
-    noise, least = unit * reach[quiet], unit * gap.middle
+    noise, least = unit * reach, unit * gap.middle
     return TurningPoints(index, trough, means, 2**quiet, noise, gap.clearness, least)
 
 
