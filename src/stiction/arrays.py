@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from weakref import finalize
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["NORMAL_MEDIAN", "TINY", "Complex", "Floats", "Indices", "xr"]
+__all__ = ["NORMAL_MEDIAN", "TINY", "Complex", "Floats", "Indices", "compute_once", "xr"]
 
 TINY = 1e-300  # nothing beside any quantity in SI, and more than 0: of a divisor, or in a logarithm
 NORMAL_MEDIAN = 0.6744897501960817  # of |x| of a standard normal x
@@ -16,6 +19,41 @@ NORMAL_MEDIAN = 0.6744897501960817  # of |x| of a standard normal x
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 Indices = NDArray[np.intp]
+Rest = ParamSpec("Rest")
+Found = TypeVar("Found")
+
+
+def compute_once(
+    function: Callable[Concatenate[Floats, Rest], Found],
+) -> Callable[Concatenate[Floats, Rest], Found]:
+    """Let a function keep what it finds of an array that cannot change, while the array lives.
+
+    The arrays of a record are such, and a dozen findings ask for the step, the noise or the grid
+    of each. What is found is shared by all of them: it must not be changed.
+
+    Examples
+    --------
+    >>> size = compute_once(lambda values: print("computed") or len(values))
+    >>> values = np.zeros(3)
+    >>> values.setflags(write=False)
+    >>> size(values), size(values)
+    computed
+    (3, 3)
+    """
+    known: dict[Any, Found] = {}
+
+    @wraps(function)
+    def recall(values: Floats, /, *rest: Rest.args, **named: Rest.kwargs) -> Found:
+        if values.flags.writeable or values.base is not None:
+            return function(values, *rest, **named)
+        key = id(values), rest, tuple(named.items())
+        if key not in known:
+            known[key] = function(values, *rest, **named)
+            finalize(values, known.pop, key, None).atexit = False
+        return known[key]
+
+    return recall
+
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -154,7 +154,7 @@ def _friction(
     or none at all.
     """
     changed = found.lines or found.ringing
-    clean = record.model_copy(update={"force": found.force}) if changed else record
+    clean = record.with_force(found.force) if changed else record
     if "levels" in regime.evidence:
         first = clean.before(levels(clean)[0].end)
         several = "the force stays at several levels, each with its own: see the parts"

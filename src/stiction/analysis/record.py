@@ -435,6 +435,11 @@ class Record(Described):
         cut = {name: values[samples] for name, values in self.channels().items()}
         return self.model_copy(update={"time": self.time[samples], **cut})
 
+    def with_force(self, force: Floats) -> Self:
+        """Return the record with another force (n,), N, that cannot be changed any more."""
+        force.setflags(write=False)
+        return self.model_copy(update={"force": force})
+
     def channels(self) -> dict[str, Floats]:
         """Return the measured channels by name, (n,) each, in SI; the force first."""
         found = {name: getattr(self, name) for name in CHANNELS}

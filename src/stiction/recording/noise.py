@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import NORMAL_MEDIAN, Floats
+from stiction.arrays import NORMAL_MEDIAN, Floats, compute_once
 
 ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
 FEWEST_SAMPLES = 64  # so many tell white noise to a fifth
@@ -57,6 +57,7 @@ def noise_level(values: Floats) -> NoiseLevel:
     return NoiseLevel(resolved_noise(values, step), step)
 
 
+@compute_once
 def resolved_noise(values: Floats, step: float) -> float:
     """Return the standard deviation of white noise on multiples of a step; 0 if it is hidden.
 
@@ -99,6 +100,7 @@ def noise_within_steps(values: Floats) -> float:
     return float(np.interp(np.mean(left[quiet] ** 2), variances, levels))
 
 
+@compute_once
 def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> float:
     """Return the standard deviation of white noise on something smooth, in multiples of a `step`.
 

@@ -203,7 +203,7 @@ def _swings_of_any_drive(record: Record) -> Swings:
     """
     read, force = record.force, without_outliers(record.force)
     if force is not record.force:
-        record = record.model_copy(update={"force": force})
+        record = record.with_force(force)
     found, grid = own_swings(record), even_grid(record.time)
     lasting = _cycles_beside_a_ringing(record, found)
     if grid is None or lasting is not None:
@@ -249,7 +249,7 @@ def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
     if ringing is None:
         return None
     smooth = without_ringing(record.time, record.force, ringing)
-    left = own_swings(record.model_copy(update={"force": smooth}))
+    left = own_swings(record.with_force(smooth))
     left = left._replace(table=beside(left.table, ringing), ringing=ringing)
     enough = len(left.table) >= FEWEST_CYCLES and not left.dying
     sticks = enough and rest_share(left.table.median("rise_share")) >= STICKING
@@ -324,7 +324,7 @@ def _without_line(
 
 def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
     """Return a record less a line, and its swings, of which the residue of the line is none."""
-    rest = record.model_copy(update={"force": record.force - line.values})
+    rest = record.with_force(record.force - line.values)
     found = own_swings(rest)._replace(lines=(line,))
     if is_residue(line, found.table):
         found = found._replace(table=found.table.part(slice(0)), dying=False, turns=0)

@@ -209,6 +209,4 @@ def detrend(record: Record) -> Record:
     drift = find_drift(record, swings(record).lasting)
     if not np.isfinite(drift.error):
         return record
-    force = record.force - drift.rate * np.maximum(record.time - drift.start, 0.0)
-    force.setflags(write=False)
-    return record.model_copy(update={"force": force})
+    return record.with_force(record.force - drift.rate * np.maximum(record.time - drift.start, 0.0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from stiction.arrays import Floats, Indices
+from stiction.arrays import Floats, Indices, compute_once
 from stiction.recording.noise import dither_remainder, lattice, rounding_error
 
 MANY, COARSE = 100_000, 1e-4  # samples examined for steps; smallest step, over the signal's range
@@ -17,6 +17,7 @@ ROUNDED = 1.6
 ENOUGH_VALUES, JITTER, ONE_STEP = 16, 2, 1.5
 
 
+@compute_once
 def resolution(values: Floats) -> float:
     """Return the step that the values of a signal may be rounded to; 0 if it is nearly continuous.
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.signals.straight_line import line
-from stiction.arrays import Floats
+from stiction.arrays import Floats, compute_once
 from stiction.recording.guess.clock import ONE_MISSING
 from stiction.recording.part import begin_and_end
 from stiction.text.quantity_text import percent
@@ -30,7 +30,7 @@ COARSER = 3  # mean intervals: a step in which 1 of 20 has no sample, if their t
 FEWEST_SAMPLES = 16  # samples with which the step is first refined
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EvenGrid:
     """Even times through those of a record.
 
@@ -128,6 +128,7 @@ class EvenGrid:
         return np.asarray(np.interp(self.places, np.arange(self.size), values))
 
 
+@compute_once
 def even_grid(time: Floats) -> EvenGrid | None:
     """Return the even grid that is closest to the times of a record.
 

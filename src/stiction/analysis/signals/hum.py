@@ -16,7 +16,7 @@ import numpy as np
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.robust import inner_product, median, uniform_mean
 from stiction.analysis.signals.spectrum import spectrum
-from stiction.arrays import TINY, Complex, Floats
+from stiction.arrays import TINY, Complex, Floats, compute_once
 
 PERIODS = 16  # of a line that a record has at least
 ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of a million samples
@@ -84,13 +84,12 @@ def narrow_lines(grid: EvenGrid | None, force: Floats, least: float = 1.0) -> li
     least : float, optional
         Their clearness, at least.
     """
-    seen = _spectrum_on_grid(grid, force)
+    seen = _spectrum_on_grid(force, grid)
     if grid is None or seen is None:
         return []
-    power, width = seen
-    floor = beside(power)
+    power, floor, _ = seen
     return [
-        _measure_line(force, grid, power, floor, width, at)._replace(
+        _measure_line(force, grid, seen, at)._replace(
             clearness=min(float(power[at] / max(ABOVE * floor[at], TINY)), alone / ALONE)
         )
         for at, alone in _peaks(power, floor, least * ABOVE, least * ALONE).items()
@@ -99,12 +98,11 @@ def narrow_lines(grid: EvenGrid | None, force: Floats, least: float = 1.0) -> li
 
 def line_near(grid: EvenGrid, force: Floats, frequency: float) -> Line | None:
     """Return the line at one of the `peak_frequencies` (Hz), alone or not; None without any."""
-    seen = _spectrum_on_grid(grid, force)
+    seen = _spectrum_on_grid(force, grid)
     if seen is None:
         return None
-    power, width = seen
-    at = min(max(round(frequency * grid.step / width), 1), len(power) - 1)
-    return _measure_line(force, grid, power, beside(power), width, at)
+    at = min(max(round(frequency * grid.step / seen.width), 1), len(seen.power) - 1)
+    return _measure_line(force, grid, seen, at)
 
 
 def lines_like(lines: Sequence[Line], grid: EvenGrid, values: Floats, least: float) -> list[Line]:
@@ -147,25 +145,33 @@ def peak_frequencies(grid: EvenGrid | None, force: Floats) -> list[float]:
 
     The clearest first, as in `narrow_lines`; but these may be broad, and not alone.
     """
-    seen = _spectrum_on_grid(grid, force)
+    seen = _spectrum_on_grid(force, grid)
     if grid is None or seen is None:
         return []
-    power, width = seen
-    found = _peaks(power, beside(power), ABOVE, 1.0)
-    return [_middle(power, at) * width / grid.step for at in found]
+    found = _peaks(seen.power, seen.floor, ABOVE, 1.0)
+    return [_middle(seen.power, at) * seen.width / grid.step for at in found]
 
 
-def _spectrum_on_grid(grid: EvenGrid | None, force: Floats) -> tuple[Floats, float] | None:
+class _Spectrum(NamedTuple):
+    """Power of a force, what it is `beside` each sample, and the samples' width in cycles."""
+
+    power: Floats
+    floor: Floats
+    width: float
+
+
+@compute_once
+def _spectrum_on_grid(force: Floats, grid: EvenGrid | None) -> _Spectrum | None:
     """Return the `spectrum` of a force on the grid of its times; None if it can show no line."""
     if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
         return None
-    return spectrum(grid.on(force))
+    power, width = spectrum(grid.on(force))
+    return _Spectrum(power, beside(power), width)
 
 
-def _measure_line(
-    force: Floats, grid: EvenGrid, power: Floats, floor: Floats, width: float, at: int
-) -> Line:
+def _measure_line(force: Floats, grid: EvenGrid, seen: _Spectrum, at: int) -> Line:
     """Return the line at a sample of the spectrum, with its harmonics, at the record's times."""
+    power, floor, width = seen
     cycles = _middle(power, at) * width  # per sample
     length = round(1.0 / cycles)
     even = grid.on(force)
@@ -210,10 +216,10 @@ def beat_frequency(time: Floats, force: Floats) -> float | None:
     Noise in a band of frequencies has as many lines as the band is wide.
     """
     grid = even_grid(time)
-    seen = _spectrum_on_grid(grid, force)
+    seen = _spectrum_on_grid(force, grid)
     if grid is None or seen is None:
         return None
-    power, width = seen
+    power, width = seen.power.copy(), seen.width
     power[:PERIODS] = 0.0
     total, lines = float(power.sum()), []
     for _ in range(2):

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.arrays import Floats, Indices
+from stiction.arrays import Floats, Indices, compute_once
 
 CUT = 0.1  # share of the values left out at each end
 FAR = 8.0  # times the typical step from sample to sample
@@ -136,6 +136,7 @@ def trimmed_means(values: Floats, starts: Indices) -> tuple[Floats, Floats]:
     return mean, deviation / (1.0 - 2.0 * cut / count) / np.sqrt(count)
 
 
+@compute_once
 def without_outliers(values: Floats) -> Floats:
     """Replace wild samples by the straight line between their neighbours.
 
@@ -155,6 +156,7 @@ def without_outliers(values: Floats) -> Floats:
         at = np.flatnonzero(~wild)
         kept = values.copy()
         kept[wild] = np.interp(np.flatnonzero(wild), at, values[at])
+        kept.setflags(write=False)
     return kept
 
 

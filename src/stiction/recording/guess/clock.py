@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import Floats, Indices
+from stiction.arrays import Floats, Indices, compute_once
 from stiction.errors import Faults, ResultError
 from stiction.formats.table import FileTable, number_of
 from stiction.text.suggestion import Suggestion
@@ -98,6 +98,7 @@ def _are_periods(path: object, values: Floats, said: str | None, name: str) -> b
     return False
 
 
+@compute_once
 def rate_of(time: Floats) -> float:
     """Return the samples per second, gaps left out; 0 if the times do not tell.
 

@@ -97,7 +97,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
         if (pulls := strokes(record)) is not None:
             return Regime(UNDETERMINED, 0.0, {"forth": pulls[0], "back": pulls[1]})
     if found.lines:
-        record = record.model_copy(update={"force": found.force})
+        record = record.with_force(found.force)
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
     if not len(found.table) or per_cycle < MANY_SAMPLES:
         per_cycle = min(per_cycle, samples_per_period(record.force))
