@@ -16,10 +16,11 @@ from benchmarks.explore.records import (
     sawtooth,
 )
 from numpy.typing import NDArray
+from scipy.signal import savgol_filter
 from tests.measured import bare, read_measured
 
 import stiction as st
-from stiction.analysis.motion.cycle_columns import TIMES
+from stiction.analysis.motion.cycle_columns import TIMES, _smooth_rate
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.disturbance import is_rounding
 from stiction.analysis.motion.friction import friction_of
@@ -133,6 +134,16 @@ def test_what_the_mass_does_agrees_with_the_run(paper: st.Record, paper_run: st.
     assert forced["peak_slip_speed"].values == pytest.approx(np.full(3, highest), rel=2e-3)
     # it creeps by 1 to 3 per cent of the drive velocity in the first half of loading
     assert ((cycles["stiffness"] > 970.0) & (cycles["stiffness"] < 990.0)).all()
+
+
+@pytest.mark.parametrize(("samples", "fall"), [(50, 8), (3001, 40), (3000, 900)])
+def test_the_rate_of_force_is_that_of_cubics_through_a_quarter_of_a_fall(samples, fall):
+    force = 10.0 + np.cumsum(np.random.default_rng(samples).normal(size=samples))
+    found = _smooth_rate(0.01 * np.arange(samples), force, fall)
+    half = fall // 4
+    by_cubics = savgol_filter(force, 2 * half + 1, 3, deriv=1, delta=0.01)
+    inside = slice(half, samples - half)  # at the ends one extrapolates, the other mirrors
+    assert found[inside] == pytest.approx(by_cubics[inside], abs=1e-9 * np.abs(by_cubics).max())
 
 
 @pytest.mark.parametrize(("rate", "error"), [(100.0, 6e-3), (1e3, 2e-4), (100e3, 1e-6)])
