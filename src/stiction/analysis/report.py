@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,7 +16,7 @@ from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
-from stiction.analysis.motion.cycle_columns import summary
+from stiction.analysis.motion.cycle_columns import CycleTable, summary
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.friction import Friction
@@ -185,16 +185,18 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     found = swings(record)
     regime = regime_of(record, found)
     missing: dict[str, str] = {}
-    oscillation = attempt(missing, "oscillation", lambda: _oscillation(record, run, found.cycles))
+    dataset = cache(CycleTable.as_dataset)  # some of the tables are one and the same
+    cycles = dataset(found.lasting)
+    oscillation = attempt(missing, "oscillation", lambda: _oscillation(record, run, cycles))
     its = assess_run(run, record, found, regime) if run else assess_record(record, found, regime)
-    sticking = its.sticking.as_dataset()
+    sticking = dataset(its.sticking)
     width = _free_of_hum(oscillation, sticking) if run is None else None
     creep = find_creep(source, record, sticking, width)
     phases = None
     if run is not None and oscillation is not None:
         phases = oscillation_by_phase(oscillation, run, stick_phases(run, sticking))
     analysis = Analysis(
-        source, record, regime, its.cycles.as_dataset(), summary(its.usual.as_dataset()),
+        source, record, regime, dataset(its.cycles), summary(dataset(its.usual)),
         creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
         missing | creep.missing | its.missing, its.friction,
         its.warnings + subtracted_lines(found.lines, found.ringing), {"metadata": its.stated},

@@ -70,7 +70,9 @@ class CycleTable:
         return len(self.columns["start"])
 
     def part(self, rows: slice | NDArray[np.bool_]) -> CycleTable:
-        """Return some of the rows."""
+        """Return some of the rows; the table itself, if these are all."""
+        if len(np.arange(len(self))[rows]) == len(self):
+            return self
         return CycleTable({name: each[rows] for name, each in self.columns.items()}, self.least)
 
     def blank(self, names: Iterable[str], rows: ArrayLike = True) -> CycleTable:
