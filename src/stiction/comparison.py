@@ -25,7 +25,7 @@ from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
 from stiction.text.sections import Report, Section, Table
 from stiction.text.toml import read_toml
-from stiction.text.units import in_words
+from stiction.text.units import Quantity, in_words
 from stiction.text.validation import unknown_name
 from stiction.trajectory import Trajectory
 
@@ -78,9 +78,9 @@ class Comparison(Report, dict[str, Trajectory]):
         headings = tuple(each.format(force) for each in HEADINGS)
         return [Section("Friction laws", early, Table(headings, rows))]
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None, *, window: Sequence[Quantity] | None = None) -> Any:
         """Draw the runs together; see `stiction.plotting.plot_comparison`."""
-        return draw("plot_comparison", self, axes)
+        return draw("plot_comparison", self, axes, window=window)
 
 
 def row(label: str, run: Trajectory, o: Outcome) -> tuple[str, ...]:

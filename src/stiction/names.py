@@ -103,9 +103,9 @@ def entry(room: str, name: str, attribute: str | None, registry: str) -> Any:
     raise StictionError(f"{registry} names {name!r}, {file}: {lacks}; correct the line, or add it")
 
 
-def draw(figure: str, *what: Any) -> Any:
+def draw(figure: str, *what: Any, **options: Any) -> Any:
     """Return what a public figure draws: a result asks for its own when called, see `plotting`."""
-    return getattr(import_module("stiction.plotting"), figure)(*what)
+    return getattr(import_module("stiction.plotting"), figure)(*what, **options)
 
 
 def picture(figure: str, *what: Any) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
@@ -184,9 +184,9 @@ class Trajectory:
         """Write samples and sticks as CSV, Parquet or MATLAB; see `stiction.export`."""
         return export(self, path)
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None, *, window: Sequence[Quantity] | None = None) -> Any:
         """Draw the run; see `stiction.plotting.plot_run`."""
-        return draw("plot_run", self, axes)
+        return draw("plot_run", self, axes, window=window)
 
     def state(self, time: Quantity) -> Initial:
         """Return the state at the sample nearest to `time` (s), as the start of another run.

@@ -137,7 +137,8 @@ def test_each_public_figure_takes_axes_and_has_a_docstring(name):
     if name.startswith("__"):
         return
     function = getattr(plotting, name)
-    last = list(inspect.signature(function).parameters)[-1]
+    taken = inspect.signature(function).parameters.values()
+    last = [each.name for each in taken if each.kind is not each.KEYWORD_ONLY][-1]
     assert last in ("ax", "axes")
     assert inspect.signature(function).parameters[last].default is None
     assert inspect.getdoc(function)

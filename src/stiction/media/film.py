@@ -21,11 +21,11 @@ from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError, echo
 from stiction.media.encoder import KINDS, encode
 from stiction.media.scene import Scene, slowest_slip
-from stiction.media.sound import time_in, window_of
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
 from stiction.plotting.run.lines import BAND, draw_line, envelope
 from stiction.plotting.run.time_series import STILL, say_only
 from stiction.result.table import ColumnTable, sample_table
+from stiction.result.window import time_in, window_of
 from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description

@@ -15,14 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, Faults, ResultError, echo
+from stiction.errors import Faults, ResultError, echo
 from stiction.result.table import sample_table
+from stiction.result.window import window_of
 from stiction.simulation import solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
-from stiction.system.initial import Initial
 from stiction.text.units import Quantity, in_words
-from stiction.text.validation import read_arguments
 from stiction.trajectory import Trajectory, run_of
 
 WAV = (".wav",)
@@ -234,51 +233,3 @@ def audible_speed(description: Description, axis: str = "y") -> float:
     if pitch > high:
         return float(10.0 ** floor(log10(high / pitch)))
     return float(10.0 ** -floor(log10(pitch / low))) if pitch < low else 1.0
-
-
-def window_of(description: Description, window: Sequence[Quantity] | None) -> tuple[float, float]:
-    """Return start and end of a part of a run, s.
-
-    Raises
-    ------
-    ResultError
-        If it is not a part of it.
-    """
-    first = description.initial.time
-    last = first + description.run.duration
-    if window is None:
-        return first, last
-    start, end = (seconds(each) for each in window)
-    if not first <= start < end <= last * (1 + 1e-12):
-        raise ResultError(
-            f"{start:g} s to {end:g} s is not a part of the run, {first:g} s to {last:g} s"
-        )
-    return start, min(end, last)
-
-
-def time_in(description: Description, time: Quantity) -> float:
-    """Return a time in a run, s.
-
-    Raises
-    ------
-    ResultError
-        If it is not in it.
-    """
-    (first, last), found = window_of(description, None), seconds(time)
-    if not first <= found <= last:
-        raise ResultError(f"{found:g} s is not in the run, {first:g} s to {last:g} s")
-    return found
-
-
-def seconds(time: Quantity) -> float:
-    """Return a time, given as a number of seconds or with its unit, s.
-
-    Raises
-    ------
-    ResultError
-        If it has no unit of time.
-    """
-    try:
-        return read_arguments(Initial, time=time).time
-    except DescriptionError as error:
-        raise ResultError(str(error)) from None

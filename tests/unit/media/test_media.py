@@ -228,9 +228,12 @@ def test_both_commands(run, tmp_path, capsys):
 def test_times_and_speeds_that_cannot_be_say_what_they_are(run):
     for call, what in (
         (lambda: st.listen(run, speed=0.0), "speed must be above 0, is 0; 0.1 is ten times slower"),
-        (lambda: st.listen(run, window=("1", "2 s")), "^time: '1' has no unit; write for example"),
+        (
+            lambda: st.listen(run, window=("1", "2 s")),
+            "^window: '1' has no unit; write for example",
+        ),
         (lambda: st.animate(run, at="99 s"), "99 s is not in the run, 0 s to"),
-        (lambda: st.animate(run, at="1 m"), "^time: '1 m' is in m, not a unit of a time"),
+        (lambda: st.animate(run, at="1 m"), "^at: '1 m' is in m, not a unit of a time"),
     ):
         with pytest.raises(st.ResultError, match=what):
             call()

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, FromPreset, Output, Trust, changes, description_from
+from stiction.cli.options import (
+    Changes,
+    FromPreset,
+    Output,
+    Trust,
+    Window,
+    changes,
+    description_from,
+)
 from stiction.cli.terminal import say
 from stiction.errors import Faults
 
@@ -23,6 +31,7 @@ def compare(
     *,
     law: Annotated[list[str], Parameter(negative=())],
     output: Output,
+    window: Window = None,
     data: Path | None = None,
     preset: FromPreset = None,
     trust: Trust = False,
@@ -57,6 +66,9 @@ def compare(
         [friction] is used, or your own law (file.py:Class). Example: --law coulomb.
     output
         The figure to write: .png, .pdf or .svg. Example: -o laws.png.
+    window
+        Start and end of what is drawn of each run; all of it by default. Example: --window 1.5s
+        2.2s.
     data
         A folder for the results too, a NetCDF file each; made if it does not exist. Example: --data
         results.
@@ -66,12 +78,15 @@ def compare(
     from stiction.cli.tables import print_sections
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
+    from stiction.result.window import window_of
     from stiction.storage.files import usable_folder
 
     faults = Faults()
     given = changes(set, faults)
     with faults.of_part():
         description = description_from(config, preset, given, trust)
+        with faults.of_part():
+            window_of(description, window)
     with faults.of_part():
         drawable(output)
     if data is not None:
@@ -80,7 +95,7 @@ def compare(
     faults.refuse()
     with progress("simulating and drawing") as report:
         found = comparison.compare(description, law, progress=report)
-        figure = figure_of(found.plot)
+        figure = figure_of(found.plot, window=window)
     write(figure, output)
     print_sections(str(config or preset), found.tables())
     for path in (output, *([] if data is None else save(found, data))):

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from stiction.cli.options import Output, Trust
+from stiction.cli.options import Output, Trust, Window
 from stiction.cli.terminal import say
 from stiction.errors import Faults
 
 
-def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
+def plot(result: Path, /, *, output: Output, window: Window = None, trust: Trust = False) -> None:
     """Draw the overview of a result: the system, forces, direction, position, slip speed.
 
-    For example, after `stiction run my.toml -o my.nc`:
+    For example, after `stiction run my.toml -o my.nc`; then one slip:
 
         stiction plot my.nc -o my.png
+
+        stiction plot my.nc -o slip.png --window 1.5s 2.2s
 
     Parameters
     ----------
@@ -22,6 +24,8 @@ def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
         A file written by `stiction run`.
     output
         The figure to write: .png, .pdf or .svg. Example: -o my.png.
+    window
+        Start and end in the run; all of it by default. Example: --window 1.5s 2.2s.
     """
     from stiction.cli.progress import progress
     from stiction.plotting.door import plot as draw
@@ -36,5 +40,5 @@ def plot(result: Path, /, *, output: Output, trust: Trust = False) -> None:
         run = load(result, trust=trust)
     faults.refuse()
     with progress("drawing"):
-        written = write(figure_of(draw, run), output)
+        written = write(figure_of(draw, run, window=window), output)
     say(f"wrote {written}")

@@ -184,18 +184,20 @@ OUTCOME_WIDTH = 38  # characters of a line
 MEAN_MOTION = "too few samples for such short slips: the line of the slip speed is the mean motion"
 
 
-def outcome_in_words(run: Trajectory) -> list[str]:
-    """Return how the run ended, in lines that fit a panel, and how it stuck."""
-    times = run.samples["time"]
-    lasted, stuck = float(times[-1] - times[0]), run.stick_intervals
-    share = stuck_share(float(times[0]), float(times[-1]), stuck) if lasted > 0 else 0.0
+def outcome_in_words(run: Trajectory, part: Trajectory) -> list[str]:
+    """Return how the run ended, in lines that fit a panel, and how its visible part stuck."""
+    times, stuck = part.samples["time"], part.stick_intervals
+    first, last = float(times[0]), float(times[-1])
+    share = stuck_share(first, last, stuck) if last > first else 0.0
     count = f"{len(stuck)} stick{'s' * (len(stuck) != 1)}, {percent(share, 3)} of the time"
-    simulated = f"{in_words(lasted, 's')} simulated"
+    lasted = float(run.samples["time"][-1] - run.samples["time"][0])
+    shown = [] if part is run else [f"{in_words(first, 's')} to {in_words(last, 's')} shown"]
     none = "no true rest: the law has a state" if states(run.slider.law) else "no stick"
-    beats = wrap(MEAN_MOTION, OUTCOME_WIDTH) if is_undersampled(run) else []
+    beats = wrap(MEAN_MOTION, OUTCOME_WIDTH) if is_undersampled(part) else []
     return [
         *wrap(run.status.value, OUTCOME_WIDTH),
-        simulated,
+        f"{in_words(lasted, 's')} simulated",
+        *shown,
         count if len(stuck) else none,
         *beats,
     ]

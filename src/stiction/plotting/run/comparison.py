@@ -32,6 +32,7 @@ from stiction.plotting.run.curves import (
     force_symbol,
     mark_early_end,
 )
+from stiction.plotting.run.excerpt import excerpt
 from stiction.plotting.run.lines import EDGE
 from stiction.plotting.run.time_series import (
     fastest_drive,
@@ -39,6 +40,7 @@ from stiction.plotting.run.time_series import (
     set_speed_limits,
     slipping,
 )
+from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
 
 WIDTH = 44  # characters of a legend's line
@@ -57,7 +59,10 @@ IN_TIME, BY_FORCE = 300, 120  # bins of a row over time and over force
 
 
 def plot_comparison(
-    runs: Mapping[str, Trajectory], axes: Mapping[str, Axes] | None = None
+    runs: Mapping[str, Trajectory],
+    axes: Mapping[str, Axes] | None = None,
+    *,
+    window: Sequence[Quantity] | None = None,
 ) -> dict[str, Axes]:
     """Draw runs of one apparatus together: force, position, slip speed, phase portrait.
 
@@ -73,6 +78,8 @@ def plot_comparison(
     axes : mapping of str to Axes, optional
         What to draw, and where: any of "force", "X", "speed", "rest", "portrait", "held" and
         "words". All, on a new figure as wide as a page by default.
+    window : tuple of float or str, optional
+        Start and end in the runs, s; all of them by default.
 
     Returns
     -------
@@ -89,7 +96,7 @@ def plot_comparison(
     if not runs:
         raise StictionError("there is no run to compare; give some, as `st.compare` returns them")
     with style():
-        curves = curves_of(runs)
+        curves = curves_of({label: excerpt(run, window) for label, run in runs.items()})
         legend = [legend_text(curve) for curve in curves]
         symbol = force_symbol(curves[0].run.slider)
         panels = dict(_panels(curves, legend) if axes is None else axes)

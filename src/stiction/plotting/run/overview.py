@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,9 +21,11 @@ from stiction.plotting.page.words import (
     system_in_words,
 )
 from stiction.plotting.run import time_series
+from stiction.plotting.run.excerpt import excerpt
 from stiction.plotting.run.law import draw_law
 from stiction.plotting.run.lines import BAND, draw_line
 from stiction.text.quantity_text import metric_prefix
+from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
 
 LINE, GAP = 10.5, 3.0  # of text, pt
@@ -34,7 +36,12 @@ SHOWN = ("force", "direction", "speed")
 HEIGHT = 1.9  # in
 
 
-def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[str, Axes]:
+def plot_run(
+    run: Trajectory,
+    axes: Mapping[str, Axes] | None = None,
+    *,
+    window: Sequence[Quantity] | None = None,
+) -> dict[str, Axes]:
     """Draw a run: the system, its parameters, its end, and its motion over time.
 
     Friction law, spring forces, magnitude and direction of the friction force, position, slip
@@ -48,11 +55,18 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
         What to draw, and where: any of "system", "words", "law", "drive_X", "drive_Y",
         "normal_load" (where these change), "force", "friction", "direction", "position",
         "speed", "stuck". All, on a new figure as wide as a page by default.
+    window : tuple of float or str, optional
+        Start and end in the run, s; all of it by default.
 
     Returns
     -------
     dict of str to Axes
         The axes by their names.
+
+    Raises
+    ------
+    ResultError
+        If there is no such window, or fewer than two samples lie in it.
 
     Examples
     --------
@@ -60,12 +74,21 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
     >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
     >>> run.plot()["force"].get_ylabel()
     'spring force (N)'
+    >>> run.plot(window=("5 ms", "10 ms"))["force"].get_xlim()
+    (np.float64(0.005), np.float64(0.01))
     """
+    part = excerpt(run, window)
+    words = _words(run, part)
     with style():
-        panels = dict(_panels(run) if axes is None else axes)
-        drawings = {"system": _system, "words": _write_words, "law": _law, **_series(run)}
+        panels = dict(_panels(part, words) if axes is None else axes)
+        drawings: dict[str, Callable[[Axes, Trajectory], Any]] = {
+            "system": _system,
+            "words": lambda ax, _: _write(ax, words),
+            "law": _law,
+            **_series(part),
+        }
         for name, ax in panels.items():
-            find_drawing(drawings, name)(ax, run)
+            find_drawing(drawings, name)(ax, part)
         series = [ax for name, ax in panels.items() if name not in ("system", "words", "law")]
         if axes is None:
             for ax in series[:-1]:
@@ -74,9 +97,11 @@ def plot_run(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict[st
     return panels
 
 
-def _panels(run: Trajectory) -> dict[str, Axes]:
+Words = list[tuple[str, list[str], str]]  # headings, lines below them, and their colour
+
+
+def _panels(run: Trajectory, words: Words) -> dict[str, Axes]:
     """Return the axes of a new figure, by their names."""
-    words = _words(run)
     written = sum(GAP + LINE * (1 + len(lines)) for _, lines, _ in words) / 72 + 0.3
     fig = canvas(PAGE, max(6.2, DRAWING + written + LAW + 0.1))
     left, right = fig.subfigures(1, 2, squeeze=False, width_ratios=[1, 1.55])[0]
@@ -99,13 +124,13 @@ def _law(ax: Axes, run: Trajectory) -> None:
     draw_law(ax, run.slider, max(drive, float(np.nanmax(run.samples["slip_speed"]))))
 
 
-def _words(run: Trajectory) -> list[tuple[str, list[str], str]]:
-    """Return the text: headings, lines below them, and their colour."""
+def _words(run: Trajectory, part: Trajectory) -> Words:
+    """Return the text beside a run, of which a part is drawn."""
     return [
         ("System", system_in_words(run.slider), BLACK),
         ("Friction", law_in_words(run.slider), BLACK),
         ("Scales", scales_in_words(run.slider), BLACK),
-        ("Run", outcome_in_words(run), BLUE if run.status.ok else RED),
+        ("Run", outcome_in_words(run, part), BLUE if run.status.ok else RED),
     ]
 
 
@@ -162,11 +187,7 @@ def _forces(ax: Axes, run: Trajectory) -> None:
     )
 
 
-def _write_words(ax: Axes, run: Trajectory) -> None:
-    _write(ax, _words(run))
-
-
-def _write(ax: Axes, words: list[tuple[str, list[str], str]]) -> None:
+def _write(ax: Axes, words: Words) -> None:
     ax.set_axis_off()
     offset = 0.0
     for heading, lines, color in words:

@@ -1,0 +1,62 @@
+"""A part of a run, drawn as large as the whole."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from stiction.errors import ResultError, Status
+from stiction.result.table import ColumnTable
+from stiction.result.window import window_of
+from stiction.text.units import Quantity
+from stiction.trajectory import Trajectory
+
+ROUNDED = 1e-12  # of the end of a window, as of the times of samples
+
+
+def excerpt(run: Trajectory, window: Sequence[Quantity] | None) -> Trajectory:
+    """Return what a run has in a part of its time: samples and rests.
+
+    Parameters
+    ----------
+    run : Trajectory
+        With samples.
+    window : tuple of float or str, or None
+        Start and end in the run, s; all of it if None.
+
+    Raises
+    ------
+    ResultError
+        If it is not a part of the run, or has fewer than two samples.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
+    >>> excerpt(run, ("5 ms", "10 ms")).samples["time"][[0, -1]].tolist()
+    [0.005, 0.01]
+    """
+    if window is None:
+        return run
+    start, end = window_of(run.description, window)
+    times = run.samples["time"]
+    within = slice(*np.searchsorted(times, [start * (1 - ROUNDED), end * (1 + ROUNDED)]))
+    if (count := len(times[within])) < 2:
+        raise ResultError(
+            f"window: {start:.10g} s to {end:.10g} s has {count} of the run's samples, whose last "
+            f"is at {times[-1]:.10g} s; a line needs two: choose another window, or run it with a "
+            "higher sample_rate"
+        )
+    columns = {
+        name: each._replace(values=each.values[within]) if "time" in each.dims else each
+        for name, each in run.samples.columns.items()
+    }
+    overlap = (run.stick_intervals[:, 1] > start) & (run.stick_intervals[:, 0] < end)
+    return replace(
+        run,
+        arrays=lambda: ColumnTable(columns, run.samples.attributes),
+        stick_intervals=run.stick_intervals[overlap].clip(start, end),
+        status=run.status if times[within][-1] == times[-1] else Status.COMPLETED,
+    )

@@ -1,0 +1,67 @@
+"""Times within a run: a part of it, or a moment."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.system.description import Description
+from stiction.system.initial import Initial
+from stiction.text.units import Quantity
+from stiction.text.validation import read_arguments
+
+
+def window_of(description: Description, window: Sequence[Quantity] | None) -> tuple[float, float]:
+    """Return start and end of a part of a run, s.
+
+    Raises
+    ------
+    ResultError
+        If it is not a part of it.
+    """
+    first = description.initial.time
+    last = first + description.run.duration
+    if window is None:
+        return first, last
+    start, end = (seconds(each, "window") for each in window)
+    if not first <= start < end <= last * (1 + 1e-12):
+        raise ResultError(
+            f"{start:g} s to {end:g} s is not a part of the run, {first:g} s to {last:g} s"
+        )
+    return start, min(end, last)
+
+
+def time_in(description: Description, time: Quantity) -> float:
+    """Return a time in a run, s.
+
+    Raises
+    ------
+    ResultError
+        If it is not in it.
+    """
+    (first, last), found = window_of(description, None), seconds(time, "at")
+    if not first <= found <= last:
+        raise ResultError(f"{found:g} s is not in the run, {first:g} s to {last:g} s")
+    return found
+
+
+def seconds(time: Quantity, argument: str) -> float:
+    """Return a time, given as a number of seconds or with its unit, s.
+
+    Parameters
+    ----------
+    time : float or str
+        The time.
+    argument : str
+        The name of the argument that gives it, for the error.
+
+    Raises
+    ------
+    ResultError
+        If it has no unit of time.
+    """
+    try:
+        return read_arguments(Initial, time=time).time
+    except DescriptionError as error:
+        faults = [Fault(argument, fault.message) for fault in error.faults]
+        raise ResultError(str(DescriptionError(faults))) from None
