@@ -15,6 +15,7 @@ from stiction.formats.units import is_electric, is_ratio, size_of, split_unit
 from stiction.text.suggestion import Suggestion
 
 DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
+EVEN = 0.01  # of a step: displacements whose steps differ by more have no interval
 AN_AREA = "25 mm^2"  # that turns a stress into a force, for example
 
 
@@ -92,7 +93,7 @@ def choose_columns(path: object, table: FileTable, said: dict[str, str], *, time
                 taken.append(column)
                 found[name] = _with_size(path, table, name, column, wish.unit)
             elif name in said:
-                _refuse_lack(path, table, name)
+                _refuse_lack(path, table, name, _say_ratio(table, taken) if name == "force" else "")
             elif name == "force":
                 found[name] = _ratio(path, table, taken)
                 taken.append(found[name].column)
@@ -234,10 +235,24 @@ def _has_no_names(table: FileTable) -> bool:
     return all(x.name == f"column {x.number}" for x in table.columns)
 
 
+def _ratios(table: FileTable, taken: Sequence[FileColumn]) -> list[FileColumn]:
+    """Return the free columns that are friction coefficients."""
+    free = [each for each in table.columns if not any(each is one for one in taken)]
+    return [x for x in free if RATIO.fullmatch(plain(x.name)) and is_ratio(x.unit or "-")]
+
+
+def _say_ratio(table: FileTable, taken: Sequence[FileColumn]) -> str:
+    """Return how a friction coefficient is read, where a force was asked for; '' without one."""
+    return "".join(
+        f"column {each} is a friction coefficient: leave out {Suggestion('force')}, and say "
+        f"{Suggestion('normal_load', '10 N')}"
+        for each in _ratios(table, taken)[:1]
+    )
+
+
 def _ratio(path: object, table: FileTable, taken: Sequence[FileColumn]) -> Chosen:
     """Return a friction coefficient in place of the force."""
-    free = [each for each in table.columns if not any(each is one for one in taken)]
-    matches = [x for x in free if RATIO.fullmatch(plain(x.name)) and is_ratio(x.unit or "-")]
+    matches = _ratios(table, taken)
     if len(matches) > 1:
         _ambiguous(path, "force", matches)
     if not matches:
@@ -266,13 +281,29 @@ def _times(
     if not matches and _has_no_names(table) and wish.unit:
         matches = [x for x in free if x.number == 1]
     if not matches:
-        _refuse_lack(path, table, "time", f"; or give {Suggestion('interval', '0.5 ms')}")
+        _refuse_lack(path, table, "time", _say_time(table, free))
     first = matches[0]
     same = all(np.array_equal(x.values, first.values, equal_nan=True) for x in matches)
     alike = same and len({x.unit for x in matches}) == 1
     if force is not None and not alike:
         return own_clock(path, table, force.column, matches)
     return first
+
+
+def _say_time(table: FileTable, columns: Sequence[FileColumn]) -> str:
+    """Return how times are given: by a column, an interval, or the steps of a displacement."""
+    for column in columns:
+        if size_of(column.unit, "m") is not None and _increases(column.values):
+            steps = np.diff(column.values)
+            step = float(np.median(steps))
+            if np.abs(steps - step).max() <= EVEN * step:
+                interval = Suggestion("interval", f"{step:.4g} s")
+                return (
+                    f"column {column} rises in steps of {step:.4g} {column.unit}: say the time of "
+                    f"one, a step over the drive velocity, {interval} if that is 1 {column.unit}/s"
+                )
+    by_column = Suggestion("time", _example(table, "time"))
+    return f"say for example {by_column}; or give {Suggestion('interval', '0.5 ms')}"
 
 
 def own_clock(
@@ -343,19 +374,16 @@ def _refuse(path: object, table: FileTable, name: str, why: str) -> NoReturn:
 
 
 def _refuse_lack(path: object, table: FileTable, name: str, remedy: str = "") -> NoReturn:
-    message = _with_columns(path, table, name, "no column is")
-    raise UnclearColumns(f"{message}{remedy}", name)
+    raise UnclearColumns(_with_columns(path, table, name, "no column is", remedy), name)
 
 
-def _with_columns(path: object, table: FileTable, name: str, why: str) -> str:
-    """Return why a channel has no column, with the columns that there are."""
+def _with_columns(path: object, table: FileTable, name: str, why: str, remedy: str = "") -> str:
+    """Return why a channel has no column, the columns that there are, and what to say."""
     columns = ", ".join(str(each) for each in table.columns) or "none"
     example = _example(table, name)
     stress = "; a stress times the area that it acts on is a force" if AN_AREA in example else ""
-    return (
-        f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; say for example "
-        f"{Suggestion(name, example)}{stress}"
-    )
+    remedy = remedy or f"say for example {Suggestion(name, example)}{stress}"
+    return f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; {remedy}"
 
 
 def _example(table: FileTable, name: str) -> str:
@@ -368,6 +396,8 @@ def _example(table: FileTable, name: str) -> str:
         return f"{number}={_scale(channel.unit, column.unit)}"
     if column and channel.unit == "N" and size_of(column.unit, "Pa") is not None:
         return f"{number}={AN_AREA}*{column.unit}"
+    if column and size_of(column.unit, channel.unit) is not None:
+        return str(number)  # its heading has the unit
     if increasing and column and DAYS[0] < float(np.nanmean(column.values)) < DAYS[1]:
         return f"{number}=d"
     return f"{number}={channel.example}"

@@ -1,0 +1,47 @@
+"""An error of the columns of a file names what is to be said of this file."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+
+NUMBERS = np.arange(50.0)
+
+
+def table(tmp_path, heads, *columns):
+    path = tmp_path / "data.csv"
+    np.savetxt(path, np.column_stack(columns), delimiter=";", header=heads, comments="")
+    return path
+
+
+def test_a_force_over_an_even_displacement_is_told_how_to_get_times(tmp_path):
+    path = table(tmp_path, "disp [um];tau [kN]", 0.25 * NUMBERS, NUMBERS % 7)
+    said = (
+        r"column 1 'disp \[um\]' rises in steps of 0.25 um: .*interval='0.25 s' if that is 1 um/s"
+    )
+    with pytest.raises(st.ResultError, match=said) as refused:
+        st.read_record(path)
+    assert "time='1=ms'" not in str(refused.value)  # it is no time
+    record = st.read_record(path, interval="0.25 s", drive_position="1")
+    assert record.drive_velocity is None
+    assert np.ptp(record.drive_position) / np.ptp(record.time) == pytest.approx(1e-6)
+
+
+def test_an_uneven_displacement_has_no_interval(tmp_path):
+    path = table(tmp_path, "disp [um];tau [kN]", NUMBERS**1.5, NUMBERS % 7)
+    with pytest.raises(st.ResultError, match=r"or give interval='0.5 ms'"):
+        st.read_record(path)
+
+
+def test_a_unit_that_the_heading_states_is_not_asked_for_again(tmp_path):
+    path = table(tmp_path, "time [s];Load [lbf]", NUMBERS, NUMBERS % 7)
+    with pytest.raises(st.ResultError, match=r"say for example force='2'$"):
+        st.read_record(path, force="lbf")
+    assert st.read_record(path, force="2").force.max() == pytest.approx(6 * 4.4482216)
+
+
+def test_a_coefficient_that_is_asked_for_as_a_force_is_told_what_it_needs(tmp_path):
+    path = table(tmp_path, "time [s];F/mg [-]", NUMBERS, NUMBERS % 7)
+    with pytest.raises(st.ResultError, match=r"leave out force, and say normal_load='10 N'"):
+        st.read_record(path, force="mN")
+    assert st.read_record(path, normal_load="10 N").force.max() == pytest.approx(60.0)
