@@ -57,6 +57,8 @@ def test_a_study_is_run_and_gone_on_with(config, tmp_path, capsys):
     assert data["peak_force"].shape == (4, 2)
     assert inside("sweep", config, "--output", tmp_path / "a.zarr", "--quiet") == 0
     assert capsys.readouterr() == ("", "")
+    assert inside("sweep", config, "--output", tmp_path / "a.zarr") == 0
+    assert "a.zarr: 8 runs, of which 8 were already there\n" in capsys.readouterr().out
 
 
 def test_progress_on_a_terminal(config, tmp_path, capsys, monkeypatch):
@@ -81,7 +83,8 @@ def test_progress_as_json_lines(config, tmp_path, capsys):
     *lines, last = map(json.loads, capsys.readouterr().out.splitlines())
     assert lines
     assert all(line["runs"] == 8 and line["runs_per_second"] > 0.0 for line in lines)
-    assert last == {"store": str(tmp_path / "a.zarr"), "runs": 8, "done": 8, "failed": {}}
+    folder = str(tmp_path / "a.zarr")
+    assert last == {"store": folder, "runs": 8, "done": 8, "before": 0, "failed": {}}
 
 
 def test_failing_runs_are_counted_and_the_first_is_named(config, tmp_path, capsys):

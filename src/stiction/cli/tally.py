@@ -65,6 +65,7 @@ def _print_summary(output: Path, result: Summary) -> None:
         "store": str(output),
         "runs": result.runs,
         "done": result.runs - result.pending,
+        "before": result.before,
         "failed": dict(result.failed),
     }
     if result.first is not None:
@@ -78,7 +79,8 @@ def _tell_failures(output: Path, result: Summary) -> None:
 
 
 def _tell(output: Path, result: Summary) -> None:
-    say(f"{output}: {result.runs - result.pending} runs")
+    there = f", of which {result.before} were already there" if result.before else ""
+    say(f"{output}: {result.runs - result.pending} runs{there}")
     if result.first is not None:
         say(_failures(result))
 

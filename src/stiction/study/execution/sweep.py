@@ -18,7 +18,7 @@ from stiction.solver.integrate import Room
 from stiction.storage.files import folder_lock
 from stiction.study.execution.cores import Cores
 from stiction.study.execution.engines import Engine
-from stiction.study.plan.layout import Index, places, runs_of, size_of
+from stiction.study.plan.layout import Index, Layout, places, runs_of, size_of
 from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.creation import create
 from stiction.study.store.kept import Kept, stored_variables
@@ -249,7 +249,12 @@ def sweep(
     with folder_lock(store.path, alone=True) as first:
         # a second process begins at the other end
         do(study, store, left if first else left[::-1], engine, progress)
-    return summary(study, store)
+    return summary(study, store)._replace(before=layout.runs - runs_in(layout, left))
+
+
+def runs_in(layout: Layout, tasks: Sequence[int]) -> int:
+    """Return the number of runs in tasks."""
+    return sum(runs_of(layout.region(task)) for task in tasks)
 
 
 def do(
@@ -261,7 +266,7 @@ def do(
 ) -> None:
     """Do blocks of a study on an engine."""
     layout, begun = store.layout, perf_counter()
-    left = sum(runs_of(layout.region(task)) for task in tasks)
+    left = runs_in(layout, tasks)
     tally, recent = Tally(layout.runs, layout.runs - left, 0, 0, 0.0), Recent()
     for came in (engine or Cores()).results(partial(do_block, study, store), tasks):
         now, seconds = tally.now + came.runs, perf_counter() - begun

@@ -42,6 +42,8 @@ class Summary(NamedTuple):
         The first failed run.
     store : Path
         The store of the runs.
+    before : int
+        Runs that were there before this sweep.
     """
 
     runs: int
@@ -49,6 +51,7 @@ class Summary(NamedTuple):
     failed: Mapping[str, int]
     first: Failure | None
     store: Path = Path()
+    before: int = 0
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -61,7 +64,8 @@ class Summary(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return how the runs ended, and the first failure, as sentences."""
-        lines = [f"{self.runs - self.pending} of {self.runs} runs are done."]
+        there = f", {self.before} before this sweep" if self.before else ""
+        lines = [f"{self.runs - self.pending} of {self.runs} runs are done{there}."]
         if self.first is not None:
             counts = (f"{count} {end.replace('_', ' ')}" for end, count in self.failed.items())
             many = sum(self.failed.values())
