@@ -139,8 +139,9 @@ def refuse_too_few(
 ) -> None:
     """Refuse to learn from too few simulations with cycles; say how many would do.
 
-    `which` tells what is asked of the cycles, `check` what decides about them. Where fewer than a
-    tenth of the simulations that are needed are usable, more of them would not help.
+    `which` tells what is asked of the cycles, `check` what decides about them. Where most of
+    them are usable, but all would be too few, only their number is at fault; where fewer than a
+    tenth of those that are needed are usable, more of them would not help.
 
     Raises
     ------
@@ -151,10 +152,14 @@ def refuse_too_few(
         return
     enough = SAFE * fewest * simulated / max(usable, 1)
     number = ceil(enough / 100.0) * 100
-    more = f", or simulate {number} ({Suggestion('simulations', number, of='')})"
+    more = f"simulate {number} ({Suggestion('simulations', number, of='')})"
+    if simulated < fewest and 2 * usable > simulated:
+        only, remedy = "", more
+    else:
+        only, remedy = "only ", f"check {check}{f', or {more}' if 10 * usable > fewest else ''}"
     raise ResultError(
-        f"only {usable} of {simulated} {what} have cycles of stick and slip{which}, {fewest} are "
-        f"needed: check {check}{more if 10 * usable > fewest else ''}"
+        f"{only}{usable} of {simulated} {what} have cycles of stick and slip{which}, {fewest} are "
+        f"needed: {remedy}"
     )
 
 
