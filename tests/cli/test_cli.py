@@ -242,6 +242,21 @@ def test_a_wrong_path_is_one_message(config, tmp_path, monkeypatch, capsys, argu
     assert [path.name for path in tmp_path.iterdir()] == ["slider.toml"]
 
 
+def test_what_is_no_result_is_told_how_it_becomes_a_table(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    st.Record(time=np.arange(3.0), force=np.arange(3.0)).save("a.nc")
+    (tmp_path / "a.csv").write_text("time [s],force [N]\n0,0\n1,1\n2,2\n")
+    (tmp_path / "a.zarr").mkdir()
+    (tmp_path / "a.zarr/zarr.json").touch()
+    for name, words in (
+        ("a.nc", "st.read_record read it, whose export(...) writes a table"),
+        ("a.csv", "st.read_record reads it, whose export(...) writes a table"),
+        ("a.zarr", "st.open_study reads it, whose to_dataframe() is a table"),
+    ):
+        assert inside("export", name, "-o", "b.csv") == 2
+        assert words in " ".join(capsys.readouterr().err.split())
+
+
 KINDS = {
     "slider.toml": "stiction run slider.toml -o slider.nc",
     "study.toml": "stiction sweep study.toml -o study.zarr",

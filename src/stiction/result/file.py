@@ -43,9 +43,9 @@ FIT_KIND = "stiction_fit"  # and of the file of a fit
 LAYOUT = 1  # of the file of a run; up to version 0.4 it states none
 OTHER_KINDS = {
     RECORD_KIND: "is a record, not the result of a run; stiction analyse {path} and "
-    "st.read_record read it",
-    FIT_KIND: "is the file of a fit; xarray.open_dataset reads it, and stiction check {path} "
-    "looks for damage",
+    "st.read_record read it, whose export(...) writes a table",
+    FIT_KIND: "is the file of a fit; xarray.open_dataset reads it, whose to_dataframe() is a "
+    "table, and stiction check {path} looks for damage",
 }
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 

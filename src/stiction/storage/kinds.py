@@ -17,9 +17,11 @@ DESCRIPTION, STUDY, STORE, RESULT, RECORD = "description", "study", "store", "re
 USES = {
     DESCRIPTION: "it is a description; stiction run {path} -o {stem_nc} simulates it",
     STUDY: "it describes a study; stiction sweep {path} -o {stem_zarr} runs it",
-    STORE: "it is the store of a study; stiction map {path} draws it, and st.open_study reads it",
+    STORE: "it is the store of a study; stiction map {path} draws it, and st.open_study reads it, "
+    "whose to_dataframe() is a table",
     RESULT: "it is a result or a record; stiction analyse {path} takes either",
-    RECORD: "it seems to be a measured record; stiction analyse or st.read_record reads it",
+    RECORD: "it seems to be a measured record; stiction analyse or st.read_record reads it, whose "
+    "export(...) writes a table",
 }
 
 

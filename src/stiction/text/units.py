@@ -429,6 +429,22 @@ def with_error(value: float, error: float, unit: str) -> str:
     return f"{f'({both}){power}' if power else both} {name}".rstrip()
 
 
+def to_error(value: float, error: float, unit: str) -> str:
+    """Return a value to the first digit of its standard error, in no more digits than others.
+
+    Examples
+    --------
+    >>> to_error(24.04, 0.21, "s"), to_error(0.13982, 1.4e-3, "N"), to_error(0.13982, 1e-9, "N")
+    ('24 s', '140 mN', '139.8 mN')
+    >>> to_error(3.0, 20.0, "N"), to_error(0.0, 0.1, "N"), to_error(1.5, float("nan"), "N")
+    ('3 N', '0 N', '1.5 N')
+    """
+    if not 0.0 < error < inf or not isfinite(value) or value == 0.0:
+        return in_words(value, unit)
+    digits = first_decimal(error) + floor(log10(abs(value))) + 1
+    return in_words(value, unit, min(max(digits, 1), DIGITS))
+
+
 def _scale(largest: float, unit: str) -> tuple[float, str, str]:
     """Return the size of what a number counts, a power of ten to write behind it, and the unit.
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.doubts.creep_distance import hidden_way, way_of_lag
-from stiction.analysis.parts.wording import SHOWN, number, with_spread
+from stiction.analysis.parts.wording import SHOWN, mean_in_words, number, with_spread
 from stiction.arrays import xr
 from stiction.text.columns import Quantity, grid
 from stiction.text.quantity_text import percent
@@ -48,7 +48,8 @@ def section(found: Analysis) -> Section:
         if isfinite(mean) and (quantity not in COUNTS or mean):
             exact = quantity in COUNTS and spread == 0.0
             several = "0" if exact else with_spread(spread, mean, unit)
-            rows.append((str(row["meaning"].values), in_words(mean, unit), several))
+            shown = mean_in_words(found.summary, quantity)
+            rows.append((str(row["meaning"].values), shown, several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
     left_out = count - int(found.summary["number"].sel(quantity="period"))
     less = f"; the means leave out {left_out} that stand apart" if left_out else ""

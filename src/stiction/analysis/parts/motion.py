@@ -24,7 +24,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import comes_to_rest, stuck_share
 from stiction.analysis.motion.vibration import COUPLED
 from stiction.analysis.oscillation import stands_out
-from stiction.analysis.parts.wording import number
+from stiction.analysis.parts.wording import mean_in_words, number
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
@@ -113,8 +113,7 @@ def _describe_cycles(found: Analysis) -> str:
     count = found.cycles.sizes["cycle"]
     if not count:
         return ""
-    mean = found.summary["mean"]
-    drop, period = (float(mean.sel(quantity=name)) for name in ("drop", "period"))
+    drop, period = (mean_in_words(found.summary, name) for name in ("drop", "period"))
     times = {1: "once", 2: "twice"}.get(count, f"{count} times") + _after_first(found)
     every = f", every {_period(found.cycles, period)}" if count > 1 else ""
     share = _stick_share(found)
@@ -126,7 +125,7 @@ def _describe_cycles(found: Analysis) -> str:
     }.get(found.regime.kind)
     if plain is None:
         return ""
-    falls = f"the force drops by {in_words(drop, 'N')}{_each_time(found)}."
+    falls = f"the force drops by {drop}{_each_time(found)}."
     return f"{plain}; {falls}{_why_transverse(found)}{_not_its_own(found)}{_on_a_wave(found)}"
 
 
@@ -138,12 +137,12 @@ def _after_first(found: Analysis) -> str:
     return " after the first slip" if found.friction.break_away is not None else ""
 
 
-def _period(cycles: xr.Dataset, mean: float) -> str:
+def _period(cycles: xr.Dataset, mean: str) -> str:
     """Return the period in words: its mean, or the range of parts that have their own."""
     period = cycles["period"].values
     own = sorted(float(np.median(period[part])) for part in parts_of(period))
     if len(own) < 2:
-        return in_words(mean, "s")
+        return mean
     return f"{in_words(own[0], 's')} to {in_words(own[-1], 's')}, as the velocity or load changes"
 
 

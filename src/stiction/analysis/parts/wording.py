@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import Any
 
+from stiction.arrays import xr
 from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
+from stiction.text.units import in_words, to_error
 
 SHOWN = 8  # cycles in the terminal; tables that are exported hold all
 SLIGHT = 1e-3  # of a value: an error that is less is not worth a word
@@ -20,6 +21,13 @@ def with_spread(spread: float, mean: float, unit: str) -> str:
     if spread <= ALIKE * abs(mean):
         return f"< {percent(ALIKE)}"
     return in_words(spread, unit, 2)
+
+
+def mean_in_words(summary: xr.Dataset, quantity: str) -> str:
+    """Return the mean of a quantity over cycles, in the digits that it has by their spread."""
+    row = summary.sel(quantity=quantity)
+    error = float(row["standard_deviation"]) / max(float(row["number"]), 1.0) ** 0.5
+    return to_error(float(row["mean"]), error, str(row["unit"].values))
 
 
 def rows_left_out(count: int, things: str, file: str) -> list[str]:
