@@ -39,6 +39,14 @@ def test_analyse_takes_a_record_with_its_units(data, capsys):
     assert numbers["friction"]["static"]["coefficient"] == pytest.approx(0.24, abs=0.001)
 
 
+def test_a_doubt_of_a_unit_names_the_option(data, capsys):
+    rig = ("--stiffness", "1 N/m", "--drive-velocity", "0.1 m/s")
+    assert inside("analyse", data, "--time", "1=s", "--force", "mN", *rig) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "is the time in milliseconds? Give --time '1=ms'; is the force in kilonewtons?" in said
+    assert "Give --force '2=kN'; or stiffness or drive velocity" in said
+
+
 def test_what_is_ambiguous_ends_with_status_2(data, capsys):
     assert inside("analyse", data) == 2
     said = capsys.readouterr().err
@@ -156,3 +164,21 @@ def test_a_measured_record_of_paper(tmp_path, capsys):
     said = " ".join(capsys.readouterr().out.split())
     assert "is a friction coefficient: the force is that times the normal load" in said
     assert "stiffness over mass is 1.5 times" in said
+
+
+def test_digits_are_those_that_the_scatter_leaves(tmp_path, capsys):
+    """A mean has the digits of its standard error; without a load there is no column of µ."""
+    lasts = 2.0 + 0.3 * np.random.default_rng(3).standard_normal(25)
+    at = np.concatenate([[0.0], np.cumsum(lasts)])
+    time = np.arange(0.0, at[-1], 0.01)
+    begun = at[np.searchsorted(at, time, side="right") - 1]
+    record = st.Record(time=time, force=1.0 + 0.1 * (time - begun))
+    found = st.analyse(record)
+    assert inside("analyse", record.save(tmp_path / "a.nc")) == 0
+    said = capsys.readouterr().out
+    row = found.summary.sel(quantity="period")
+    error = float(row["standard_deviation"]) / float(row["number"]) ** 0.5
+    assert 0.03 < error < 0.095  # so that the second decimal is the last
+    assert f"time from trough to trough {float(row['mean']):.3g} s" in " ".join(said.split())
+    assert f"every {float(row['mean']):.3g} s;" in " ".join(said.split())
+    assert "friction force spread" in " ".join(said.split())

@@ -8,6 +8,7 @@ from typing import Any
 
 from stiction.formats.channels import CHANNELS
 from stiction.text.sections import Report, Section, Table
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
 
@@ -99,3 +100,18 @@ def _row(use: Use) -> tuple[str, ...]:
     channel = CHANNELS[use.channel]
     ends = (in_words(use.least, channel.unit), in_words(use.largest, channel.unit))
     return name, channel.meaning, use.unit, *ends
+
+
+def use_of(origin: Origin | None, channel: str) -> Use | None:
+    """Return the column of a channel; None where the record is not from a file."""
+    uses = () if origin is None else origin.uses
+    return next((use for use in uses if use.channel == channel), None)
+
+
+def in_unit(use: Use, unit: str) -> Suggestion:
+    """Return how the same column is read in another unit.
+
+    >>> print(in_unit(Use(1, "t", "time", "s", 0.0, 1.0), "ms"))
+    time='1=ms' of st.read_record
+    """
+    return Suggestion(use.channel, f"{use.column}={unit}" if use.column else unit)

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from functools import cache, lru_cache, partial
-from math import floor, inf, isfinite, isinf, isnan, log10, radians
+from math import ceil, floor, inf, isfinite, isinf, isnan, log10, radians
 from types import UnionType
 from typing import (
     TYPE_CHECKING,
@@ -374,6 +374,16 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
         shown = f"{float(shown):.0f}"
     plain = re.sub(r"e([+-])0*", lambda power: f"e{power[1].strip('+')}", shown)
     return f"{plain} {name}".rstrip()
+
+
+def advised(value: float, unit: str) -> str:
+    """Return a least value that is advised, in two digits: rounded up, so that it suffices.
+
+    >>> advised(5033.0, "Hz"), advised(0.0624, "s"), advised(50.0, "Hz")
+    ('5.1 kHz', '63 ms', '50 Hz')
+    """
+    size = 10.0 ** (floor(log10(value)) - 1)
+    return in_words(ceil(value / size * (1.0 - ROUNDING)) * size, unit)
 
 
 def span(low: float, high: float, unit: str, digits: int = DIGITS) -> str:

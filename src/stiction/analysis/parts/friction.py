@@ -70,7 +70,10 @@ def section(found: Analysis) -> Section:
         return Section("Friction", lines)
     if not isinstance(found.source, Trajectory) and found.record.zero is None:
         lines.append("The zero of the force is assumed: no reading without load is given.")
-    return Section("Friction", lines, Table(("friction", "µ", "force", "spread"), rows))
+    headings = ("friction", "µ", "force", "spread")
+    shown = [at for at in range(4) if at != 1 or any(row[1] for row in rows)]  # no µ without a load
+    cells = [tuple(row[at] for at in shown) for row in rows]
+    return Section("Friction", lines, Table(tuple(headings[at] for at in shown), cells))
 
 
 def _overshoot(found: Analysis) -> list[str]:

@@ -28,11 +28,12 @@ from stiction.analysis.parts.wording import mean_in_words, number
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
+from stiction.recording.origin import in_unit, use_of
 from stiction.recording.strokes import by_strokes
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words, times, with_error
+from stiction.text.units import advised, in_words, times, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -165,33 +166,33 @@ def _describe_unclear_force(found: Analysis) -> str:
     if "late_sticks" in evidence:
         return (
             "The mass sticks and slips, too often for so few samples to show it: sample the run at "
-            f"{in_words(evidence['rate_needed'], 'Hz')} or more."
+            f"{advised(evidence['rate_needed'], 'Hz')} or more."
         )
     against = "against" in evidence
     if evidence.get("backward", 0.0) <= 0.5 and not against:
         return ""
     fast = "The force falls slowly and rises fast"
+    if isinstance(found.source, Trajectory):
+        return f"{fast}, as where the drive pauses or changes its velocity."
     if against or float(found.record.force.mean()) <= 0.0:
         its = "The force is against the drive in all cycles" if against else fast
         return (
-            f"{its}: it is recorded with the other sign, in all likelihood. Analyse it with "
-            f"force=-force, {_with_other_sign(found)}."
+            f"{its}: it is recorded with the other sign, in all likelihood. Analyse "
+            f"{_with_other_sign(found)}."
         )
     return (
         f"{fast}: as where holds interrupt the sliding, or it is recorded with the other sign "
-        f"and an untared zero; then analyse it with force=-force and zero=, "
-        f"{_with_other_sign(found)}."
+        f"and an untared zero; then analyse {_with_other_sign(found)}, and state the zero "
+        f"({Suggestion('zero')})."
     )
 
 
 def _with_other_sign(found: Analysis) -> str:
-    """Return how the force of the same column is read with the other sign."""
-    origin = found.record.origin
-    uses = [use for use in origin.uses if use.channel == "force"] if origin is not None else []
-    if not uses:
-        return f"or a file with {Suggestion('force', '-1 N')}"
-    column = f"{uses[0].column}=" if uses[0].column else ""
-    return f"or the file with {Suggestion('force', f'{column}{with_other_sign(uses[0].unit)}')}"
+    """Return how the same force is read with the other sign."""
+    use = use_of(found.record.origin, "force")
+    if use is None:
+        return f"it with force=-force, or a file with {Suggestion('force', '-1 N')}"
+    return f"the file with {in_unit(use, with_other_sign(use.unit))}"
 
 
 def _describe_course(found: Analysis) -> str:

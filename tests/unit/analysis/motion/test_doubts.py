@@ -429,6 +429,21 @@ def test_a_force_of_the_other_sign_is_told_in_words() -> None:
     assert "Analyse it with force=-force, or a file with force='-1 N' of st.read_record." in text
 
 
+def test_a_run_that_rises_fast_is_not_told_to_turn_its_force() -> None:
+    """Its sign is known: friction rises fast after a step of the drive, and falls slowly."""
+    law = st.laws.RateStateSlip(mu_star=0.6, a=0.009, b=0.013, D_c="5 um", V_star="1 um/s")
+    test = st.protocols.velocity_steps(
+        ["1 um/s", "10 um/s", "100 um/s", "1 um/s"], distance="0.1 mm"
+    )
+    rig = st.Slider(
+        mass="2 kg", k_x="50 N/um", k_y="500 N/um", phi="2 deg", normal_load="1 kN", friction=law,
+        drive=test,
+    )  # fmt: skip
+    text = str(st.analyse(st.simulate(rig, sample_rate="200 Hz")))
+    assert "falls slowly and rises fast, as where the drive pauses or changes its velocity" in text
+    assert "force=-force" not in text
+
+
 @pytest.mark.parametrize("unit", ["N", "gf", "mN"])
 def test_the_option_that_turns_the_sign_of_a_file_keeps_its_unit(tmp_path, unit) -> None:
     time, path = np.arange(0.0, 40.0, 2e-3), tmp_path / "data.csv"

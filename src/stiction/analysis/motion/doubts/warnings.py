@@ -42,6 +42,7 @@ from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
+from stiction.recording.origin import in_unit, use_of
 from stiction.text.quantity_text import percent
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, times
@@ -54,15 +55,12 @@ TINY_MU = 1e-3  # no friction is so small, but of a film of fluid
 THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
 VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
-# By which power of 1000 the rate of a force is off in another unit: quantity, unit, remedy
+# By which power of 1000 the rate of a force is off in another unit: channel, unit in two ways
 CAUSES = {
-    -2: (("time", "microseconds", "time_unit='us'"),),
-    -1: (
-        ("time", "milliseconds", "time_unit='ms'"),
-        ("force", "kilonewtons", "force_unit='kN'"),
-    ),
-    1: (("force", "millinewtons", "force_unit='mN'"),),
-    2: (("force", "micronewtons", "force_unit='uN'"),),
+    -2: (("time", "microseconds", "us"),),
+    -1: (("time", "milliseconds", "ms"), ("force", "kilonewtons", "kN")),
+    1: (("force", "millinewtons", "mN"),),
+    2: (("force", "micronewtons", "uN"),),
 }
 STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
 QUICKER = 2.0  # times k/m: so quick a vibration may be that of both springs
@@ -91,8 +89,8 @@ def warnings(
         *(doubt_loading(cycles) if kind in (STICK_SLIP, TRANSITIONAL) else ()),
         *doubt_cycles_apart(cycles),
         *doubt_quiet(record, friction, cycles),
-        *_loading([each for each in stated if each.quantity == LOADING_RATE]),
-        *_mass(wrong.get(SWING), kind),
+        *_loading(record, [each for each in stated if each.quantity == LOADING_RATE]),
+        *_mass(record, wrong.get(SWING), kind),
         *_mains(kind, cycles),
         *doubt_few_samples(record, cycles),
         *doubt_filter(record, cycles),
@@ -202,7 +200,7 @@ def _implausible_friction(record: Record, friction: Friction, cycles: CycleTable
     load = in_words(record.normal_load or 0.0, "N")
     its = next(
         (
-            f"is the force in {prefix}newtons? Give force_unit='{unit}'; or "
+            f"{_ask_unit(record, 'force', f'{prefix}newtons', unit)}; or "
             for unit, prefix, size in UNITS
             if LEAST_MU < mu * size < LARGEST_MU
         ),
@@ -211,7 +209,14 @@ def _implausible_friction(record: Record, friction: Friction, cycles: CycleTable
     yield f"A friction coefficient of {mu:.3g} is implausible: {its}check the normal load, {load}."
 
 
-def _loading(its: Sequence[StatedQuantity]) -> Iterator[str]:
+def _ask_unit(record: Record, channel: str, name: str, unit: str) -> str:
+    """Ask whether a channel is in another unit, and say how it is read so."""
+    use = use_of(record.origin, channel)
+    remedy = f"{channel}_unit='{unit}'" if use is None else in_unit(use, unit)
+    return f"is the {channel} in {name}? Give {remedy}"
+
+
+def _loading(record: Record, its: Sequence[StatedQuantity]) -> Iterator[str]:
     """Doubt the rate of loading as stated, by the whole record or by the parts of a change."""
     good = [each for each in its if each.agrees]
     if good:
@@ -236,22 +241,23 @@ def _loading(its: Sequence[StatedQuantity]) -> Iterator[str]:
             yield (
                 f"{f'{each.part} the'.strip().capitalize()} force rises at "
                 f"{in_words(each.found, 'N/s')}, {times(each.ratio, 3)} stiffness times "
-                f"drive velocity as stated, {in_words(each.stated, 'N/s')}: {_remedy(each.ratio)}."
+                f"drive velocity as stated, {in_words(each.stated, 'N/s')}: "
+                f"{_remedy(record, each.ratio)}."
             )
 
 
-def _remedy(ratio: float) -> str:
+def _remedy(record: Record, ratio: float) -> str:
     """Return the likely cause of a rate that is `ratio` times as large as stated."""
     power = log10(ratio) / 3.0 if ratio > 0.0 else 0.0
     causes = CAUSES.get(round(power)) if abs(power - round(power)) < 0.1 else None
     if causes is None:
         return "check stiffness and drive velocity, or the gain of the load cell"
-    asked = "; ".join(f"is the {what} in {name}? Give {how}" for what, name, how in causes)
+    asked = "; ".join(_ask_unit(record, *cause) for cause in causes)
     wrong = f"{1000 ** abs(round(power))} times too {'large' if power < 0.0 else 'small'}"
     return f"{asked}; or stiffness or drive velocity is stated {wrong}"
 
 
-def _mass(its: StatedQuantity | None, kind: str) -> Iterator[str]:
+def _mass(record: Record, its: StatedQuantity | None, kind: str) -> Iterator[str]:
     """Doubt k/m if the period of a swing, or the duration of a slip, contradicts it."""
     if its is None:
         return
@@ -259,14 +265,14 @@ def _mass(its: StatedQuantity | None, kind: str) -> Iterator[str]:
     yield (
         f"By the {its.how} ({in_words(lasts * pi / its.found**0.5, 's')}), "
         f"stiffness over mass is {times(its.ratio)} {in_words(its.stated, '1/s²', 3)}, as stated: "
-        f"{_remedy_of_mass(its.ratio, kind)}."
+        f"{_remedy_of_mass(record, its.ratio, kind)}."
     )
 
 
-def _remedy_of_mass(ratio: float, kind: str) -> str:
+def _remedy_of_mass(record: Record, ratio: float, kind: str) -> str:
     """Return the likely cause of a k/m that is `ratio` times as large as stated."""
     if THOUSAND * 1e-6 < ratio < 1e-6 / THOUSAND:
-        return "is the time in milliseconds? Give time_unit='ms'; or check mass and stiffness"
+        return f"{_ask_unit(record, 'time', 'milliseconds', 'ms')}; or check mass and stiffness"
     if kind == HARMONIC and ratio > QUICKER:
         return (
             "check mass and stiffness; or the transverse spring swings as well, as friction that "

@@ -315,7 +315,7 @@ def test_a_force_with_the_wrong_sign_is_asked_about() -> None:
     time = np.arange(20_000) * 1e-3
     regime = st.analysis.classify(st.Record(time=time, force=1.0 - time % 2.0))
     assert regime.kind == "undetermined"
-    assert "as with the other sign" in str(regime)
+    assert "as stick-slip with the other sign" in str(regime)
 
 
 def test_words_have_units_and_no_powers_of_ten() -> None:
