@@ -64,7 +64,8 @@ CHANNELS = {
         "m",
         "um",
         r"(drive|stage|actuator|motor|crosshead|traverse|table|ram|spindle|antrieb|tisch) ?"
-        r"(position|displacement|travel|stroke|weg|x)|stage|actuator|crosshead",
+        r"(position|displacement|travel|stroke|weg|x)|stage|actuator|crosshead|"
+        r"(load ?point|lp)( (position|disp|displ|displacement|travel))?|lpd",
     ),
     "slip_speed": _channel("slip speed", "m/s", "mm/s", r"(slip|sliding|slider) (speed|velocity)"),
 }
@@ -74,7 +75,10 @@ RATIO = re.compile(
     r"coefficient of friction|coef friction|reib(ungs)?(zahl|wert|koeffizient))( x)?"
 )
 # a length that may be either displacement: it is used only where the user says which
-LENGTH = re.compile(r"x|pos|position|displ|displacement|travel|stroke|weg|verschiebung|course")
+LENGTH = re.compile(
+    r"x|pos|position|((shear|slip|horizontal|lateral|tangential|total) )?(disp|displ|displacement)|"
+    r"travel|stroke|weg|verschiebung|course|lvdt( \d+)?|slip"
+)
 
 
 def plain(name: str) -> str:

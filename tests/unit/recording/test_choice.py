@@ -46,3 +46,19 @@ def test_a_coefficient_that_is_asked_for_as_a_force_is_told_what_it_needs(tmp_pa
     with pytest.raises(st.ResultError, match=r"leave out force, and say normal_load='10 N'"):
         st.read_record(path, force="mN")
     assert st.read_record(path, normal_load="10 N").force.max() == pytest.approx(60.0)
+
+
+@pytest.mark.parametrize(
+    "head", ["load point [in]", "LPD (mm)", "lp_disp [um]", "Load-point displacement (mm)"]
+)
+def test_the_load_point_of_rock_mechanics_is_the_drive(tmp_path, head):
+    path = table(tmp_path, f"time [s];shear force [kN];{head}", NUMBERS, NUMBERS % 7, NUMBERS)
+    assert st.read_record(path).drive_position is not None
+
+
+@pytest.mark.parametrize("head", ["LVDT (thou)", "shear disp (microns)", "slip (mm)"])
+def test_a_displacement_that_may_be_either_is_asked_about(tmp_path, head):
+    path = table(tmp_path, f"time [s];shear force [kN];{head}", NUMBERS, NUMBERS % 7, NUMBERS)
+    record = st.read_record(path)
+    assert record.position is record.drive_position is None
+    assert "is it the displacement of the mass (position=3" in str(record.origin)
