@@ -14,7 +14,7 @@ from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import even_rate, rate_spectrogram
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
-from stiction.text.units import advised, in_words
+from stiction.text.units import advice, in_words
 from stiction.trajectory import Trajectory
 
 Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name
@@ -101,7 +101,7 @@ def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
     if rate < 2.0 * HIGHEST * natural or span < width:
         raise ResultError(
             f"the transverse oscillation has {in_words(natural, 'Hz')}: sample the run at "
-            f"{advised(5.0 * natural, 'Hz')} or more and for {advised(width, 's')} at least; it "
+            f"{advice(5.0 * natural, 'Hz')} or more and for {advice(width, 's')} at least; it "
             f"is sampled at {in_words(rate, 'Hz')} for {in_words(span, 's')}"
         )
     return rate_spectrogram(run, "y", width=width, steps=STEPS)

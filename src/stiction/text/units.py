@@ -376,10 +376,10 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
     return f"{plain} {name}".rstrip()
 
 
-def advised(value: float, unit: str) -> str:
+def advice(value: float, unit: str) -> str:
     """Return a least value that is advised, in two digits: rounded up, so that it suffices.
 
-    >>> advised(5033.0, "Hz"), advised(0.0624, "s"), advised(50.0, "Hz")
+    >>> advice(5033.0, "Hz"), advice(0.0624, "s"), advice(50.0, "Hz")
     ('5.1 kHz', '63 ms', '50 Hz')
     """
     size = 10.0 ** (floor(log10(value)) - 1)

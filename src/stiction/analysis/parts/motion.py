@@ -33,7 +33,7 @@ from stiction.recording.strokes import by_strokes
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import advised, in_words, times, with_error
+from stiction.text.units import advice, in_words, times, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -166,7 +166,7 @@ def _describe_unclear_force(found: Analysis) -> str:
     if "late_sticks" in evidence:
         return (
             "The mass sticks and slips, too often for so few samples to show it: sample the run at "
-            f"{advised(evidence['rate_needed'], 'Hz')} or more."
+            f"{advice(evidence['rate_needed'], 'Hz')} or more."
         )
     against = "against" in evidence
     if evidence.get("backward", 0.0) <= 0.5 and not against:

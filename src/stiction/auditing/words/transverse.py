@@ -16,7 +16,7 @@ from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor
-from stiction.text.units import advised, in_words
+from stiction.text.units import advice, in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
@@ -36,7 +36,7 @@ def transverse(found: Audit) -> list[str]:
 def _without_creep(found: Audit) -> str:
     """Return why no transverse oscillation goes on during creep; nothing if one does."""
     p, seen = found.prediction, found.observation
-    rate = advised(p.sample_rate, "Hz")
+    rate = advice(p.sample_rate, "Hz")
     natural = f"The transverse natural frequency is {in_words(p.f_y, 'Hz')}."
     if seen.motion == TRANSVERSE:
         period = seen.mean("period")  # NaN if the load cell tells no cycles
@@ -103,7 +103,7 @@ def _during_creep(found: Audit) -> Iterator[str]:
         f"falls, as sin θ, and {then}."
     )
     yield (
-        f"To see it, sample at {advised(p.sample_rate, 'Hz')}; below "
+        f"To see it, sample at {advice(p.sample_rate, 'Hz')}; below "
         f"{in_words(2.0 * swings, 'Hz')} it appears at another frequency."
     )
     if seen.coarse:

@@ -23,7 +23,7 @@ from stiction.recording.noise import white_noise
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import mean_speeds
 from stiction.text.quantity_text import percent
-from stiction.text.units import advised, in_words
+from stiction.text.units import advice, in_words
 
 SLOWLY = 1e3  # s between samples
 # Samples in a fall as they are seen, about one more than it lasts, and by which share the largest
@@ -139,7 +139,7 @@ def doubt_few_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
         return
     interval = 0.1 * max(fall, 1.0 / record.sample_rate)
     slow = interval > SLOWLY  # nobody samples in nanohertz
-    rate = f"every {in_words(interval, 's')}" if slow else f"at {advised(1.0 / interval, 'Hz')}"
+    rate = f"every {in_words(interval, 's')}" if slow else f"at {advice(1.0 / interval, 'Hz')}"
     yield (
         f"A fall of the force takes {samples:.1f} samples: peaks and troughs lie between them"
         f"{_slow_slips(record, cycles, samples)}. Sample {rate} or more{' often' * slow}."
@@ -183,7 +183,7 @@ def doubt_filter(record: Record, cycles: CycleTable) -> Iterator[str]:
             f"A fall of the force takes {in_words(fall, 's')}, and its sensor passes what is "
             f"slower than {in_words(sensor.cut_off, 'Hz')}: peaks, troughs, slip speeds and the "
             "creep just before a slip are those of the smeared force. "
-            f"Filter at {advised(2.0 * SHARP / fall, 'Hz')} or more."
+            f"Filter at {advice(2.0 * SHARP / fall, 'Hz')} or more."
         )
 
 

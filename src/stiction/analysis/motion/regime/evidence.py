@@ -14,7 +14,7 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
 )
 from stiction.text.quantity_text import percent
-from stiction.text.units import advised, in_words
+from stiction.text.units import advice, in_words
 
 SLOWER = "slower_share"  # evidence, too: of the motion itself, as an audit knows it
 SLOW_SHARES = ("rest_share", "still_share")  # evidence of rest or creep, by the shape and the slip
@@ -144,7 +144,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
         _whole,
     ),
     "samples_per_cycle": ("a cycle has {} samples, too few to show it", _three_digits),
-    "rate_needed": ("sample at {} or more", lambda value: advised(value, "Hz")),
+    "rate_needed": ("sample at {} or more", lambda value: advice(value, "Hz")),
     "samples": ("number of samples: {}, too few", _whole),
     "unchanging": ("all samples are exactly {}", _force),
     "forth": ("one way the force is about {}", _force),
