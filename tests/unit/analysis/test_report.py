@@ -359,3 +359,14 @@ def test_a_test_says_along_which_axis_its_coefficients_are():
         text = str(st.analyse(st.simulate(slider, sample_rate="200 Hz")))
         assert "Velocity steps" in text
         assert ("Here coefficients are of the force along the drive" in text) == two
+
+
+def test_a_run_that_is_too_short_for_a_slip_is_told_how_long_would_do() -> None:
+    law = st.laws.RateStateAgeing(mu_star=0.6, a=0.009, b=0.013, D_c="5 um", V_star="1 um/s")
+    rig = st.Slider(
+        mass="2 kg", k_x="0.5 N/um", k_y="50 N/um", phi="2 deg", normal_load="1 kN", friction=law,
+        drive=st.ConstantVelocity("5 um/s"),
+    )  # fmt: skip
+    said = str(st.analyse(st.simulate(rig, "120 s", sample_rate="20 Hz")))
+    assert "it rests or creeps: the force only rises; a spring is loaded to the 593.6 N" in said
+    assert "after some 237.4 s; set a longer duration." in said

@@ -181,9 +181,11 @@ def _position(record: Record) -> Floats:
     if record.position is not None:
         return np.asarray(record.position)
     if record.stiffness is None or record.drive_velocity is None:
+        known = {"stiffness": record.stiffness, "drive velocity": record.drive_velocity}
+        lacking = " and ".join(name for name, value in known.items() if value is None)
         raise ResultError(
-            "creep needs the position of the mass, which the record lacks; give its stiffness and "
-            "drive velocity, or its position"
+            f"creep needs the position of the mass, which the record lacks; give its {lacking}, "
+            "or its position"
         )
     return np.asarray(record.drive_velocity * record.time - record.force / record.stiffness)
 

@@ -30,6 +30,7 @@ from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
 from stiction.recording.origin import in_unit, use_of
 from stiction.recording.strokes import by_strokes
+from stiction.result.rest import longer
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.suggestion import Suggestion
@@ -237,7 +238,14 @@ def _sticks(found: Analysis) -> str:
         return "The mass rests from beginning to end: friction holds it."
     if found.regime.runner_up == STEADY:
         return "The force only rises: either the mass sticks, or it slides and the force drifts."
-    return "The mass does not slip, it rests or creeps: the force only rises."
+    run, remedy = found.source, ""
+    if (
+        isinstance(run, Trajectory)
+        and run.slider.drive_speed > 0.0
+        and run.description.run.duration < run.slider.loading_time
+    ):
+        remedy = f"; {longer(run.slider)}"
+    return f"The mass does not slip, it rests or creeps: the force only rises{remedy}."
 
 
 def _swinging(found: Analysis) -> str:
