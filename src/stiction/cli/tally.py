@@ -21,13 +21,16 @@ if TYPE_CHECKING:
     from stiction.study.view.summary import Summary
 
 Report = Callable[["Tally"], None]
-Conclude = Callable[[Path, "Summary"], None]
+Conclude = Callable[[Path, "Summary", int], None]
 JSON_EVERY = 1.0  # s between lines of JSON
 
 
 @contextmanager
 def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, Conclude]]:
-    """Yield two functions: one takes a study's tally while it runs, one its final summary."""
+    """Yield two functions: one takes a study's tally while it runs, one its outcome.
+
+    The latter is the store, its summary, and how many runs were there before.
+    """
     if json_lines:
         yield _now_and_then(_print_tally, JSON_EVERY), _print_summary
     elif quiet:
@@ -60,12 +63,12 @@ def _print_tally(tally: Tally) -> None:
     print(json.dumps(line), flush=True)
 
 
-def _print_summary(output: Path, result: Summary) -> None:
+def _print_summary(output: Path, result: Summary, before: int) -> None:
     line: dict[str, Any] = {
         "store": str(output),
         "runs": result.runs,
         "done": result.runs - result.pending,
-        "before": result.before,
+        "before": before,
         "failed": dict(result.failed),
     }
     if result.first is not None:
@@ -73,13 +76,13 @@ def _print_summary(output: Path, result: Summary) -> None:
     print(json.dumps(line), flush=True)
 
 
-def _tell_failures(output: Path, result: Summary) -> None:
+def _tell_failures(output: Path, result: Summary, before: int) -> None:
     if result.first is not None:
         say(f"{output}: {_failures(result)}", error=True)
 
 
-def _tell(output: Path, result: Summary) -> None:
-    there = f", of which {result.before} were already there" if result.before else ""
+def _tell(output: Path, result: Summary, before: int) -> None:
+    there = f", of which {before} were already there" if before else ""
     say(f"{output}: {result.runs - result.pending} runs{there}")
     if result.first is not None:
         say(_failures(result))

@@ -244,17 +244,30 @@ def sweep(
     """
     refuse_other(study)
     store = open_store(study, path) if Path(path).exists() else create(study, path)
-    layout = store.layout
-    left = [task for task in range(layout.tasks) if not store.has(layout.region(task))]
+    left = missing(store)
     with folder_lock(store.path, alone=True) as first:
         # a second process begins at the other end
         do(study, store, left if first else left[::-1], engine, progress)
-    return summary(study, store)._replace(before=layout.runs - runs_in(layout, left))
+    return summary(study, store)
+
+
+def missing(store: Store) -> list[int]:
+    """Return the blocks of a study that its store lacks."""
+    layout = store.layout
+    return [task for task in range(layout.tasks) if not store.has(layout.region(task))]
 
 
 def runs_in(layout: Layout, tasks: Sequence[int]) -> int:
     """Return the number of runs in tasks."""
     return sum(runs_of(layout.region(task)) for task in tasks)
+
+
+def count_done(study: Study, path: str | Path) -> int:
+    """Return how many runs of a study its store has; 0 where there is none yet."""
+    if not Path(path).exists():
+        return 0
+    store = open_store(study, path)
+    return store.layout.runs - runs_in(store.layout, missing(store))
 
 
 def do(

@@ -42,8 +42,6 @@ class Summary(NamedTuple):
         The first failed run.
     store : Path
         The store of the runs.
-    before : int
-        Runs that were there before this sweep.
     """
 
     runs: int
@@ -51,7 +49,6 @@ class Summary(NamedTuple):
     failed: Mapping[str, int]
     first: Failure | None
     store: Path = Path()
-    before: int = 0
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -64,8 +61,7 @@ class Summary(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return how the runs ended, and the first failure, as sentences."""
-        there = f", {self.before} before this sweep" if self.before else ""
-        lines = [f"{self.runs - self.pending} of {self.runs} runs are done{there}."]
+        lines = [f"{self.runs - self.pending} of {self.runs} runs are done."]
         if self.first is not None:
             counts = (f"{count} {end.replace('_', ' ')}" for end, count in self.failed.items())
             many = sum(self.failed.values())

@@ -102,6 +102,7 @@ def sweep(
     from stiction.cli.tally import show_tally
     from stiction.study.execution.refine import refine as halve
     from stiction.study.execution.refine import request
+    from stiction.study.execution.sweep import count_done
     from stiction.study.execution.sweep import sweep as do
     from stiction.study.view.view import CHANGES, REFINED
 
@@ -128,13 +129,14 @@ def sweep(
             say(doubt, error=True)
     try:
         with show_tally(quiet, json_lines) as (report, conclude):
+            before = count_done(study, output)
             result = do(study, output, engine=means, progress=report)
             if refine is not None:
                 found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
         say(f"{output}: stopped{_so_far(study, output)}; the same command continues", error=True)
         return 130
-    conclude(output, result)
+    conclude(output, result, before)
     if found is not None and not (quiet or json_lines):
         table = output / REFINED / found.attrs["along"] / CHANGES
         say(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
