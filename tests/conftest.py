@@ -5,6 +5,7 @@ import shutil
 import sys
 from functools import cache
 from pathlib import Path
+from threading import TIMEOUT_MAX
 
 import pytest
 from tests.uncertain import designed as designed
@@ -16,9 +17,11 @@ from tests.uncertain import rig as rig
 import stiction as st
 from stiction.machine import CORES
 from stiction.solver.compilation import ahead, machine_code
+from stiction.study.execution import cores
 
 if int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", "1")) >= CORES:
     ahead.CORES = 1  # that of this worker: a second process would take that of another
+    cores.LONG = TIMEOUT_MAX  # nor does long work start one
 
 os.environ["DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT"] = "30m"  # not 30 s: the machine may be busy
 
