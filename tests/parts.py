@@ -12,6 +12,7 @@ from stiction.analysis.record import as_record
 
 def assess(record: st.Record) -> Assessment:
     """Return cycles, friction, stated values and warnings as `st.analyse` finds them."""
+    record = as_record(record)
     found = swings(record)
     return assess_record(record, found, regime_of(record, found))
 

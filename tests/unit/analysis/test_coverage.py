@@ -219,7 +219,7 @@ def test_the_friction_of_sliding_under_a_drift_of_the_zero(drift):
         slides = 1.0 + 0.2 * np.exp(-(time - 0.8) / 0.3)
         force = np.where(time < 0.8, 1.5 * time, slides) + drift * time
         force += 0.01 * random.standard_normal(len(time))
-        found = st.analyse(st.Record(time=time, force=force, normal_load=5.0)).friction.kinetic
+        found = assess(st.Record(time=time, force=force, normal_load=5.0)).friction.kinetic
         beyond += abs(found.force - 1.0) > 2.0 * found.error
         assert found.error < 2.0 * abs(drift) * 60.0
         assert found.coefficient_error == pytest.approx(found.error / 5.0)

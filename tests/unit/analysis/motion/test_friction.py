@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from tests.parts import assess
 
 import stiction as st
 from stiction.analysis.motion.friction import _peak_excess
@@ -73,7 +74,7 @@ def test_a_short_first_loading_is_seen_in_a_long_record(cycles):
     saw = 1.7 + 0.3 * ((time - 0.17) % 0.05) / 0.05
     force = np.where(time < 0.201, 10.0 * time, saw)
     noise = 1e-3 * np.random.default_rng(1).standard_normal(len(time))
-    friction = st.analyse(st.Record(time=time, force=force + noise, normal_load=10.0)).friction
+    friction = assess(st.Record(time=time, force=force + noise, normal_load=10.0)).friction
     assert friction.break_away.force == pytest.approx(2.0, abs=0.02)
     assert friction.break_away.coefficient == pytest.approx(0.2, abs=0.002)
 
@@ -90,7 +91,7 @@ def test_the_error_of_cycles_on_a_slow_wave_is_not_that_of_independent_ones():
     for noise in (0.0, 2e-3):
         wave = 0.02 * np.cos(3.0 * np.pi * TIME / TIME[-1])
         force = 1.75 + 0.25 * (TIME / 0.25 % 1.0) + wave + noise * random.standard_normal(len(TIME))
-        found = st.analyse(st.Record(time=TIME, force=force, normal_load=10.0)).friction
+        found = assess(st.Record(time=TIME, force=force, normal_load=10.0)).friction
         for each in found.static, found.kinetic:
             assert each.error > 2.5 * each.spread / 80.0**0.5
             assert each.coefficient_error == pytest.approx(0.1 * each.error)
@@ -99,7 +100,7 @@ def test_the_error_of_cycles_on_a_slow_wave_is_not_that_of_independent_ones():
 def test_peaks_that_a_converter_rounds_alike_are_not_known_without_error():
     step = 0.04
     force = step * np.round((1.713 + 0.25 * (TIME / 0.5 % 1.0)) / step)
-    found = st.analyse(st.Record(time=TIME, force=force, normal_load=10.0)).friction
+    found = assess(st.Record(time=TIME, force=force, normal_load=10.0)).friction
     assert found.static.error == pytest.approx(step / 12.0**0.5, rel=0.05)
 
 
@@ -123,7 +124,7 @@ def test_the_first_break_away_is_before_the_first_cycle(noise):
     assert start == pytest.approx(1e-3 * (loading + slip), abs=2e-3)
 
 
-def analysis_of_cycles(per_cycle, fall, sensor=None):
+def assessment_of_cycles(per_cycle, fall, sensor=None):
     """Return the analysis of 200 cycles of 1 to 2 N that fall within a part of their period."""
     fine = np.arange(0.0, 200.0, 1e-3)
     part = fine % 1.0
@@ -136,25 +137,25 @@ def analysis_of_cycles(per_cycle, fall, sensor=None):
     time = np.arange(0.0, 199.0, 1.0 / per_cycle)
     noise = 1e-3 * np.random.default_rng(1).standard_normal(len(time))
     known = {"normal_load": 10.0, "sensors": sensor and {"force": sensor}}
-    return st.analyse(st.Record(time=time, force=np.interp(time, fine, force) + noise, **known))
+    return assess(st.Record(time=time, force=np.interp(time, fine, force) + noise, **known))
 
 
 def test_peaks_between_samples_are_known_with_an_error():
     """Of many cycles of few samples the mean was 13 errors too low, or, at corners, too high."""
     for per_cycle, fall in ((17.3, 0.02), (25.1, 0.02), (40.7, 0.02), (100.3, 0.025)):
-        friction = analysis_of_cycles(per_cycle, fall).friction
+        friction = assessment_of_cycles(per_cycle, fall).friction
         assert abs(friction.static.force - 2.0) < 2.0 * friction.static.error
-    assert analysis_of_cycles(407.3, 0.1).friction.static.error < 2e-3
+    assert assessment_of_cycles(407.3, 0.1).friction.static.error < 2e-3
 
 
 @pytest.mark.parametrize("cut", ["2 Hz", "8 Hz"])
 def test_a_stated_filter_is_an_error_of_friction(cut):
     """It smears peaks and troughs; static and kinetic friction had the error of their mean."""
-    found = analysis_of_cycles(100.3, 0.05, st.Sensor(filter=cut))
+    found = assessment_of_cycles(100.3, 0.05, st.Sensor(filter=cut))
     assert "peaks, troughs" in " ".join(found.warnings)
     for each, true in ((found.friction.static, 2.0), (found.friction.kinetic, 1.5)):
         assert abs(each.force - true) < 2.0 * each.error < 0.6
-    assert analysis_of_cycles(100.3, 0.3, st.Sensor(filter="40 Hz")).friction.kinetic.error < 0.01
+    assert assessment_of_cycles(100.3, 0.3, st.Sensor(filter="40 Hz")).friction.kinetic.error < 0.01
 
 
 @pytest.mark.parametrize("samples", [18, 40, 80])  # of a cycle
@@ -167,7 +168,7 @@ def test_a_first_break_away_before_a_slow_fall(samples, count):
     force = np.where(since < 0.0, 0.15 * time, 0.9 + swing * np.sin(2.0 * np.pi * since))
     force += 1e-4 * np.random.default_rng(0).standard_normal(len(time))
     true = force[(since > 0.0) & (since < 0.5)].max()
-    found = st.analyse(st.Record(time=time, force=force)).friction.break_away
+    found = assess(st.Record(time=time, force=force)).friction.break_away
     assert found.force == pytest.approx(true, abs=3.0 * found.error)
     assert found.error < 1e-3
 
@@ -185,7 +186,7 @@ def sawtooth(samples, count, begin=2.0):
 def test_a_first_peak_below_the_end_of_the_range_is_known():
     """Later peaks are cut off, it is not; within its error it might have been, it said."""
     time, force = sawtooth(30, 40.3, begin=1.7)
-    found = st.analyse(st.Record(time=time, force=np.minimum(force, 1.8))).friction
+    found = assess(st.Record(time=time, force=np.minimum(force, 1.8))).friction
     assert found.break_away.force == pytest.approx(1.7 * 29 / 30, abs=1e-6)
     assert found.static is None
     assert "the peaks are cut off: it is 1.8 N or more" in found.missing["static"]
@@ -194,7 +195,7 @@ def test_a_first_peak_below_the_end_of_the_range_is_known():
 def test_errors_of_peaks_between_samples():
     """Half of the rise within a sample over what a fall of three has more than one; a quarter."""
     time, force = sawtooth(30, 40.3)
-    found = st.analyse(st.Record(time=time[30:], force=force[30:])).friction
+    found = assess(st.Record(time=time[30:], force=force[30:])).friction
     rise = 1.0 / 0.9 / 30
     assert found.static.error == pytest.approx(0.0210, abs=0.001)
     assert rise / 4.0 < found.static.error < rise
@@ -224,7 +225,7 @@ def loading(samples, lasts, count, *, first=1.0, gain=0.0, jerk=(0.0, 0.0), nois
 
 def assert_first_peak(record, step):
     """Check that the break-away is the peak of 1 N, within its error and the rise in a sample."""
-    found = st.analyse(record).friction.break_away
+    found = assess(record).friction.break_away
     assert found.force == pytest.approx(1.0, abs=3.0 * found.error + step)
     assert found.error < 0.15
 
@@ -262,16 +263,16 @@ def test_what_makes_the_error_of_a_filter_quick_to_find_does_not_change_it(
 ):
     """A filter forgets; another one, of 50 times its cut-off, does nothing beside it."""
     sensor = st.Sensor(filter="2 Hz", bandwidth="100 Hz")
-    quick = analysis_of_cycles(100.3, 0.05, sensor).friction
+    quick = assessment_of_cycles(100.3, 0.05, sensor).friction
     monkeypatch.setattr(f"stiction.analysis.motion.doubts.sampling.{name}", value)
-    whole = analysis_of_cycles(100.3, 0.05, sensor).friction
+    whole = assessment_of_cycles(100.3, 0.05, sensor).friction
     assert quick.static.error == pytest.approx(whole.static.error, rel=0.025)
     assert quick.kinetic.error == pytest.approx(whole.kinetic.error, rel=0.025)
 
 
 def test_a_bandwidth_near_the_cut_off_of_the_filter_counts():
     near, far = (
-        analysis_of_cycles(100.3, 0.05, st.Sensor(filter="8 Hz", bandwidth=each)).friction
+        assessment_of_cycles(100.3, 0.05, st.Sensor(filter="8 Hz", bandwidth=each)).friction
         for each in ("10 Hz", "300 Hz")
     )
     assert near.static.error > 1.1 * far.static.error
@@ -282,7 +283,7 @@ def test_a_first_peak_that_is_cut_off_in_noise_is_not_known():
     for seed in range(6):
         record = loading(300, 10.0, 30, noise=0.02, seed=seed)
         cut = record.model_copy(update={"force": np.minimum(record.force, 0.99)})
-        found = st.analyse(cut).friction
+        found = assess(cut).friction
         assert found.break_away is None
         assert "the peak is cut off" in found.missing["break_away"]
 
@@ -295,7 +296,7 @@ def test_friction_is_that_of_the_peaks_if_very_few_are_cut_off(count, known):
         (time % 1.0) * (time % 10.0 < 5.5)
     )
     cut = np.minimum(higher, 2.05)
-    found = st.analyse(st.Record(time=time, force=cut)).friction
+    found = assess(st.Record(time=time, force=cut)).friction
     assert (found.static is not None) == known
     if known:
         assert found.static.force == pytest.approx(2.0, abs=0.01)
@@ -310,7 +311,7 @@ def test_a_constant_load_in_noise_is_as_uncertain_in_the_break_away_as_told():
         random = np.random.default_rng(seed)
         force = stick_slip(10.0 + 0.0 * TIME[:4000]) + 1e-3 * random.standard_normal(4000)
         load = 10.0 + 0.5 * random.standard_normal(4000)
-        broke = st.analyse(st.Record(time=TIME[:4000], force=force, load=load)).friction.break_away
+        broke = assess(st.Record(time=TIME[:4000], force=force, load=load)).friction.break_away
         assert broke is not None
         off.append((broke.coefficient - STATIC) / broke.coefficient_error)
     assert np.abs(off).max() < 3.0
@@ -322,7 +323,7 @@ def test_a_rounded_top_in_steps_is_known_to_a_part_of_a_step(offset):
     step, share = 0.02, np.clip(TIME % 4.0, 0.0, 3.9) / 3.9
     force = 2.0 * np.sin(0.5 * np.pi * share) + step * offset
     read = step * np.round(force / step) - step * offset
-    broke = st.analyse(st.Record(time=TIME, force=read)).friction.break_away
+    broke = assess(st.Record(time=TIME, force=read)).friction.break_away
     assert broke is not None
     assert broke.error > 0.25 * step
     assert broke.force == pytest.approx(2.0, abs=2.0 * broke.error)
@@ -337,6 +338,6 @@ def test_the_load_of_the_first_break_away_is_that_of_the_channel_as_for_static_f
     random, time = np.random.default_rng(5), np.arange(4000) / 400.0
     force = np.where(time < 1.0, time, 0.5 + 0.5 * (time % 1.0)) + 2e-3 * random.normal(size=4000)
     load = 2.0 * (1.0 + 0.02 * random.normal(size=4000))
-    found = st.analyse(st.Record(time=time, force=force, load=load, normal_load=1.0)).friction
+    found = assess(st.Record(time=time, force=force, load=load, normal_load=1.0)).friction
     for its in (found.break_away, found.static):
         assert abs(its.coefficient - 0.5) < 3.0 * its.coefficient_error + 2e-3
