@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
-from scipy.signal import lfilter  # type: ignore[attr-defined]
+from scipy.signal import bilinear, lfilter, lfilter_zi  # type: ignore[attr-defined]
 from scipy.special import ndtr
 
 import stiction as st
@@ -60,12 +60,13 @@ def alike(random: np.random.Generator, count: int, correlation: float) -> Floats
 def slips(
     random: np.random.Generator, *, cycles: tuple[int, int] = (12, 80), creep: float = 0.0,
     correlation: float = 0.0, drift: float = 0.0, step: float = 0.0,
-    noise: tuple[float, float] = (-2.0, -0.52),
+    noise: tuple[float, float] = (-2.0, -0.52), samples: tuple[float, float] = (1.3, 3.0),
 ) -> Known:  # fmt: skip
     """Return irregular stick-slip of 20 to 1000 samples a cycle in noise of 1 to 30 % of a drop.
 
     At its peak a force creeps at a share `creep` of the drive's velocity. Drift over the record,
-    and steps of a converter, are shares of the mean drop, and `noise` powers of ten of it.
+    and steps of a converter, are shares of the mean drop, `noise` powers of ten of it, and those
+    of a cycle's `samples` powers of ten.
     """
     count, differ, at_peak = int(random.integers(*cycles)), *random.uniform((0.1, 0), (0.5, 0.7))
     stiffness, velocity = 10 ** random.uniform((2, -5), (4, -2.5))
@@ -79,7 +80,7 @@ def slips(
     ends = np.cumsum(loads + fall)
     mean = ends[-1] / count
     begin = 0.25 * loads[0]
-    time = np.arange(begin, ends[-1] - fall - begin, mean / 10 ** random.uniform(1.3, 3))
+    time = np.arange(begin, ends[-1] - fall - begin, mean / 10 ** random.uniform(*samples))
     at = np.searchsorted(ends, time)
     since = time - (ends - loads - fall)[at]
     rest = creep + (np.exp(rise / bend) - creep)[at] * np.exp(-rate * since / bend)
@@ -129,6 +130,21 @@ def behind_filter(random: np.random.Generator) -> Known:
     return known._replace(record=record.model_copy(update={"force": force}))
 
 
+def by_ringing_cell(random: np.random.Generator) -> Known:
+    """Return irregular stick-slip by a load cell that rings after each slip."""
+    known = slips(random, noise=(-9.0, -8.0), samples=(2.3, 3.3))
+    record, drop = known.record, float((known.peak - known.trough).mean())
+    assert record.stiffness is not None
+    assert record.mass is not None
+    swing = (record.stiffness / record.mass) ** 0.5 * 10 ** random.uniform(0.0, 0.7)
+    swing, quality = min(swing, 0.8 * record.sample_rate), 10 ** random.uniform(0.4, 0.9)
+    numbers = [swing**2], [1.0, swing / quality, swing**2]
+    cell = bilinear(*numbers, record.sample_rate)
+    force = lfilter(*cell, record.force, zi=lfilter_zi(*cell) * record.force[0])[0]
+    force += drop * 10 ** random.uniform(-3.0, -1.3) * random.normal(size=len(force))
+    return known._replace(record=record.model_copy(update={"force": force}))
+
+
 FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "straight": slips,
     "creeping": partial(slips, creep=0.8),
@@ -142,6 +158,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "cut off": cut_off,
     "zero that settles": settling,
     "behind a filter": behind_filter,
+    "cell that rings": by_ringing_cell,
 }
 
 

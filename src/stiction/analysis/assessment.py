@@ -13,7 +13,13 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import cut_off, without_cut_off
 from stiction.analysis.motion.doubts.creep_distance import unseen_creep
-from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
+from stiction.analysis.motion.doubts.sampling import (
+    doubt_ringing,
+    ringing,
+    with_ringing,
+    with_smear,
+    with_supposed_filter,
+)
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
     turns_round,
@@ -103,9 +109,12 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     stated = compare_metadata(record, kind, slips, shown, ends)
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
     doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
+    rings = None if turns else ringing(record, usual)
+    doubts = *doubts, *doubt_ringing(rings)
     if record.load_variation() <= VARIES:
         friction = with_drift(friction, record, cycles, drift)
     friction = with_supposed_filter(friction, record, usual, stated)
+    friction = with_ringing(friction, rings)
     unreal = why_no_friction(friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from math import pi
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -26,6 +29,18 @@ FEWEST = 4  # samples between first and last of a straight part, of which half a
 # not after a small slip
 BACK, FLANK = 0.4, 1.5
 RANGE = 10.0  # standard deviations of noise: of a million samples
+OFTEN = 0.5  # of the rises: if more ring, the load cell does
+
+
+class CellSwings(NamedTuple):
+    """What the swings of a load cell after each slip do to troughs and peaks (N) and rates (N/s).
+
+    By so much they are off in the usual rise.
+    """
+
+    trough: float
+    peak: float
+    rate: float
 
 
 def loaded_until(
@@ -73,21 +88,25 @@ def _deviation(fit: Fits, time: Floats, force: Floats, begin: Indices, end: Indi
 
 
 def _are_flanks(
-    time: Floats, force: Floats, start: Floats, until: Floats, peak_time: Floats, hidden: float
+    time: Floats,
+    force: Floats,
+    start: Floats,
+    until: Floats,
+    peak_time: Floats,
+    hidden: Floats | float,
 ) -> NDArray[np.bool_]:
     """Return which rises begin, until a time, with the flank of a swing, as a load cell rings.
 
     The mean of such swings is about zero over the whole rise. Noise hides a force of `hidden` (N).
     """
-    first, last = (samples_from(time, each) for each in (start, peak_time))
-    last = np.clip(last, 1, len(time) - 1)
-    middle = np.minimum(samples_from(time, 0.5 * (until + peak_time)), last - 1)
-    late = fit_pieces(time, force, middle, last, 1)
+    first, last = _ends(time, start, peak_time)
+    late = _late(time, force, first, last, 0.5 * (until + peak_time))
     found = loading_rate(time, force, start, until) > FLANK * late.coefficients[:, 1] / late.half
+    hidden = np.broadcast_to(hidden, len(start))
     for at in np.flatnonzero(found):
         rise = slice(first[at], last[at] + 1)
         lead, fall = _swing(time[rise], force[rise])
-        found[at] = fall > max(BACK * lead, hidden)
+        found[at] = fall > max(BACK * lead, hidden[at])
     return found
 
 
@@ -96,6 +115,52 @@ def _swing(time: Floats, force: Floats) -> tuple[float, float]:
     lead = force - np.interp(time, time[[0, -1]], force[[0, -1]])
     top = int(np.argmax(lead))
     return float(lead[top]), float(force[top] - force[top:].min())
+
+
+def swings_of_cell(
+    time: Floats, force: Floats, start: Floats, start_force: Floats, peak_time: Floats
+) -> CellSwings | None:
+    """Return what the swings of a load cell do to cycles (n,), None if it does not ring.
+
+    The first swing after a slip makes the trough. Later it has faded: the line through the last
+    part of a rise tells how deep the trough is without it, and what is left of it at the peak. In a
+    radian before the peak a swing follows the force, which lags or overshoots by as much.
+    """
+    if not len(start):
+        return None
+    first, last = _ends(time, start, peak_time)
+    tops = np.array(
+        [_top(time[i : j + 1], force[i : j + 1]) for i, j in zip(first, last, strict=True)]
+    )
+    of_noise = 2.0 * np.sqrt(2.0 * np.log(last - first + 1.0))  # the usual range of so many
+    hidden = of_noise * white_noise(force) + resolution(force)
+    rings = _are_flanks(time, force, start, tops, peak_time, hidden)
+    if not np.mean(rings) > OFTEN:
+        return None
+    late = _late(time, force, first, last, 0.5 * (tops + peak_time))
+    slope = late.coefficients[:, 1] / late.half
+    lift = late.coefficients[:, 0] + slope * (start - late.middle) - start_force
+    over = np.maximum(force[last] - late.coefficients.sum(axis=1), slope * (tops - start) / pi)
+    away = np.abs(loading_rate(time, force, start, peak_time) - slope)
+    return CellSwings(*(float(np.median(each[rings])) for each in (lift, over, away)))
+
+
+def _ends(time: Floats, start: Floats, peak_time: Floats) -> tuple[Indices, Indices]:
+    """Return first and last sample of each rise."""
+    first, last = (samples_from(time, each) for each in (start, peak_time))
+    last = np.clip(last, 2, len(time) - 1)
+    return np.minimum(first, last - 2), last
+
+
+def _late(time: Floats, force: Floats, first: Indices, last: Indices, begin: Floats) -> Fits:
+    """Return the line through each rise from a time on."""
+    middle = np.maximum(np.minimum(samples_from(time, begin), last - 1), first)
+    return fit_pieces(time, force, middle, last, 1)
+
+
+def _top(time: Floats, force: Floats) -> float:
+    """Return when a rise is farthest above the line to its end."""
+    return float(time[np.argmax(force - np.interp(time, time[[0, -1]], force[[0, -1]]))])
 
 
 def loading_rate(time: Floats, force: Floats, start: Floats, until: Floats) -> Floats:
