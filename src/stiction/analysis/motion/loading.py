@@ -170,6 +170,13 @@ def loading_rate(time: Floats, force: Floats, start: Floats, until: Floats) -> F
     return slope
 
 
+def late_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats) -> Floats:
+    """Return the rate of each rise in its second half."""
+    fit = _late(time, force, *_ends(time, start, peak_time), 0.5 * (start + peak_time))
+    rate: Floats = fit.coefficients[:, 1] / fit.half
+    return rate
+
+
 def rounding_of_rates(force: Floats, rise: float) -> float:
     """Return the relative error that the steps of a converter make in all rates of loading alike.
 

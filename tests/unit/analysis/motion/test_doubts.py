@@ -229,15 +229,16 @@ EXACT = Friction(*[Measured(2.0, 0.0, 0.0)] * 3, {})
 
 @pytest.mark.parametrize("cut", [3.0, 6.0, 12.0])
 def test_a_supposed_filter_is_that_by_which_half_a_swing_lasts_so_long(cut) -> None:
+    """Its order is not known: one of 4 swings after a slip, and one of 1 draws it out farther."""
     record = st.Record(time=np.arange(9.0), force=np.arange(9.0))
     swing = np.pi**2 / FALL**2  # of a half that lasts as long as the force falls
     its = StatedQuantity("k/m", "1/s²", 0.3 * swing, 1.0, swing, 0.4, 1.4, BY_SLIPS)
     seen = table(np.hypot(FALL, 1.0 / cut))
-    peak, trough = losses([LowPass(cut, 2)])
+    peak, trough = np.max([losses([LowPass(cut, order)]) for order in (1, 2, 4)], axis=0)
     found = with_supposed_filter(EXACT, record, seen, [its])
     assert further(found) == pytest.approx((peak, peak, 0.5 * max(peak, trough)), rel=0.05)
     for cycles, stated in (
-        (seen, its._replace(found=0.45 * swing)),
+        (seen, its._replace(found=1.05 * swing)),
         (seen, its._replace(how="period of its swings")),
         (seen.part(slice(0)), its),
     ):

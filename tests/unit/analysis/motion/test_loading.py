@@ -8,6 +8,7 @@ from tests.parts import assess
 import stiction as st
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.loading import (
+    late_rate,
     loaded_until,
     loading_rate,
     rounding_of_rates,
@@ -189,3 +190,10 @@ def test_friction_and_rate_of_loading_by_a_load_cell_that_rings():
         assert abs(its.force - true) < 2.0 * its.error < 0.3
     assert [each.agrees for each in found.stated[:1]] == [True]
     assert "After each slip the force swings" in " ".join(found.warnings)
+
+
+def test_the_late_rate_is_that_of_the_second_half():
+    rises = np.tile(np.interp(np.arange(100.0), [0.0, 40.0, 100.0], [0.0, 4.0, 7.0]), 2)
+    time, start = np.arange(200.0), np.array([0.0, 100.0])
+    assert late_rate(time, rises, start, start + 99.0) == pytest.approx([0.05, 0.05])
+    assert loading_rate(time, rises, start, start + 99.0) == pytest.approx([0.1, 0.1], rel=0.1)

@@ -538,4 +538,14 @@ def test_the_error_of_a_rate_holds_what_few_steps_of_a_converter_make():
 @pytest.mark.parametrize(("found", "agrees"), [(1.3, True), (1.9, True), (4.0, False)])
 def test_a_single_rate_differs_by_what_drift_and_steps_make_of_it(found, agrees):
     """It has no scatter, so that its error is unknown."""
-    assert _loading_rate(np.array([found]), 1.0, 0.4, 0.1).agrees is agrees
+    rate = np.array([found])
+    assert _loading_rate(rate, rate, 1.0, 0.4, 0.1).agrees is agrees
+
+
+@pytest.mark.parametrize(("late", "agrees"), [(1.05, True), (0.85, False), (1.9, False)])
+def test_rises_that_are_steeper_at_first_and_then_as_stated_contradict_nothing(late, agrees):
+    """Of 60 records behind a filter that nobody stated 10 contradicted stiffness and velocity."""
+    first = np.array([1.9, 2.0, 2.1])
+    found = _loading_rate(first, np.full(3, late), 1.0, 0.0, 0.0)
+    assert found.agrees is agrees
+    assert (found.at_least < 1.0) is agrees

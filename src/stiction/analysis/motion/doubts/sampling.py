@@ -15,7 +15,6 @@ from stiction.analysis.motion.metadata.stiffness_over_mass import (
     BY_SLIPS,
     MOST_HIDDEN,
     REACH,
-    SLOW_SLIP,
 )
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
@@ -42,6 +41,8 @@ BETWEEN = 0.5
 # Periods of the cut-off, after which a filter has forgotten; samples of each; times its cut-off,
 # from which on another filter does nothing beside it
 MEMORY, FINE, ALONE = 10.0, 40.0, 30.0
+
+ORDERS = (1, 2, 4)  # of a filter that is supposed: it draws a slip out, or swings after it
 
 
 def doubt_times(record: Record) -> Iterator[str]:
@@ -244,11 +245,11 @@ def with_supposed_filter(
 ) -> Friction:
     """Return the friction with the errors of a filter that nobody stated, where slips suggest one.
 
-    They last so long beside the swing of mass and spring as stated that friction alone hardly makes
-    them: the filter is that by which a slip of half a swing would last as long.
+    They last longer than half a swing of mass and spring as stated: friction that weakens may make
+    them, or a filter by which such a slip would last as long, of any order.
     """
     its = next((each for each in stated if each.how == BY_SLIPS), None)
-    if its is None or not its.ratio < SLOW_SLIP or not len(cycles):
+    if its is None or not its.ratio < 1.0 or not len(cycles):
         return friction
     sensor = (record.sensors or {}).get("force")
     if sensor is not None and sensor.filters:
@@ -257,7 +258,8 @@ def with_supposed_filter(
     longer = drawn_out(fall, its.stated)
     if not longer:  # of other slips than those that are too long
         return friction
-    peak, trough = _smear(cycles, fall, (LowPass(1.0 / longer, 2),))
+    smears = [_smear(cycles, fall, (LowPass(1.0 / longer, order),)) for order in ORDERS]
+    peak, trough = np.max(smears, axis=0)
     return friction.with_errors(break_away=peak, static=peak, kinetic=0.5 * max(peak, trough))
 
 
