@@ -107,6 +107,15 @@ def cut_off(random: np.random.Generator) -> Known:
     return known._replace(record=known.record.model_copy(update={"force": force}))
 
 
+def cut_off_in_noise(random: np.random.Generator) -> Known:
+    """Return irregular stick-slip whose peaks an amplifier cuts off, before a converter's noise."""
+    known = cut_off(random)
+    force = known.record.force
+    drop = float((known.peak - known.trough).mean())
+    force = force + drop * 10 ** random.uniform(-4.0, -2.5) * random.normal(size=len(force))
+    return known._replace(record=known.record.model_copy(update={"force": force}))
+
+
 def settling(random: np.random.Generator) -> Known:
     """Return irregular stick-slip while the zero settles, by 0.1 to 2 drops in all."""
     known = slips(random)
@@ -156,6 +165,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "neighbours much alike": partial(slips, correlation=0.9),
     "few, drifting": partial(slips, cycles=(2, 6), drift=1.0),
     "cut off": cut_off,
+    "cut off in noise": cut_off_in_noise,
     "zero that settles": settling,
     "behind a filter": behind_filter,
     "cell that rings": by_ringing_cell,

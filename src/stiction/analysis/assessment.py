@@ -11,7 +11,7 @@ from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
-from stiction.analysis.motion.doubts.clipping import cut_off, without_cut_off
+from stiction.analysis.motion.doubts.clipping import cut_off, noisy_end, without_cut_off
 from stiction.analysis.motion.doubts.creep_distance import unseen_creep
 from stiction.analysis.motion.doubts.sampling import (
     doubt_ringing,
@@ -102,7 +102,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     friction = _friction(record, found, usual, regime, turns)
     drift = find_drift(record, cycles)
     shown = drift if is_shown(drift, regime.kind) else None
-    ends = flat_ends(record.force)
+    ends = flat_ends(record.force) or noisy_end(record, cycles)
     kind, slips = regime.kind, cycles
     if "slips_at" in regime.evidence and found.few is not None:
         kind, slips = STICK_SLIP, found.few

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.arrays import Floats, Indices
 
@@ -17,13 +18,18 @@ TIMES = 3  # that a signal stays at its least value: at rest it does so once
 class FlatEnd(NamedTuple):
     """An end of a signal's range at which it stays.
 
-    By its name, "largest" or "least" in magnitude, with its value, in the unit of the signal, and
-    the most samples in a row there.
+    By its name, "largest" or "least" in magnitude, with its value, in the unit of the signal, the
+    most samples in a row there, and the noise within which they are there.
     """
 
     name: str
     value: float
     longest: int
+    within: float = 0.0
+
+    def reached(self, values: Floats) -> NDArray[np.bool_]:
+        """Return which values are at this end."""
+        return np.abs(values - self.value) <= self.within
 
 
 def flat_ends(values: Floats) -> list[FlatEnd]:

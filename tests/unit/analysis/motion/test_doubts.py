@@ -18,6 +18,7 @@ from stiction.analysis.assessment import CHANGING, HALTING
 from stiction.analysis.export import write
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.doubts.clipping import noisy_end
 from stiction.analysis.motion.doubts.creep_distance import hidden_way
 from stiction.analysis.motion.doubts.sampling import (
     usual_fall,
@@ -1034,3 +1035,50 @@ def test_ways_are_not_given_of_peaks_that_are_cut_off(end, given) -> None:
     assert ("cut off" in found.missing.get("creep_distance", "")) is not given
     moved = st.Record(time=time, force=force, position=1e-3 * loaded * time)
     assert "slip_distance" not in assess(moved).missing
+
+
+def tops(shape, noise, end=np.inf, later=0.0):
+    """Return a record and cycles of slips by 1 N after rises of a shape, (n,), cut off at an end.
+
+    There is noise before the end of the range, and later.
+    """
+    random, count = np.random.default_rng(3), 16
+    fall = shape[-1] - 0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, 12))
+    heights = 2.0 + random.uniform(-0.1, 0.1, (count, 1))
+    force = (heights + np.r_[shape, fall]).ravel()
+    force = np.minimum(force + noise * random.normal(size=len(force)), end)
+    record = st.Record(
+        time=1e-2 * np.arange(len(force)), force=force + later * random.normal(size=len(force))
+    )
+    return record, swings(record).lasting
+
+
+@pytest.mark.parametrize(("noise", "later"), [(0.0, 2e-3), (0.03, 1e-4), (0.02, 1e-3)])
+def test_peaks_are_cut_off_in_noise(noise, later) -> None:
+    """An amplifier ends before its converter: static friction was 2.75 ± 0.005 N for 3 N."""
+    record, cycles = tops(np.linspace(0.0, 1.0, 150), noise, 2.75, later)
+    ((name, value, longest, within),) = noisy_end(record, cycles)
+    assert name == "largest"
+    assert value == pytest.approx(2.75, abs=within)
+    assert 5 < longest < 80
+    found = assess(record)
+    assert found.friction.static is None
+    assert "The force stays within" in found.warnings[0]
+
+
+@pytest.mark.parametrize("noise", [1e-3, 0.03])
+@pytest.mark.parametrize("samples", [6, 150])
+def test_peaks_in_noise_are_not_cut_off(samples, noise) -> None:
+    """Nor are those of a mass that creeps at four fifths of the drive's velocity before slips."""
+    share = np.linspace(0.0, 1.0, samples)
+    creeps = 1.0 - 0.3 * np.log(1.0 + 4.0 * share) / np.log(5.0) - 0.7 * (1.0 - share)
+    for shape in (share, creeps, np.sin(0.5 * np.pi * share)):
+        assert noisy_end(*tops(shape, noise)) == []
+
+
+def test_equal_peaks_of_few_samples_are_not_cut_off() -> None:
+    """Of a regular motion the largest samples are equal, one of each cycle."""
+    saw = np.tile(np.r_[np.linspace(0.0, 1.0, 30), np.linspace(0.9, 0.1, 4)], 30)
+    saw += 1e-3 * np.random.default_rng(1).normal(size=len(saw))
+    record = st.Record(time=np.arange(float(len(saw))), force=saw)
+    assert noisy_end(record, swings(record).lasting) == []

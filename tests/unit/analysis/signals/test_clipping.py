@@ -25,8 +25,8 @@ def test_what_is_not_cut_off(force):
 
 @pytest.mark.parametrize("end", [0.8, 0.7, 0.4])
 def test_peaks_that_are_cut_off(end):
-    ((name, value, longest),) = flat_ends(np.minimum(SAW, end))
+    ((name, value, longest, _),) = flat_ends(np.minimum(SAW, end))
     assert (name, value) == ("largest", end)
     assert longest == np.count_nonzero(SAW[:40] >= end - 1e-12)
-    ((name, value, _),) = flat_ends(-np.minimum(SAW, end))  # largest in magnitude
+    ((name, value, _, _),) = flat_ends(-np.minimum(SAW, end))  # largest in magnitude
     assert (name, value) == ("largest", -end)

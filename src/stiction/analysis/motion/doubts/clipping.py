@@ -12,9 +12,17 @@ from stiction.analysis.motion.friction import Friction, Measured
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_997
+from stiction.analysis.signals.digitised import resolution
+from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
 
 FEW = 0.05  # of the cycles: if fewer are cut off, means over all of them hardly change
+# Of samples at the end of a range in noise: so many, so many times as dense as those below, in so
+# many of the cycles, and so many in each of these; and widths that are tried, over the noise, up to
+# a part of the drop. At the top of a sine samples are 2.7 times as dense as below, and five times
+# where a mass creeps at four fifths of the velocity
+MANY, DENSE, OFTEN, EACH = 20, 8.0, 0.25, 2
+WIDTHS, WIDE = np.geomspace(1e-3, 8.0, 14), 0.1
 ENDS = {"largest": "peaks", "least": "troughs"}
 SHOWN = {
     "largest": "static and kinetic coefficients and drops are too small, and what seems to creep "
@@ -23,11 +31,37 @@ SHOWN = {
 }
 
 
+def noisy_end(record: Record, cycles: CycleTable) -> list[FlatEnd]:
+    """Return the end of the range at which peaks are cut off in noise, if they are.
+
+    An amplifier whose range ends before that of the converter has noise there, too. Samples crowd
+    at the largest force, in many of the cycles, as they do not below, and as noise has the fewest.
+    """
+    step, noise = resolution(record.force), white_noise(record.force)
+    if not len(cycles) or noise == 0.0:
+        return []
+    below = record.force.max() - record.force
+    widest = min(WIDTHS[-1] * noise, WIDE * cycles.median("drop"))
+    near = np.sort(below[below < 3.0 * widest])
+    widths = WIDTHS * noise
+    for width in widths[(widths > 2.0 * step) & (widths <= widest)]:
+        top, others = np.searchsorted(near, (width, 3.0 * width))
+        if top < MANY or top < DENSE * 0.5 * (others - top):
+            continue
+        edges = np.flatnonzero(np.diff(below < width, prepend=False, append=False))
+        longest = int(np.diff(edges)[::2].max())
+        end = FlatEnd("largest", float(record.force.max() - near[top // 2]), longest, float(width))
+        reached = _share_reached(record, cycles, end)
+        return [end] if reached > OFTEN and top > EACH * reached * len(cycles) else []
+    return []
+
+
 def doubt_clipping(ends: Sequence[FlatEnd]) -> Iterator[str]:
     """Doubt a force that stays at exactly its largest or least value for longer than elsewhere."""
-    for name, value, longest in ends:
+    for name, value, longest, within in ends:
+        near = f"within {in_words(within, 'N', 2)} of" if within else "at exactly"
         yield (
-            f"The force stays at exactly {in_words(value, 'N')} for up to {longest} samples, its "
+            f"The force stays {near} {in_words(value, 'N')} for up to {longest} samples, its "
             f"{name} value: if that is the end of the load cell's range, {ENDS[name]} are cut off, "
             f"{SHOWN[name]}."
         )
@@ -37,7 +71,7 @@ def without_cut_off(
     friction: Friction, record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]
 ) -> Friction:
     """Return the friction without what peaks and troughs do not show that are cut off at ends."""
-    end = next((each.value for each in ends if each.name == "largest"), None)
+    end = next((each for each in ends if each.name == "largest"), None)
     broke = friction.break_away
     if end is not None and broke is not None and _breaks_at(record, cycles, broke, end):
         reason = f"the peak is cut off: it is {in_words(broke.force, 'N')} or more"
@@ -66,18 +100,23 @@ def _in_words(reached: Sequence[str]) -> str:
 
 def _ends_reached(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> list[str]:
     """Return the names of the ends that the cycles reach."""
-    return [each.name for each in ends if _is_reached(record, cycles, each.value)]
+    return [each.name for each in ends if _is_reached(record, cycles, each)]
 
 
-def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: float) -> bool:
-    """Return whether the first break-away may be a value, which the force had until its trough."""
+def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: FlatEnd) -> bool:
+    """Return whether the first break-away may be an end, where the force was until its trough."""
     until = cycles["start"][0] if len(cycles) else inf
-    near = broke.force + ERRORS_997 * broke.error >= end
-    return near and bool((record.force[record.time <= until] == end).any())
+    near = broke.force + ERRORS_997 * broke.error >= end.value - end.within
+    return near and bool(end.reached(record.force[record.time <= until]).any())
 
 
-def _is_reached(record: Record, cycles: CycleTable, value: float) -> bool:
-    """Return whether the force has a value in more than a few of its cycles."""
-    there = record.time[record.force == value]
-    begin, end = (np.searchsorted(there, cycles[name]) for name in ("start", "trough_time"))
-    return bool(np.count_nonzero(end > begin) > FEW * len(cycles))
+def _is_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> bool:
+    """Return whether the force is at an end in more than a few of its cycles."""
+    return _share_reached(record, cycles, end) > FEW
+
+
+def _share_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> float:
+    """Return in which share of its cycles the force is at an end."""
+    there = record.time[end.reached(record.force)]
+    begin, last = (np.searchsorted(there, cycles[name]) for name in ("start", "trough_time"))
+    return float(np.mean(last > begin))
