@@ -109,7 +109,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     stated = compare_metadata(record, kind, slips, shown, ends)
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
     doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
-    rings = None if turns else ringing(record, usual)
+    rings = None if turns or ends else ringing(record, usual)
     doubts = *doubts, *doubt_ringing(rings)
     if record.load_variation() <= VARIES:
         friction = with_drift(friction, record, cycles, drift)

@@ -1082,3 +1082,10 @@ def test_equal_peaks_of_few_samples_are_not_cut_off() -> None:
     saw += 1e-3 * np.random.default_rng(1).normal(size=len(saw))
     record = st.Record(time=np.arange(float(len(saw))), force=saw)
     assert noisy_end(record, swings(record).lasting) == []
+
+
+@pytest.mark.parametrize("number", [41, 78])
+def test_no_load_cell_rings_where_peaks_are_cut_off(number) -> None:
+    """A rise that ends at a level is steep at first, and noise is what it falls back by."""
+    known = FAMILIES["cut off"](np.random.default_rng([11, number]))
+    assert "After each slip" not in " ".join(assess(known.record).warnings)

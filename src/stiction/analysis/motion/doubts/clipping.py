@@ -119,4 +119,4 @@ def _share_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> float:
     """Return in which share of its cycles the force is at an end."""
     there = record.time[end.reached(record.force)]
     begin, last = (np.searchsorted(there, cycles[name]) for name in ("start", "trough_time"))
-    return float(np.mean(last > begin))
+    return float(np.count_nonzero(last > begin)) / max(len(cycles), 1)
