@@ -27,7 +27,7 @@ class FlatEnd(NamedTuple):
     longest: int
     within: float = 0.0
 
-    def reached(self, values: Floats) -> NDArray[np.bool_]:
+    def mask(self, values: Floats) -> NDArray[np.bool_]:
         """Return which values are at this end."""
         return np.abs(values - self.value) <= self.within
 

@@ -107,7 +107,7 @@ def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: FlatEnd
     """Return whether the first break-away may be an end, where the force was until its trough."""
     until = cycles["start"][0] if len(cycles) else inf
     near = broke.force + ERRORS_997 * broke.error >= end.value - end.within
-    return near and bool(end.reached(record.force[record.time <= until]).any())
+    return near and bool(end.mask(record.force[record.time <= until]).any())
 
 
 def _is_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> bool:
@@ -117,6 +117,6 @@ def _is_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> bool:
 
 def _share_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> float:
     """Return in which share of its cycles the force is at an end."""
-    there = record.time[end.reached(record.force)]
+    there = record.time[end.mask(record.force)]
     begin, last = (np.searchsorted(there, cycles[name]) for name in ("start", "trough_time"))
     return float(np.count_nonzero(last > begin)) / max(len(cycles), 1)
