@@ -15,6 +15,7 @@ __all__ = ["NORMAL_MEDIAN", "TINY", "Complex", "Floats", "Indices", "compute_onc
 
 TINY = 1e-300  # nothing beside any quantity in SI, and more than 0: of a divisor, or in a logarithm
 NORMAL_MEDIAN = 0.6744897501960817  # of |x| of a standard normal x
+KEPT = 8  # arrays of which a function keeps what it found: those of one record
 
 Floats = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -26,7 +27,7 @@ Found = TypeVar("Found")
 def compute_once(
     function: Callable[Concatenate[Floats, Rest], Found],
 ) -> Callable[Concatenate[Floats, Rest], Found]:
-    """Let a function keep what it finds of an array that cannot change, while the array lives.
+    """Let a function keep what it finds of the last few arrays that cannot change, while they live.
 
     The arrays of a record are such, and a dozen findings ask for the step, the noise or the grid
     of each. What is found is shared by all of them: it must not be changed.
@@ -40,17 +41,21 @@ def compute_once(
     computed
     (3, 3)
     """
-    known: dict[Any, Found] = {}
+    known: dict[int, dict[Any, Found]] = {}
 
     @wraps(function)
     def recall(values: Floats, /, *rest: Rest.args, **named: Rest.kwargs) -> Found:
         if values.flags.writeable or values.base is not None:
             return function(values, *rest, **named)
-        key = id(values), rest, tuple(named.items())
-        if key not in known:
-            known[key] = function(values, *rest, **named)
-            finalize(values, known.pop, key, None).atexit = False
-        return known[key]
+        place, asked = id(values), (rest, tuple(named.items()))
+        if (found := known.get(place)) is None:
+            found = known[place] = {}
+            finalize(values, known.pop, place, None).atexit = False
+            for earlier in list(known)[:-KEPT]:
+                known.pop(earlier, None)
+        if asked not in found:
+            found[asked] = function(values, *rest, **named)
+        return found[asked]
 
     return recall
 

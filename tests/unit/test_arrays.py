@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from stiction.arrays import Floats, compute_once
+from stiction.arrays import KEPT, Floats, compute_once
 
 
 class Counted:
@@ -46,3 +46,12 @@ def test_nothing_is_kept_of_an_array_that_is_gone():
     for number in range(100):  # the next array may lie where the last one did
         assert counted.sum(read_only(float(number))) == number
     assert counted.calls == 100
+
+
+def test_of_many_arrays_only_the_last_are_kept():
+    counted, arrays = Counted(), [read_only(float(number)) for number in range(KEPT + 1)]
+    for _ in range(2):
+        assert [counted.sum(each) for each in arrays[1:]] == list(range(1, KEPT + 1))
+    assert counted.calls == KEPT
+    assert [counted.sum(each) for each in arrays[:2]] == [0.0, 1.0]
+    assert counted.calls == KEPT + 2  # the first was never asked for; the second made room for it
