@@ -30,7 +30,8 @@ def compute_once(
     """Let a function keep what it finds of the last few arrays that cannot change, while they live.
 
     The arrays of a record are such, and a dozen findings ask for the step, the noise or the grid
-    of each. What is found is shared by all of them: it must not be changed.
+    of each. What is found is shared by all of them: it must not be changed, nor hold the array,
+    which would live as long as itself.
 
     Examples
     --------

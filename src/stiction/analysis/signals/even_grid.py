@@ -36,15 +36,15 @@ class EvenGrid:
 
     Parameters
     ----------
-    time : ndarray
-        (n,), s, the record's own times.
+    places : ndarray
+        (n,) of the record's samples on the grid, in steps from its first time.
     start, step : float
         The first time of the grid and its step, s.
     size : int
         Number of its times.
     """
 
-    time: Floats
+    places: Floats
     start: float
     step: float
     size: int
@@ -52,17 +52,12 @@ class EvenGrid:
     @property
     def exact(self) -> bool:
         """Whether the record's samples are those of the grid, one for each time."""
-        return self.size == len(self.time) and not self.off_grid.any()
+        return self.size == len(self.places) and not self.off_grid.any()
 
     @cached_property
     def _off(self) -> Floats:
         """How far each sample lies off the grid, in steps."""
         return np.asarray(self.places - np.rint(self.places))
-
-    @cached_property
-    def places(self) -> Floats:
-        """(n,) places of the samples on the grid, in steps from its first time."""
-        return np.asarray((self.time - self.start) / self.step)
 
     @cached_property
     def missing(self) -> NDArray[np.bool_]:
@@ -79,13 +74,6 @@ class EvenGrid:
         return int(np.count_nonzero(np.diff(self.missing, prepend=False) & self.missing))
 
     @property
-    def joined(self) -> Floats:
-        """(n,) times of the samples if each gap lasted for one step, s."""
-        steps = np.diff(self.time)
-        steps[np.diff(self.places) > ONE_MISSING] = self.step
-        return np.concatenate([self.time[:1], self.time[0] + np.cumsum(steps)])
-
-    @property
     def crowded(self) -> float:
         """The share of samples that follow the one before too closely."""
         return float(np.mean(np.diff(self.places) < CROWDED))
@@ -93,7 +81,7 @@ class EvenGrid:
     @property
     def coarse(self) -> bool:
         """Whether there are several samples for each time, which stand at random."""
-        return self.size < len(self.time) / (1.0 + MOST_MISSING)
+        return self.size < len(self.places) / (1.0 + MOST_MISSING)
 
     @property
     def off_grid(self) -> NDArray[np.bool_]:
@@ -123,6 +111,12 @@ class EvenGrid:
         found[place[inside]] = values[near[inside]]
         return np.asarray(found)
 
+    def close_gaps(self, time: Floats) -> Floats:
+        """Return the record's own times (n,) as if each gap lasted for one step, s."""
+        steps = np.diff(time)
+        steps[np.diff(self.places) > ONE_MISSING] = self.step
+        return np.concatenate([time[:1], time[0] + np.cumsum(steps)])
+
     def between(self, values: NDArray[Any]) -> NDArray[Any]:
         """Return values that change slowly at the record's own times, from those on the grid."""
         return np.asarray(np.interp(self.places, np.arange(self.size), values))
@@ -145,12 +139,12 @@ def even_grid(time: Floats) -> EvenGrid | None:
     n = len(time)
     if n < 2:
         return None
-    plain = EvenGrid(time, float(time[0]), float(time[-1] - time[0]) / (n - 1), n)
+    plain = _grid(time, float(time[0]), float(time[-1] - time[0]) / (n - 1), n)
     if plain.exact:
         return plain
     number = np.arange(n, dtype=np.float64)
     fitted = line(number, time)
-    each = EvenGrid(time, fitted.offset, fitted.slope, n)
+    each = _grid(time, fitted.offset, fitted.slope, n)
     if np.abs(each.places - number).max() < OWN:  # a clock that jitters, or times that are rounded
         return each
     start, step = _fit_grid(time)
@@ -158,12 +152,17 @@ def even_grid(time: Floats) -> EvenGrid | None:
     size = int(np.floor((time[-1] - start) / step + 0.5)) + 1
     if size > n / (1.0 - MOST_MISSING) + 2:  # so many are missing that it is of no use
         size = min(size, 4 * n)
-    found = EvenGrid(time, float(start), step, size)
+    found = _grid(time, float(start), step, size)
     if found.serves or n < COARSER * FEWEST_SAMPLES:
         return found
     size = (n - 1) // COARSER + 1
-    coarse = EvenGrid(time, float(time[0]), plain.step * (n - 1) / (size - 1), size)
+    coarse = _grid(time, float(time[0]), plain.step * (n - 1) / (size - 1), size)
     return coarse if coarse.serves else found
+
+
+def _grid(time: Floats, start: float, step: float, size: int) -> EvenGrid:
+    """Return a grid with the places of times on it, but not these: it lives as long as they do."""
+    return EvenGrid(np.asarray((time - start) / step), start, step, size)
 
 
 def _fit_grid(time: Floats) -> tuple[float, float]:

@@ -181,7 +181,7 @@ def _measure_line(force: Floats, grid: EvenGrid, seen: _Spectrum, at: int) -> Li
     for _ in range(2):  # as it wanders
         phase = _envelope(quick * turn.conj(), cycles)
         turn *= phase / np.maximum(np.abs(phase), TINY)
-    values = np.zeros(len(grid.time))
+    values = np.zeros(len(grid.places))
     turned = np.unwrap(np.angle(turn))
     half, bands = PASSED * cycles / min(LONGEST_PART, cycles * grid.size), []
     for k in range(1, HARMONICS + 1):

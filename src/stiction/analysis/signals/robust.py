@@ -136,7 +136,6 @@ def trimmed_means(values: Floats, starts: Indices) -> tuple[Floats, Floats]:
     return mean, deviation / (1.0 - 2.0 * cut / count) / np.sqrt(count)
 
 
-@compute_once
 def without_outliers(values: Floats) -> Floats:
     """Replace wild samples by the straight line between their neighbours.
 
@@ -145,6 +144,13 @@ def without_outliers(values: Floats) -> Floats:
     values : ndarray
         (n,), in any unit; returned unchanged if none is wild.
     """
+    found = _replacement(values)
+    return values if found is None else found
+
+
+@compute_once
+def _replacement(values: Floats) -> Floats | None:
+    """Return values without the wild ones, which cannot be changed; None if none is wild."""
     kept, wild = values, np.zeros(len(values), bool)
     for _ in range(PASSES):
         found = _outliers(kept)
@@ -152,12 +158,12 @@ def without_outliers(values: Floats) -> Floats:
             break
         wild |= found
         if wild.mean() > MOST:
-            return values
+            return None
         at = np.flatnonzero(~wild)
         kept = values.copy()
         kept[wild] = np.interp(np.flatnonzero(wild), at, values[at])
         kept.setflags(write=False)
-    return kept
+    return kept if wild.any() else None
 
 
 def largest_magnitude(values: Floats) -> float:

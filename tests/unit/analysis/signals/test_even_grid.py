@@ -160,5 +160,7 @@ def test_gaps_last_for_one_step_where_parts_are_joined():
     time = 5.0 + 0.1 * np.delete(np.arange(100.0), [*range(20, 45), *range(60, 61)])
     grid = even_grid(time)
     assert grid.has_gaps
-    assert np.diff(grid.joined) == pytest.approx(np.where(np.diff(time) > 0.15, 0.1, np.diff(time)))
-    assert grid.joined[0] == time[0]
+    assert np.diff(grid.close_gaps(time)) == pytest.approx(
+        np.where(np.diff(time) > 0.15, 0.1, np.diff(time))
+    )
+    assert grid.close_gaps(time)[0] == time[0]

@@ -183,7 +183,7 @@ def _beside_gaps(record: Record, seen: Regime) -> Regime:
     unsure = seen.kind in WITHOUT_CYCLES and record.slip_speed is None
     if not unsure or grid is None or not grid.has_gaps:
         return seen
-    joined = record.model_copy(update={"time": grid.joined})
+    joined = record.model_copy(update={"time": grid.close_gaps(record.time)})
     left = even_grid(joined.time)
     if left is None or left.has_gaps:
         return seen
