@@ -57,6 +57,8 @@ def test_a_run_that_broke_off_later_has_no_early_end_in_the_window():
     [
         (("5", "10 ms"), "^window: '5' has no unit; write for example"),
         (("10 ms", "5 ms"), "0.01 s to 0.005 s is not a part of the run, 0 s to 0.02 s"),
+        (("5 ms",), r"window must be a start and an end, is \('5 ms',\); write for example"),
+        (0.005, "window must be a start and an end, is 0.005"),
         (("5.01 ms", "5.09 ms"), "window: 0.00501 s to 0.00509 s has 0 of the run's samples"),
     ],
 )

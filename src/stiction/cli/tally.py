@@ -82,7 +82,7 @@ def _tell_failures(output: Path, result: Summary, before: int) -> None:
 
 
 def _tell(output: Path, result: Summary, before: int) -> None:
-    there = f", of which {before} were already there" if before else ""
+    there = f", of which {before} {'was' if before == 1 else 'were'} already there" * bool(before)
     say(f"{output}: {result.runs - result.pending} runs{there}")
     if result.first is not None:
         say(_failures(result))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from stiction.errors import DescriptionError, Fault, ResultError
+from stiction.errors import DescriptionError, Fault, ResultError, echo
 from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.text.units import Quantity
@@ -17,13 +17,19 @@ def window_of(description: Description, window: Sequence[Quantity] | None) -> tu
     Raises
     ------
     ResultError
-        If it is not a part of it.
+        If it is not a start and an end, or not a part of it.
     """
     first = description.initial.time
     last = first + description.run.duration
     if window is None:
         return first, last
-    start, end = (seconds(each, "window") for each in window)
+    try:
+        begins, ends = window
+    except (TypeError, ValueError):
+        raise ResultError(
+            f"window must be a start and an end, is {echo(window)}; write for example ('1 s', '2 s')"
+        ) from None
+    start, end = seconds(begins, "window"), seconds(ends, "window")
     if not first <= start < end <= last * (1 + 1e-12):
         raise ResultError(
             f"{start:g} s to {end:g} s is not a part of the run, {first:g} s to {last:g} s"
