@@ -6,6 +6,7 @@ import pytest
 import stiction as st
 from stiction.cli import main
 from stiction.plotting.run.excerpt import excerpt
+from stiction.result.window import window_of
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -29,7 +30,10 @@ def test_a_part_of_a_run_has_its_samples_and_rests(run):
     assert np.ptp(part.stick_intervals, axis=1).sum() == np.ptp(within, axis=1).sum() > 0.0
     assert part.stick_intervals.min() >= 0.005
     assert part.stick_intervals.max() <= 0.010
+    assert (np.ptp(part.stick_intervals, axis=1) > 0.0).all()
     assert excerpt(run, None) is run
+    duration = PAPER, st.Initial(), st.Settings(duration=0.3)
+    assert window_of(st.Description(*duration), (0.0, 0.1 + 0.2)) == (0.0, 0.3)  # but for rounding
 
 
 def test_a_window_fills_the_panels_and_the_words_name_it(run):

@@ -27,7 +27,7 @@ def window_of(description: Description, window: Sequence[Quantity] | None) -> tu
         begins, ends = window
     except (TypeError, ValueError):
         raise ResultError(
-            f"window must be a start and an end, is {echo(window)}; write for example ('1 s', '2 s')"
+            f"window must be a start and an end, is {echo(window)}; write for example (1, 2)"
         ) from None
     start, end = seconds(begins, "window"), seconds(ends, "window")
     if not first <= start < end <= last * (1 + 1e-12):
