@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.digitised import fall_by_rounding, resolution
 from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
 from stiction.arrays import TINY, Floats, Indices
 from stiction.recording.noise import dither_remainder, white_noise
@@ -133,7 +133,7 @@ def swings_of_cell(
         [_top(time[i : j + 1], force[i : j + 1]) for i, j in zip(first, last, strict=True)]
     )
     of_noise = 2.0 * np.sqrt(2.0 * np.log(last - first + 1.0))  # the usual range of so many
-    hidden = of_noise * white_noise(force) + resolution(force)
+    hidden = of_noise * white_noise(force) + fall_by_rounding(force)
     rings = _are_flanks(time, force, start, tops, peak_time, hidden)
     if not np.mean(rings) > OFTEN:
         return None
