@@ -5,6 +5,7 @@ from math import degrees
 
 import numpy as np
 import pytest
+import xarray as xr
 from tests.drawn import inside
 from tests.parts import assess, creep_of
 
@@ -12,7 +13,7 @@ import stiction as st
 from stiction.analysis.creep.mean_curve import calibrate
 from stiction.analysis.export import write
 from stiction.analysis.parts import creep
-from stiction.analysis.parts.wording import SHOWN, rows_left_out
+from stiction.analysis.parts.wording import SHOWN, mean_in_words, rows_left_out
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
 
@@ -370,3 +371,11 @@ def test_a_run_that_is_too_short_for_a_slip_is_told_how_long_would_do() -> None:
     said = str(st.analyse(st.simulate(rig, "120 s", sample_rate="20 Hz")))
     assert "it rests or creeps: the force only rises; a spring is loaded to the 593.6 N" in said
     assert "after some 237.4 s; set a longer duration." in said
+
+
+def test_a_mean_has_the_digits_of_its_standard_error() -> None:
+    """Which is the standard deviation, 0.5 s, over the root of the number of cycles."""
+    for count, words in ((100, "2.04 s"), (1, "2 s"), (10_000, "2.035 s")):
+        row = {"mean": 2.0351, "standard_deviation": 0.5, "number": count, "unit": "s"}
+        columns = {name: ("quantity", [value]) for name, value in row.items()}
+        assert mean_in_words(xr.Dataset(columns, {"quantity": ["period"]}), "period") == words

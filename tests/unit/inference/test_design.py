@@ -294,6 +294,10 @@ def test_too_few_cycles_say_how_many_simulations_would_do():
         refuse_too_few("rigs", 0, 100, 100)
     with pytest.raises(st.ResultError, match=r"^60 of 60 rigs have .* are needed: simulate 200 \("):
         refuse_too_few("rigs", 60, 60, 100)  # the priors are right
+    with pytest.raises(
+        st.ResultError, match=r"^only 20 of 60 rigs .* check the priors, or simulate"
+    ):
+        refuse_too_few("rigs", 20, 60, 100)
 
 
 def test_a_record_of_the_present_test_is_repeated_as_it_is():

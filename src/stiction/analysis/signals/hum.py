@@ -166,7 +166,10 @@ def _spectrum_on_grid(force: Floats, grid: EvenGrid | None) -> _Spectrum | None:
     if grid is None or not grid.serves or grid.size < 4 * PERIODS or np.ptp(force) == 0.0:
         return None
     power, width = spectrum(grid.on(force))
-    return _Spectrum(power, beside(power), width)
+    floor = beside(power)
+    for each in (power, floor):
+        each.setflags(write=False)  # all that ask for it have the same
+    return _Spectrum(power, floor, width)
 
 
 def _measure_line(force: Floats, grid: EvenGrid, seen: _Spectrum, at: int) -> Line:

@@ -136,11 +136,11 @@ def test_what_the_mass_does_agrees_with_the_run(paper: st.Record, paper_run: st.
     assert ((cycles["stiffness"] > 970.0) & (cycles["stiffness"] < 990.0)).all()
 
 
-@pytest.mark.parametrize(("samples", "fall"), [(50, 8), (3001, 40), (3000, 900)])
+@pytest.mark.parametrize(("samples", "fall"), [(9, 40), (50, 8), (3001, 40), (3000, 900)])
 def test_the_rate_of_force_is_that_of_cubics_through_a_quarter_of_a_fall(samples, fall):
     force = 10.0 + np.cumsum(np.random.default_rng(samples).normal(size=samples))
     found = _smooth_rate(0.01 * np.arange(samples), force, fall)
-    half = fall // 4
+    half = min(fall // 4, (samples - 1) // 2)  # of a short record, all of it
     by_cubics = savgol_filter(force, 2 * half + 1, 3, deriv=1, delta=0.01)
     inside = slice(half, samples - half)  # at the ends one extrapolates, the other mirrors
     assert found[inside] == pytest.approx(by_cubics[inside], abs=1e-9 * np.abs(by_cubics).max())

@@ -22,10 +22,12 @@ from stiction.analysis.motion.doubts.clipping import noisy_end
 from stiction.analysis.motion.doubts.creep_distance import hidden_way
 from stiction.analysis.motion.doubts.sampling import (
     usual_fall,
+    with_ringing,
     with_smear,
     with_supposed_filter,
 )
 from stiction.analysis.motion.friction import Friction, Measured, friction_of
+from stiction.analysis.motion.loading import CellSwings
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS
 from stiction.presets.preset import on_a_line
@@ -226,6 +228,13 @@ def further(friction: Friction) -> tuple[float, ...]:
 
 
 EXACT = Friction(*[Measured(2.0, 0.0, 0.0)] * 3, {})
+
+
+def test_where_a_load_cell_rings_peaks_and_troughs_have_its_errors() -> None:
+    assert with_ringing(EXACT, None) is EXACT
+    for trough, peak, kinetic in ((0.3, 0.1, 0.15), (0.1, 0.2, 0.1)):
+        found = with_ringing(EXACT, CellSwings(trough, peak, 0.0))
+        assert further(found) == pytest.approx((0.0, peak, kinetic))
 
 
 @pytest.mark.parametrize("cut", [3.0, 6.0, 12.0])
@@ -1074,6 +1083,21 @@ def test_peaks_in_noise_are_not_cut_off(samples, noise) -> None:
     creeps = 1.0 - 0.3 * np.log(1.0 + 4.0 * share) / np.log(5.0) - 0.7 * (1.0 - share)
     for shape in (share, creeps, np.sin(0.5 * np.pi * share)):
         assert noisy_end(*tops(shape, noise)) == []
+
+
+@pytest.mark.parametrize("end", [3.06, 3.09])
+def test_a_few_peaks_that_are_cut_off_in_noise_are_no_end(end) -> None:
+    """They change the means of sixteen cycles little."""
+    record, cycles = tops(np.linspace(0.0, 1.0, 600), 0.0, end, 1e-3)
+    assert noisy_end(record, cycles) == []
+
+
+def test_a_flat_end_without_cycles_is_reached_in_none_of_them() -> None:
+    time = np.arange(2000) * 1e-2
+    noise = 2e-3 * np.random.default_rng(1).normal(size=2000)
+    found = assess(st.Record(time=time, force=np.minimum(0.1 * time + noise, 1.5)))
+    assert not len(found.cycles)
+    assert "at exactly 1.5 N" in found.warnings[0]
 
 
 def test_equal_peaks_of_few_samples_are_not_cut_off() -> None:

@@ -549,3 +549,6 @@ def test_rises_that_are_steeper_at_first_and_then_as_stated_contradict_nothing(l
     found = _loading_rate(first, np.full(3, late), 1.0, 0.0, 0.0)
     assert found.agrees is agrees
     assert (found.at_least < 1.0) is agrees
+    alike = np.array([0.98, 0.99, 1.0])  # no steeper than as stated: the late rate adds no error
+    errors = [_loading_rate(alike, each, 1.0, 0.0, 0.0).error for each in (alike, 0.95 * alike)]
+    assert errors[0] == errors[1]
