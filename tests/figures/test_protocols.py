@@ -28,7 +28,7 @@ def test_healing_is_points_and_their_line(ax):
     points, line = ax.lines
     assert points.get_ydata() == pytest.approx(gain)
     assert line.get_ydata() == pytest.approx([0.01, 0.05])
-    assert "0.02 per decade" in text(ax)
+    assert "0.0200 ± 0.0001 per decade" in text(ax)
 
 
 def test_velocity_steps_are_data_and_fit(ax):

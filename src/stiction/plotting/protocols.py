@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, BLUE, GREY, LINES, RED, style
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.protocols.healing import Healing
@@ -76,9 +76,7 @@ def plot_healing(found: Healing, ax: Axes | None = None) -> Axes:
         if np.isfinite(found.per_decade):
             holds = np.array([found.hold.min(), found.hold.max()])
             line = found.at_one_second + found.per_decade * np.log10(holds)
-            label = f"{found.per_decade:.3g} per decade"
-            if found.per_decade_error > 0.0:
-                label += rf" $\pm$ {found.per_decade_error:.1g}"
+            label = f"{with_error(found.per_decade, found.per_decade_error, '')} per decade"
             ax.plot(holds, line, color=BLUE, label=label)
         ax.set_xscale("log")
         ax.set_xlabel("hold time (s)")
@@ -135,9 +133,7 @@ def plot_load_dependence(found: LoadDependence, ax: Axes | None = None) -> Axes:
         ax = panel(ax, 2.4)
         ax.plot(found.load, found.force, "o", color=BLACK, markersize=3.0, label="each level")
         loads = np.array([0.0, found.load.max()])
-        label = f"slope {found.coefficient:.4g}"
-        if found.error > 0.0:
-            label += rf" $\pm$ {found.error:.1g}"
+        label = f"slope {with_error(found.coefficient, found.error, '')}"
         ax.plot(loads, found.adhesion + found.coefficient * loads, color=BLUE, label=label)
         ax.set_xlabel("normal load (N)")
         ax.set_ylabel("friction (N)")

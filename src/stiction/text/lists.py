@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from math import isnan
+from math import inf, isnan
+
+from stiction.text.units import first_decimal
 
 LISTED = 3  # texts that a sentence lists
+DECIMALS = 4  # of a coefficient, at most
 
 
 def in_list(texts: Sequence[str]) -> str:
@@ -21,6 +24,24 @@ def in_list(texts: Sequence[str]) -> str:
 def number_text(value: float, spec: str) -> str:
     """Return a number as text, formatted so; "none" if it is NaN."""
     return "none" if isnan(value) else format(value, spec)
+
+
+def coefficient_texts(value: float, error: float, sign: str = "") -> tuple[str, str]:
+    """Return a coefficient to the first digit of its standard error, and that error as text.
+
+    Each has four decimals at most: of an error that these do not show, only that is said.
+
+    >>> coefficient_texts(0.01693, 0.0021), coefficient_texts(0.01693, 6e-7)
+    (('0.017', '0.002'), ('0.0169', '< 0.0001'))
+    >>> coefficient_texts(0.01693, float("nan"), "+"), coefficient_texts(-0.004, 0.0)
+    (('+0.0169', 'none'), ('-0.0040', '0'))
+    """
+    places = DECIMALS
+    if 0.0 < error < inf:
+        places = min(max(first_decimal(error), 0), DECIMALS)
+    least = 0.1**DECIMALS
+    off = f"< {least:.{DECIMALS}f}" if 0.0 < error < 0.5 * least else number_text(error, ".1g")
+    return number_text(value, f"{sign}.{places}f"), off
 
 
 def say_left_out(faults: Iterable[tuple[str, str]]) -> tuple[str, ...]:

@@ -368,8 +368,13 @@ def in_words(value: float, unit: str, digits: int = DIGITS) -> str:
         return "∞" if value > 0.0 else "-∞"
     if unit == "m" and 0.0 < abs(value) < MEASURABLE:
         return "< 1 pm"
+    return _plainly(value, unit, f".{digits}g", digits)
+
+
+def _plainly(value: float, unit: str, form: str, digits: int) -> str:
+    """Return a finite value in a suitable unit, in so many digits of a form, without a power."""
     size, name = suited_unit(value, unit, digits)
-    shown = f"{value / size:.{digits}g}"
+    shown = format(value / size, form).rstrip(".")
     if "e+" in shown and abs(float(shown)) < LARGE:
         shown = f"{float(shown):.0f}"
     plain = re.sub(r"e([+-])0*", lambda power: f"e{power[1].strip('+')}", shown)
@@ -439,20 +444,33 @@ def with_error(value: float, error: float, unit: str) -> str:
     return f"{f'({both}){power}' if power else both} {name}".rstrip()
 
 
+def in_digits(value: float, unit: str, digits: int) -> str:
+    """Return a value in words, all of whose digits are known: its last zeros, too.
+
+    Examples
+    --------
+    >>> in_digits(24.04, "s", 3), in_digits(0.1002, "", 2), in_digits(0.14, "N", 3)
+    ('24.0 s', '0.10', '140 mN')
+    """
+    said = in_words(value, unit, digits)
+    known = isfinite(value) and value != 0.0 and not said.startswith("<")
+    return _plainly(value, unit, f"#.{digits}g", digits) if known else said
+
+
 def to_error(value: float, error: float, unit: str) -> str:
     """Return a value to the first digit of its standard error, in no more digits than others.
 
     Examples
     --------
     >>> to_error(24.04, 0.21, "s"), to_error(0.13982, 1.4e-3, "N"), to_error(0.13982, 1e-9, "N")
-    ('24 s', '140 mN', '139.8 mN')
+    ('24.0 s', '140 mN', '139.8 mN')
     >>> to_error(3.0, 20.0, "N"), to_error(0.0, 0.1, "N"), to_error(1.5, float("nan"), "N")
     ('3 N', '0 N', '1.5 N')
     """
     if not 0.0 < error < inf or not isfinite(value) or value == 0.0:
         return in_words(value, unit)
     digits = first_decimal(error) + floor(log10(abs(value))) + 1
-    return in_words(value, unit, min(max(digits, 1), DIGITS))
+    return in_digits(value, unit, min(max(digits, 1), DIGITS))
 
 
 def _scale(largest: float, unit: str) -> tuple[float, str, str]:

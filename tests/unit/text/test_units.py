@@ -12,7 +12,9 @@ from stiction.text.units import (
     VELOCITY,
     Kind,
     PydanticCustomError,
+    in_digits,
     in_words,
+    to_error,
     to_si,
     with_error,
 )
@@ -241,6 +243,18 @@ def test_less_than_the_whole_is_not_100_percent(share, text):
 )  # fmt: skip
 def test_an_error_has_the_unit_of_its_value(value, error, unit, text):
     assert with_error(value, error, unit) == text
+
+
+def test_zeros_that_are_known_are_written():
+    """A period of 24.0 s was "24 s", a spread of 0.10 "0.1": half of the digits of the others."""
+    assert to_error(24.0, 0.3, "s") == "24.0 s"
+    assert to_error(1.0998e-9, 6e-13, "N") == "1.100 nN"
+    assert to_error(5e6, 4e5, "Hz") == "5.0 MHz"
+    assert to_error(24.0, 30.0, "s") == "20 s"
+    assert in_digits(0.1, "", 2) == "0.10"
+    assert in_digits(0.0, "N", 2) == "0 N"
+    assert in_digits(np.nan, "N", 2) == "none"
+    assert in_digits(1e-14, "m", 2) == "< 1 pm"
 
 
 def test_a_power_of_ten_has_no_zeros_and_tonnes_no_megagrams():

@@ -7,7 +7,7 @@ from typing import Any
 
 from stiction.arrays import xr
 from stiction.text.quantity_text import percent
-from stiction.text.units import in_words, to_error
+from stiction.text.units import in_digits, to_error
 
 SHOWN = 8  # cycles in the terminal; tables that are exported hold all
 SLIGHT = 1e-3  # of a value: an error that is less is not worth a word
@@ -20,7 +20,7 @@ def with_spread(spread: float, mean: float, unit: str) -> str:
         return ""
     if spread <= ALIKE * abs(mean):
         return f"< {percent(ALIKE)}"
-    return in_words(spread, unit, 2)
+    return in_digits(spread, unit, 2)
 
 
 def mean_in_words(summary: xr.Dataset, quantity: str) -> str:

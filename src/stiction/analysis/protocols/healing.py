@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from dataclasses import dataclass
-from math import inf, isnan, nan
+from math import isnan, nan
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,12 +23,10 @@ from stiction.analysis.signals.straight_line import StraightLine, line_of_few
 from stiction.arrays import Floats
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
-from stiction.text.lists import in_list, number_text, say_left_out
+from stiction.text.lists import coefficient_texts, in_list, say_left_out
 from stiction.text.sections import Section, SectionReport, Table
-from stiction.text.units import first_decimal, in_words, with_error
+from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
-
-DECIMALS = 4  # of a coefficient, at most
 
 
 @dataclass(frozen=True)
@@ -86,9 +84,9 @@ class Healing(SectionReport):
                 in_words(t, "s"),
                 f"{before:.4f}",
                 f"{low:.4f}",
-                f"{'' if sure else '> '}{peak:.{decimals(error)}f}",
-                f"{'' if sure else '> '}{peak - before:.{decimals(error)}f}",
-                number_text(error, ".1g"),
+                f"{'' if sure else '> '}{coefficient_texts(peak, error)[0]}",
+                f"{'' if sure else '> '}{coefficient_texts(peak - before, error)[0]}",
+                coefficient_texts(peak, error)[1],
             )
             for t, before, low, peak, error, sure in zip(
                 self.hold, self.steady, self.relaxed, self.peak, errors, self.resolved, strict=True
@@ -114,17 +112,6 @@ class Healing(SectionReport):
             return [zero, *said]
         its = with_error(self.per_decade, error, "") if error > 0.0 else f"{self.per_decade:.3g}"
         return [f"Friction heals by {its} per decade of hold time.", *said]
-
-
-def decimals(error: float) -> int:
-    """Return how many decimals a coefficient has with this error: to its first digit, or four.
-
-    >>> [decimals(error) for error in (0.0021, 0.03, 30.0, 2e-6, 0.0, nan, inf)]
-    [3, 2, 0, 4, 4, 4, 4]
-    """
-    if not 0.0 < error < inf:
-        return DECIMALS
-    return min(max(first_decimal(error), 0), DECIMALS)
 
 
 def healing(source: Trajectory | Record, program: DriveProgram | None = None) -> Healing:

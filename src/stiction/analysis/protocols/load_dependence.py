@@ -57,9 +57,8 @@ class LoadDependence(SectionReport):
     @property
     def section(self) -> Section:
         """The line in words, and the levels as a table."""
-        error = f" ± {self.error:.1g}" if self.error > 0.0 else ""
         said = (
-            f"Friction rises by {self.coefficient:.4g}{error} of the load, from "
+            f"Friction rises by {with_error(self.coefficient, self.error, '')} of the load, from "
             f"{with_error(self.adhesion, self.adhesion_error, 'N')} at zero load."
         )
         rows = [

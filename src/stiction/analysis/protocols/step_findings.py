@@ -14,9 +14,9 @@ from stiction.analysis.protocols.inversion.spring_slider import Law
 from stiction.analysis.protocols.steady_levels import TravelTrend
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import Floats
-from stiction.text.lists import in_list, number_text
+from stiction.text.lists import coefficient_texts, in_list
 from stiction.text.sections import Section, SectionReport, Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, to_error, with_error
 
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0
@@ -145,7 +145,7 @@ class VelocitySteps(SectionReport):
         steps = "one step" if len(known) == 1 else f"{len(known)} steps"
         few = f" of {steps}: after the others it has not settled"
         where = few if len(known) < len(self.steps) else ""
-        value = f"{mean:+.4f} ± {number_text(error, '.1g')}"
+        value = f"{'+' if mean > 0.0 else ''}{with_error(mean, error, '')}"
         return f"Steady friction {way}: a - b = {value} on average{where}."
 
     def _differing(self) -> list[str]:
@@ -164,7 +164,7 @@ class VelocitySteps(SectionReport):
         if not TravelTrend(self.trend, self.trend_error).stands_out:
             return []
         way = "rises" if self.trend > 0.0 else "falls"
-        by = f"{1e-3 * abs(self.trend):.2g} per mm of travel, ± {1e-3 * self.trend_error:.1g}"
+        by = f"{with_error(1e-3 * abs(self.trend), 1e-3 * self.trend_error, '')} per mm of travel"
         return [f"Friction {way} by {by}: the steps are freed of this trend."]
 
 
@@ -208,13 +208,10 @@ def _row(step: VelocityStep) -> tuple[str, ...]:
     return (
         in_words(step.before, "m/s"),
         in_words(step.after, "m/s"),
-        number_text(step.a_minus_b, "+.4f"),
-        number_text(step.a_minus_b_error, ".1g"),
+        *coefficient_texts(step.a_minus_b, step.a_minus_b_error, "+"),
         "none" if isnan(step.D_c) else step.law,
-        number_text(step.a, ".4f"),
-        number_text(step.a_error, ".1g"),
-        number_text(step.b, ".4f"),
-        number_text(step.b_error, ".1g"),
-        in_words(step.D_c, "m"),
+        *coefficient_texts(step.a, step.a_error),
+        *coefficient_texts(step.b, step.b_error),
+        to_error(step.D_c, step.D_c_error, "m"),
         in_words(step.D_c_error, "m", 1),
     )

@@ -149,10 +149,13 @@ def test_errors_of_peaks_know_noise_that_is_filtered():
 
 
 def test_healing_is_printed_to_the_first_digit_of_its_error():
-    """A gain of "0.0412" had an error of 0.003, and healing of "0.0123" one of 0.002."""
+    """A gain of "0.0412" had an error of 0.003, and healing of "0.0123" one of 0.002.
+
+    A gain of "0.0169" had an error of "6e-07".
+    """
     hold, steady = np.array([1.0, 10.0]), np.array([0.6, 0.6])
     peak, errors = np.array([0.62345, 0.64678]), np.array([0.003, 2e-6])
     found = Healing(hold, steady, peak, steady, 0.02333, 0.002, 0.02, peak_error=errors)
     assert "Friction heals by 0.023 ± 0.002 per decade of hold time." in str(found)
     rows = [row[3:] for row in found.section.table.rows]
-    assert rows == [("0.623", "0.023", "0.003"), ("0.6468", "0.0468", "2e-06")]
+    assert rows == [("0.623", "0.023", "0.003"), ("0.6468", "0.0468", "< 0.0001")]

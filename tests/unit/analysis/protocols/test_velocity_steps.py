@@ -25,6 +25,7 @@ from stiction.analysis.protocols.step_findings import (
     common_value,
 )
 from stiction.presets.preset import on_a_line
+from stiction.text.units import with_error
 
 A, B, D, W, MU = 0.008, 0.012, 5e-6, 12.5e3, 0.6
 SOFT = 4.0 * (B - A) * W / D
@@ -32,6 +33,19 @@ LAWS = ("ageing", "slip", "perrin")
 
 
 ONE = VelocityStep(0.0, 1e-6, 1e-5, MU, MU, MU, *[np.nan] * 5, *[np.zeros(0)] * 3)
+
+
+def test_steps_are_printed_to_the_first_digit_of_their_errors():
+    """a - b was "-0.0040 ± none" of a run; a was "0.0082" with an error of 0.002, b of "6e-07"."""
+    errors = {"a_error": 0.002, "b_error": 6e-7, "a_minus_b_error": 0.001, "D_c_error": 4e-7}
+    step = replace(ONE, a=0.0082, b=0.0123, a_minus_b=-0.0041, D_c=5.04e-6, **errors)
+    found = VelocitySteps((step,), np.nan)
+    (row,) = found.section.table.rows
+    assert row[2:4] == ("-0.004", "0.001")
+    assert row[5:] == ("0.008", "0.002", "0.0123", "< 0.0001", "5.0 µm", "400 nm")
+    assert "a - b = -0.004 ± 0.001 on average" in str(found)
+    exact = VelocitySteps((replace(ONE, a_minus_b=-0.0041),), np.nan)
+    assert "a - b = -0.0041 on average" in str(exact)
 
 
 def growth(law, x):
@@ -507,7 +521,8 @@ def test_a_trend_over_the_travel_is_no_dependence_on_speed(slope):
     assert found.trend == pytest.approx(slope, abs=3.0 * found.trend_error)
     assert found.trend_error < 0.5
     way = "rises" if slope > 0.0 else "falls"
-    assert f"Friction {way} by {1e-3 * abs(found.trend):.2g} per mm of travel" in str(found)
+    by = with_error(1e-3 * abs(found.trend), 1e-3 * found.trend_error, "")
+    assert f"Friction {way} by {by} per mm of travel" in str(found)
     assert len(found.steps) == 3
     for each in found.steps:
         assert each.a_minus_b == pytest.approx(A - B, abs=3.0 * each.a_minus_b_error)
