@@ -385,7 +385,7 @@ def advice(value: float, unit: str) -> str:
     """Return a least value that is advised, in two digits: rounded up, so that it suffices.
 
     >>> advice(5033.0, "Hz"), advice(0.0624, "s"), advice(0.1 + 0.2, "Hz")
-    ('5.1 kHz', '63 ms', '0.3 Hz')
+    ('5.1 kHz', '63 ms', '300 mHz')
     """
     size = 10.0 ** (floor(log10(value)) - 1)
     return in_words(ceil(value / size * (1.0 - ROUNDING)) * size, unit)
