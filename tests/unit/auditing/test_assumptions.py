@@ -101,3 +101,12 @@ def test_every_number_of_eqs_7_and_10_is_marked_where_creep_ends_early():
     assert rows["creep before the first slip"].startswith("~ 39.8")
     assert rows["time until the first slip"].startswith("~ ")
     assert not rows["first stick (true rest)"].startswith("~ ")
+
+
+def test_what_theory_does_not_give_has_no_mark():
+    """A period that Eqs. (7) and (10) do not give was "~ none"."""
+    steep = PAPER.replace(friction=st.ExponentialWeakening(0.2, 0.15, "10 um/s"), phi="30 deg")
+    rows = {row[0]: row[1] for row in numbers(st.audit(steep)).rows}
+    assert "none" in rows.values()
+    assert "~ none" not in rows.values()
+    assert any(shown.startswith("~ ") for shown in rows.values())

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import nan
+from math import isnan, nan
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,13 +10,14 @@ import numpy as np
 from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.analysis.motion.friction import friction_of
 from stiction.analysis.record import cell_axis
+from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.assumptions import creep_suppositions, suppositions
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip
 from stiction.friction import has_state
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.text.sections import Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, to_error
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
@@ -44,35 +45,41 @@ def numbers(found: Audit) -> Table:
     rough = bool(suppositions(s, p))
     creep_rough = rough or bool(creep_suppositions(s, p))
     creep = "creep before the first slip", creep_distance, creep_before_slip(seen), "m", creep_rough
-    held = [("static friction", p.F_static, None, "N", False)]
-    rows = [
-        ("friction F_0 at vanishing slip", p.F_0, None, "N", False),
+    held = [("static friction", p.F_static, "", "N", False)]
+    rows: list[tuple[str, float, float | str, str, bool]] = [
+        ("friction F_0 at vanishing slip", p.F_0, "", "N", False),
         *(held if p.F_static > p.F_0 * (1.0 + 1e-9) else []),
-        ("natural frequency along x", p.f_x, None, "Hz", False),
-        ("natural frequency along y", p.f_y, None, "Hz", False),
-        ("damping number A, Eq. (10)", p.A, None, "", rough),
-        ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, None, "", rough),
-        ("θ at which ζ = 1: slow slip turns fast", theta_c, None, "rad", rough),
+        ("natural frequency along x", p.f_x, "", "Hz", False),
+        ("natural frequency along y", p.f_y, "", "Hz", False),
+        ("damping number A, Eq. (10)", p.A, "", "", rough),
+        ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, "", "", rough),
+        ("θ at which ζ = 1: slow slip turns fast", theta_c, "", "rad", rough),
         ("first stick (true rest)", nan if has_state(s.law) else p.first_stick, first, "s", False),
         ("time until the first slip", p.load_up if p.slips else nan, seen.slip_time, "s", rough),
-        ("creep velocity at first, V sin² φ", p.creep_at_start, None, "m/s", rough),
-        ("creep velocity when it slips, Eq. (7)", creep_at_slip, None, "m/s", rough),
+        ("creep velocity at first, V sin² φ", p.creep_at_start, "", "m/s", rough),
+        ("creep velocity when it slips, Eq. (7)", creep_at_slip, "", "m/s", rough),
         creep,
         ("apparent static friction, largest force", p.mu_static, peak(seen), "", rough),
         ("apparent kinetic friction, mean", p.mu_kinetic, kinetic(seen), "", rough),
-        ("force drop, mean", p.drop, seen.mean("drop"), "N", rough),
-        ("period, mean", p.period, seen.mean("period"), "s", rough),
+        ("force drop, mean", p.drop, mean_of(seen, "drop", "N"), "N", rough),
+        ("period, mean", p.period, mean_of(seen, "period", "s"), "s", rough),
         ("apparent stiffness, mean", apparent_stiffness(s), loading(seen), "N/m", rough),
     ]
     lines = [
         (
             name,
-            ("~ " if guide else "") + in_words(theory, unit),
-            "" if shown is None else in_words(shown, unit),
+            ("~ " if guide and not isnan(theory) else "") + in_words(theory, unit),
+            shown if isinstance(shown, str) else in_words(shown, unit),
         )
         for name, theory, shown, unit, guide in rows
     ]
     return Table(("quantity", "theory", "simulated"), lines)
+
+
+def mean_of(seen: SimulatedTest, quantity: str, unit: str) -> str:
+    """Return the mean of a quantity over cycles, to the first digit of its standard error."""
+    values = seen.table[quantity]
+    return to_error(*statistics(values)[:2], unit) if len(values) else in_words(nan, unit)
 
 
 def kinetic(seen: SimulatedTest) -> float:

@@ -108,7 +108,7 @@ def _during_creep(found: Audit) -> Iterator[str]:
     )
     if seen.coarse:
         yield (
-            "This test lasts so long that it was simulated with "
+            "This test lasts so long that it was sampled at "
             f"{in_words(seen.record.sample_rate, 'Hz')} only: a period of the oscillation has "
             f"{in_words(seen.record.sample_rate / swings, '', 2)} samples."
         )

@@ -26,7 +26,7 @@ from stiction.auditing.simulated_test import (
 from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
 from stiction.linear_stability.linear import STABLE, UNSTABLE
-from stiction.text.units import in_words, with_error
+from stiction.text.units import in_words, to_error, with_error
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
@@ -136,7 +136,8 @@ def describe_motion(seen: SimulatedTest) -> str:
 def mean_in_words(values: np.ndarray, unit: str) -> str:
     """Return a mean over cycles, with its standard error where they differ."""
     mean, error, _ = statistics(values)
-    return with_error(mean, error if error > SHOWN * mean else 0.0, unit)
+    say = with_error if error > SHOWN * mean else to_error
+    return say(mean, error, unit)
 
 
 def stability(found: Audit) -> str:

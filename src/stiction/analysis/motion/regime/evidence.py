@@ -133,7 +133,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
         "it falls quickly {} times, and hardly ever rises so quickly, as where a mass slips",
         _whole,
     ),
-    "quick_fall": ("by {} in the median", _force),
+    "quick_fall": ("the median of these falls is {}", _force),
     "gaps": ("{} of the time lies in gaps; without them it shows no such motion", percent),
     "few_periods": (
         "it may vibrate at about {}, or scatter: for so slow a vibration the record is too short",
@@ -208,7 +208,8 @@ class Regime(NamedTuple):
         if not self.loads and "stick_share" in self.evidence:
             return f"stuck for {percent(self.evidence['stick_share'])} of a cycle"
         if SLOWER in self.evidence:
-            return f"slower than the drive for {percent(self.evidence[SLOWER])} of a cycle"
+            share = percent(self.evidence[SLOWER])
+            return f"with the mass slower than the drive for {share} of a cycle"
         slow = [self.evidence[name] for name in SLOW_SHARES if name in self.evidence]
         return f"at rest or in creep for {percent(max(slow))} of a cycle" if slow else ""
 
