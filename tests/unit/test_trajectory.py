@@ -384,8 +384,11 @@ def test_a_largest_force_that_samples_cannot_show_is_a_lower_bound():
 @pytest.mark.parametrize(
     ("changes", "remedy"),
     [
-        ({}, "after some 2 s; set a longer duration"),
-        ({"friction": STIFF}, "after some 1.995 s; set a longer duration"),
+        ({}, "about 2 s to load a spring to the 2 N that friction can hold; set a longer duration"),
+        (
+            {"friction": STIFF},
+            "to the 1.995 N that friction can hold; set a longer duration",
+        ),
         ({"drive": st.ConstantVelocity(0.0)}, "the drive is at rest; give it a velocity"),
         ({"drive": TO_AND_FRO}, "held all the time; run it longer"),
     ],

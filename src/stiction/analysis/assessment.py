@@ -132,7 +132,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         missing |= {name: reason for name, reason in reasons.items() if reason}
     for name in ("static", "kinetic"):
         if getattr(whole, name) is not None and getattr(friction, name) is None:
-            missing[f"mu_{name}"] = friction.missing[name]
+            missing[f"mu_{name}"] = cut
     given = cycles.blank(missing)
     if why:
         missing |= dict.fromkeys(("creep", "misalignment"), f"not determined: {why}")

@@ -100,8 +100,8 @@ def oscillation_spectrogram(run: Trajectory) -> xr.DataArray:
     span, rate = float(np.ptp(run.samples["time"])), even_rate(run)
     if rate < 2.0 * HIGHEST * natural or span < width:
         raise ResultError(
-            f"the transverse oscillation has {in_words(natural, 'Hz')}: sample the run at "
-            f"{advice(5.0 * natural, 'Hz')} or more and for {advice(width, 's')} at least; it "
+            f"the transverse oscillation is at {in_words(natural, 'Hz')}; sample the run at "
+            f"{advice(5.0 * natural, 'Hz')} or more, and for at least {advice(width, 's')}; it "
             f"is sampled at {in_words(rate, 'Hz')} for {in_words(span, 's')}"
         )
     return rate_spectrogram(run, "y", width=width, steps=STEPS)

@@ -41,8 +41,8 @@ def longer(slider: Slider) -> str:
     """Return the remedy for a run that is too short for slip."""
     if not slider.drive_speed > 0.0:
         return "run it longer"
-    most, load = in_words(slider.F_0, "N"), in_words(slider.loading_time, "s")
+    most, load = in_words(slider.F_0, "N"), in_words(slider.loading_time, "s", 2)
     return (
-        f"a spring is loaded to the {most} that friction can hold after some {load}; "
+        f"it takes about {load} to load a spring to the {most} that friction can hold; "
         "set a longer duration"
     )

@@ -34,7 +34,7 @@ from stiction.result.rest import longer
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import advice, in_words, times, with_error
+from stiction.text.units import advice, in_words, times, to_error, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -199,7 +199,9 @@ def _with_other_sign(found: Analysis) -> str:
 def _describe_course(found: Analysis) -> str:
     """Describe a motion by the course of its force."""
     slides = found.friction.kinetic
-    at = f", at a force of {in_words(slides.force, 'N')}" if slides is not None else ""
+    at = (
+        f", at a force of {to_error(slides.force, slides.error, 'N')}" if slides is not None else ""
+    )
     plain = {
         STEADY: f"{_slides(found.regime.evidence, at)}{_besides(found)}",
         SETTLING: f"{_settles(found, at)}{_besides(found)}",
@@ -353,7 +355,7 @@ def _each_time(found: Analysis) -> str:
     if drop.std() < ALIKE * drop.mean():
         return " each time"
     low, high = (in_words(float(end), "N") for end in (drop.min(), drop.max()))
-    return f" on average, {low} at least and {high} at most"
+    return f" on average, at least {low} and at most {high}"
 
 
 def _stick_share(found: Analysis) -> str:

@@ -68,7 +68,7 @@ def row_faults(table: Rows) -> Iterator[tuple[str, str]]:
 def _count(table: Rows) -> Iterator[tuple[str, str]]:
     count = len(table.time)
     if count < FEWEST_ROWS:
-        yield "time", f"has {count} rows; a smooth curve needs {FEWEST_ROWS} at least"
+        yield "time", f"has {count} rows; a smooth curve needs at least {FEWEST_ROWS}"
     if count > MOST_ROWS:
         yield "time", f"has {count:,} rows, more than {MOST_ROWS:,}; thin them, or cut the record"
 

@@ -46,7 +46,7 @@ def test_every_kind_of_fault_at_once():
 @pytest.mark.parametrize(
     ("time", "velocity", "column", "words"),
     [
-        (T[:3], V[:3], "time", "has 3 rows; a smooth curve needs 4"),
+        (T[:3], V[:3], "time", "has 3 rows; a smooth curve needs at least 4"),
         (T[:50], V, "velocity", "has 101 rows and time has 50"),
         (T[::-1], V, "time", "row 2, 3, 4, 5 and 96 more"),
         (np.delete(T, range(40, 60)), np.delete(V, range(40, 60)), "time", "row 41: a gap of"),

@@ -61,8 +61,8 @@ def doubt_clipping(ends: Sequence[FlatEnd]) -> Iterator[str]:
     for name, value, longest, within in ends:
         near = f"within {in_words(within, 'N', 2)} of" if within else "at exactly"
         yield (
-            f"The force stays {near} {in_words(value, 'N')} for up to {longest} samples, its "
-            f"{name} value: if that is the end of the load cell's range, {ENDS[name]} are cut off, "
+            f"The force stays {near} {in_words(value, 'N')}, its {name} value, for up to {longest} "
+            f"samples: if that is the end of the load cell's range, {ENDS[name]} are cut off, "
             f"{SHOWN[name]}."
         )
 

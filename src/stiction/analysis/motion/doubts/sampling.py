@@ -156,7 +156,7 @@ def doubt_slips_between_samples(record: Record, cycles: CycleTable) -> Iterator[
     least = mean_speeds(record.time, record.position)
     yield (
         f"In {unseen} of {len(cycles)} slips the largest slip speed lies between two "
-        f"samples, and is {in_words(float(least.max()), 'm/s')} at least: run a slip by itself, "
+        f"samples, and is at least {in_words(float(least.max()), 'm/s')}: run a slip by itself, "
         "from initial=run.state(time) at a time before it, with more samples a second."
     )
 
