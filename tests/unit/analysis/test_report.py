@@ -381,3 +381,16 @@ def test_a_mean_has_the_digits_of_its_standard_error() -> None:
         row = {"mean": 2.0351, "standard_deviation": 0.5, "number": count, "unit": "s"}
         columns = {name: ("quantity", [value]) for name, value in row.items()}
         assert mean_in_words(xr.Dataset(columns, {"quantity": ["period"]}), "period") == words
+
+
+def test_the_figure_of_creep_names_its_end_as_the_text_does() -> None:
+    """Of a mass that comes to slide without a slip it showed the "time to slip"."""
+    slider = st.presets.nakano_popov_2020()
+    steady = slider.replace(friction=st.ExponentialWeakening(0.15, 0.20, "10 mm/s"), phi="2 deg")
+    for rig, text, label in (
+        (steady, "before the spring is loaded it", "time until the spring is loaded (s)"),
+        (slider, "before slip it", "time to slip (s)"),
+    ):
+        found = st.analyse(st.simulate(rig, "5 s", sample_rate="1 kHz"))
+        assert text in " ".join(str(found).split())
+        assert figures(found)["creep"].axes[0].get_xlabel() == label

@@ -72,7 +72,7 @@ def section(found: Analysis) -> Section:
     first, last = _creeping(far, V, lasts, rests), _creeping(near, V, lasts, rests)
     number = counts[0] if found.curves is None else found.curves.sizes["phase"]
     several = f" {_phases(*map(int, (*counts[[usual, 0]], number)))}" if counts[0] > 1 else ""
-    lines = [f"{long} before {_end(found)} {first}; in the last {short} {last}.{several}"]
+    lines = [f"{long} before {end_of_creep(found)} {first}; in the last {short} {last}.{several}"]
     if first == last == rests and found.regime.kind == STUCK:
         return Section("Creep", [f"None: {rests} from beginning to end."])
     if first == last == UNKNOWN:
@@ -152,7 +152,7 @@ def _true(found: Analysis) -> str:
     return f" (the run has {degrees(abs(found.source.slider.misalignment)):.3g} deg)"
 
 
-def _end(found: Analysis) -> str:
+def end_of_creep(found: Analysis) -> str:
     """Return the event that ends the stick phases, in words."""
     last = np.inf if found.curves is None else float(found.curves["slip_time"][-1])
     if found.regime.kind == STUCK or (found.curves is not None and last >= found.record.time[-1]):

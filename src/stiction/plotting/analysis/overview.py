@@ -13,6 +13,7 @@ from stiction.analysis.creep.curve import mean_creep
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.misalignment import REST_SPEED, STRETCH, implied_velocity
 from stiction.analysis.oscillation import stands_out
+from stiction.analysis.parts.creep import end_of_creep
 from stiction.analysis.parts.procedure import name_of
 from stiction.analysis.report import Analysis
 from stiction.arrays import Floats
@@ -47,6 +48,8 @@ def figures(found: Analysis) -> dict[str, Figure]:
     if found.curves is not None and found.creep is not None and V is not None and moves(found, V):
         lines = _creep_lines(found, V)
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
+        if (end := end_of_creep(found)) != "slip":
+            drawn["creep"].axes[0].set_xlabel(f"time until {end} (s)")
     its = found.oscillation
     if isinstance(found.source, Trajectory) and stands_out(its):
         drawn["oscillation"] = figure_of(plot_oscillation, found.source, its)
