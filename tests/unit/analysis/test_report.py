@@ -377,7 +377,7 @@ def test_a_run_that_is_too_short_for_a_slip_is_told_how_long_would_do() -> None:
 
 def test_a_mean_has_the_digits_of_its_standard_error() -> None:
     """Which is the standard deviation, 0.5 s, over the root of the number of cycles."""
-    for count, words in ((100, "2.04 s"), (1, "2 s"), (10_000, "2.035 s")):
+    for count, words in ((100, "2.04 s"), (1, "2.0 s"), (10_000, "2.035 s")):
         row = {"mean": 2.0351, "standard_deviation": 0.5, "number": count, "unit": "s"}
         columns = {name: ("quantity", [value]) for name, value in row.items()}
         assert mean_in_words(xr.Dataset(columns, {"quantity": ["period"]}), "period") == words
