@@ -56,11 +56,18 @@ def test_a_run_that_broke_off_later_has_no_early_end_in_the_window():
     assert any(text.get_text().startswith("the run used up its") for text in red)
 
 
+def test_of_runs_that_are_compared_the_one_without_the_window_is_named(run):
+    early = st.simulate(PAPER, "20 ms", sample_rate="10 kHz", max_steps=10)
+    late = ("15 ms", "20 ms")
+    with pytest.raises(st.StictionError, match=r"^broken off: window: 0.+ has 0 of the"):
+        st.plotting.plot_comparison({"whole": run, "broken off": early}, window=late)
+
+
 @pytest.mark.parametrize(
     ("window", "message"),
     [
         (("5", "10 ms"), "^window: '5' has no unit; write for example"),
-        (("10 ms", "5 ms"), "0.01 s to 0.005 s is not a part of the run, 0 s to 0.02 s"),
+        (("10 ms", "5 ms"), "window must end after it starts, is 0.01 s to 0.005 s"),
         (("5 ms",), r"window must be a start and an end, is \('5 ms',\); write for example"),
         (0.005, "window must be a start and an end, is 0.005"),
         (("5.01 ms", "5.09 ms"), "window: 0.00501 s to 0.00509 s has 0 of the run's samples"),

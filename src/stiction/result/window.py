@@ -30,7 +30,9 @@ def window_of(description: Description, window: Sequence[Quantity] | None) -> tu
             f"window must be a start and an end, is {echo(window)}; write for example (1, 2)"
         ) from None
     start, end = seconds(begins, "window"), seconds(ends, "window")
-    if not first <= start < end <= last * (1 + 1e-12):
+    if start >= end:
+        raise ResultError(f"window must end after it starts, is {start:g} s to {end:g} s")
+    if start < first or end > last * (1 + 1e-12):
         raise ResultError(
             f"{start:g} s to {end:g} s is not a part of the run, {first:g} s to {last:g} s"
         )

@@ -32,7 +32,7 @@ from stiction.plotting.run.curves import (
     force_symbol,
     mark_early_end,
 )
-from stiction.plotting.run.excerpt import excerpt
+from stiction.plotting.run.excerpt import excerpts
 from stiction.plotting.run.lines import EDGE
 from stiction.plotting.run.time_series import (
     fastest_drive,
@@ -96,7 +96,7 @@ def plot_comparison(
     if not runs:
         raise StictionError("there is no run to compare; give some, as `st.compare` returns them")
     with style():
-        curves = curves_of({label: excerpt(run, window) for label, run in runs.items()})
+        curves = curves_of(excerpts(runs, window))
         legend = [legend_text(curve) for curve in curves]
         symbol = force_symbol(curves[0].run.slider)
         panels = dict(_panels(curves, legend) if axes is None else axes)

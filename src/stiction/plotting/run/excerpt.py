@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -60,3 +60,22 @@ def excerpt(run: Trajectory, window: Sequence[Quantity] | None) -> Trajectory:
         stick_intervals=run.stick_intervals[overlap].clip(start, end),
         status=run.status if times[within][-1] == times[-1] else Status.COMPLETED,
     )
+
+
+def excerpts(
+    runs: Mapping[str, Trajectory], window: Sequence[Quantity] | None
+) -> dict[str, Trajectory]:
+    """Return the `excerpt` of each run; the error names the run that has none.
+
+    Raises
+    ------
+    ResultError
+        If one of them ended before, or has fewer than two samples there.
+    """
+    found = {}
+    for label, run in runs.items():
+        try:
+            found[label] = excerpt(run, window)
+        except ResultError as error:
+            raise ResultError(f"{label}: {error}") from None
+    return found
