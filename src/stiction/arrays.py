@@ -1,4 +1,4 @@
-"""Arrays of numbers, as annotations name them, two constants, and xarray, imported when used."""
+"""Arrays of numbers, as annotations name them, what is computed of them once, and xarray, late."""
 
 from __future__ import annotations
 
