@@ -13,13 +13,8 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import cut_off, noisy_end, without_cut_off
 from stiction.analysis.motion.doubts.creep_distance import unseen_creep
-from stiction.analysis.motion.doubts.sampling import (
-    doubt_ringing,
-    ringing,
-    with_ringing,
-    with_smear,
-    with_supposed_filter,
-)
+from stiction.analysis.motion.doubts.load_cell import doubt_ringing, ringing, with_ringing
+from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
     turns_round,

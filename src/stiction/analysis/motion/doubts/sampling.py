@@ -9,7 +9,6 @@ import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.loading import CellSwings, swings_of_cell
 from stiction.analysis.motion.metadata.quantity import FEWEST_SAMPLES, StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import (
     BY_SLIPS,
@@ -41,7 +40,6 @@ BETWEEN = 0.5
 # Periods of the cut-off, after which a filter has forgotten; samples of each; times its cut-off,
 # from which on another filter does nothing beside it
 MEMORY, FINE, ALONE = 10.0, 40.0, 30.0
-
 ORDERS = (1, 2, 4)  # of a filter that is supposed: it draws a slip out, or swings after it
 
 
@@ -215,29 +213,6 @@ def _above_samples(record: Record, cycles: CycleTable) -> float:
     ends = np.searchsorted(record.time, [cycles["start"], cycles["trough_time"]])
     largest = np.maximum.reduceat(record.force, np.minimum(ends.T.ravel(), len(record) - 1))[::2]
     return max(float(np.median(cycles["peak"] - largest)), 0.0)
-
-
-def ringing(record: Record, cycles: CycleTable) -> CellSwings | None:
-    """Return what the swings of the load cell after each slip do to cycles, None without any."""
-    names = ("start", "start_force", "peak_time")
-    return swings_of_cell(record.time, record.force, *(cycles[name] for name in names))
-
-
-def doubt_ringing(its: CellSwings | None) -> Iterator[str]:
-    """Doubt troughs and drops where the load cell swings after each slip."""
-    if its is not None:
-        yield (
-            f"After each slip the force swings, as where the load cell rings: troughs are about "
-            f"{in_words(its.trough, 'N', 2)} too low, and drops as much too large. The errors of "
-            "friction and of the rate of loading allow for it."
-        )
-
-
-def with_ringing(friction: Friction, its: CellSwings | None) -> Friction:
-    """Return the friction with the errors of peaks and troughs where the load cell rings."""
-    if its is None:
-        return friction
-    return friction.with_errors(static=its.peak, kinetic=0.5 * max(its.trough, its.peak))
 
 
 def with_supposed_filter(
