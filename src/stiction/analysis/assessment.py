@@ -119,7 +119,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
     sticking, why = _sticking(record, cycles, regime, other, apart)
     missing = _meaningless(record, cycles, regime, stated, shown)
-    cut = cut_off(record, cycles, ends)
+    cut = cut_off(record, usual, ends)
     if cut and record.position is None:
         missing |= {name: cut for name in BY_DROP if name not in missing}
     if len(cycles):

@@ -383,11 +383,11 @@ def _with_noise(sensor: Sensor | None, values: Floats, name: str) -> Sensor:
 
 def _in_words(name: str, sensor: Sensor) -> str:
     """Return noise and quantisation of a channel in a sentence."""
-    levels = (
-        f"{most}{in_words(x, sensor.unit)}".replace("at most <", "<") if x else "none seen"
-        for x, most in ((sensor.noise, "at most "), (sensor.quantisation, ""))
+    noise, step = (
+        in_words(x, sensor.unit) if x else "none seen" for x in (sensor.noise, sensor.quantisation)
     )
-    return f"{CHANNELS[name].meaning}: noise {next(levels)}, quantisation {next(levels)}"
+    most = "at most " if sensor.noise and not noise.startswith("<") else ""
+    return f"{CHANNELS[name].meaning}: noise {most}{noise}, quantisation {step}"
 
 
 def _weigh(
