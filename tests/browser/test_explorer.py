@@ -6,6 +6,7 @@ import random
 import re
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from tests.explored import an_opened, serving
 from tests.waiting import PATIENCE, until
@@ -499,6 +500,27 @@ def test_the_point_of_the_map_is_moved_by_mouse_and_keyboard(page):
     page.tab.focus("#panel-a canvas[role=img]")
     page.done_after(lambda: page.tab.keyboard.press("ArrowRight"))
     assert float(phi.input_value().removesuffix(" deg")) > angle
+
+
+def test_the_limit_of_stability_lies_between_its_cells(modules):
+    """A straight limit is exact, whatever its slope; beside what is unknown it lies half-way."""
+    x, y = (np.arange(5) + 0.5) / 5, (np.arange(7)[:, None] + 0.5) / 7
+    steps = np.select([x < 0.4, x < 0.6], [1.0, np.nan], -1.0) + 0.0 * y
+    maps = [0.3 + 0.4 * y - x, steps, 2.0 + 0.0 * x * y, -2.0 + 0.0 * x * y]
+    values = json.dumps([each.ravel().tolist() for each in maps])
+    use = f"({{ signChange }}) => {values}.map((each) => signChange(each, 7, 5))"
+    found = modules.value(module("contour.js", use))
+    parts = [sum(area_of(each) for each in one["areas"]) for one in found]
+    assert parts == pytest.approx([0.5, 0.4, 1.0, 0.0])
+    across, up = np.array(found[0]["lines"]).reshape(-1, 2).T
+    inner = abs(up - 0.5) < 0.5 - 0.5 / 7  # to the edges, the values of their cells go on
+    assert across[inner] == pytest.approx(0.3 + 0.4 * up[inner], abs=1e-12)
+
+
+def area_of(polygon):
+    """Return the area of a polygon, whose corners go round it anticlockwise (C. F. Gauss)."""
+    x, y = np.transpose(polygon)
+    return 0.5 * float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
 
 
 def test_zooming_asks_for_the_window(page):

@@ -1,6 +1,7 @@
 // The views at the side: numbers, phase portrait, damping diagram, spectrogram, stability map, study.
 
 import { barAxis, cellAxis, linearAxis, logAxis, padded, power } from "./axis.js";
+import { signChange } from "./contour.js";
 import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, contextOf, curve, frame, line, offsets, symbols, text, widthOf } from "./drawing.js";
 import { element } from "./form.js";
 import { plain, quantity } from "./quantity.js";
@@ -203,14 +204,7 @@ class StabilityMap {
     if (data.stabilityError) return note(context, width, height, wrapped(data.stabilityError));
     if (!found) return note(context, width, height, "computing …");
     const { growth } = found.arrays, [rows, columns] = growth.shape;
-    for (let i = 0; i < rows; i++) {
-      for (let j = 0; j < columns; j++) {
-        const rate = growth[i * columns + j];
-        context.fillStyle = !(rate === rate) ? "#eee" : rate > 0 ? UNSTABLE : "#cfe3f0";
-        context.fillRect(box.left + (j * box.width) / columns, box.top + box.height * (1 - (i + 1) / rows), box.width / columns + 0.6, box.height / rows + 0.6);
-      }
-    }
-    this.limit(context, box, growth, rows, columns);
+    this.areas(context, box, growth, rows, columns);
     const xs = logAxis(...found.angles, "", 6, (value) => plain(value)), ys = logAxis(...found.speeds, "", 7);
     this.axes = { xs, ys };
     this.box = { ...box };
@@ -227,16 +221,23 @@ class StabilityMap {
     }
   }
 
-  // A line between the two areas, whose colours are of one lightness.
-  limit(context, box, growth, rows, columns) {
-    const grows = (i, j) => growth[i * columns + j] > 0, wide = box.width / columns, high = box.height / rows;
-    for (let i = 0; i < rows; i++) {
-      for (let j = 0; j < columns; j++) {
-        const x = box.left + j * wide, y = box.top + box.height - i * high;
-        if (j && grows(i, j) !== grows(i, j - 1)) line(context, [[x, y], [x, y - high]], SOFT, 1.5);
-        if (i && grows(i, j) !== grows(i - 1, j)) line(context, [[x, y], [x + wide, y]], SOFT, 1.5);
-      }
-    }
+  // Two areas, and a line between them, since their colours are of one lightness.
+  areas(context, box, growth, rows, columns) {
+    context.fillStyle = "#cfe3f0";
+    context.fillRect(box.left, box.top, box.width, box.height);
+    const wide = box.width / columns, high = box.height / rows;
+    context.fillStyle = "#eee";
+    growth.forEach((rate, k) => {
+      if (rate === rate) return;
+      context.fillRect(box.left + (k % columns) * wide, box.top + box.height - (Math.floor(k / columns) + 1) * high, wide + 0.6, high + 0.6);
+    });
+    const to = ([x, y]) => [box.left + x * box.width, box.top + (1 - y) * box.height];
+    const { areas, lines } = signChange(growth, rows, columns);
+    context.beginPath();
+    for (const area of areas) area.forEach((point, k) => (k ? context.lineTo(...to(point)) : context.moveTo(...to(point))));
+    context.fillStyle = UNSTABLE;
+    context.fill();
+    for (const ends of lines) line(context, ends.map(to), SOFT, 1.5);
   }
 
   place({ phi, V }) {
