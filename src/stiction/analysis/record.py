@@ -14,7 +14,6 @@ from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arrays import Floats, Indices, xr
 from stiction.drive import ConstantVelocity
-from stiction.drive.program import nominal_velocity
 from stiction.errors import Fault, ResultError, echo
 from stiction.names import draw, own_picture
 from stiction.recording.guess.clock import rate_of
@@ -24,6 +23,7 @@ from stiction.recording.request import KNOWN, SignedForce
 from stiction.recording.sensor import Sensor
 from stiction.recording.stored import write_stored
 from stiction.storage.table_files import write_tables
+from stiction.system.load_cell import cell_axis, stiffness_of_cell
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.text.samples import as_numbers, samples_to_si
@@ -44,11 +44,6 @@ from stiction.text.units import (
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
 
-# of a load cell that measures nothing of a force: see `across_force`
-ACROSS = (
-    "stands across the force of the springs and measures nothing of it; cell_angle = '0 deg' in "
-    "[slider] lays it along the drive"
-)
 LARGEST = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
 SHARP = 1e-3  # of the load: noise of it that is averaged away
@@ -520,31 +515,6 @@ def as_record(source: Trajectory | Record) -> Record:
     )
 
 
-class CellAxis(NamedTuple):
-    """The axis of a load cell in the frame of the springs, and the drive's velocity along it, m/s.
-
-    `way` is -1 where the drive goes against it: forces and positions are turned round.
-    """
-
-    x: float
-    y: float
-    velocity: float
-    way: float
-
-
-def cell_axis(slider: Slider) -> CellAxis:
-    """Return the axis of a slider's load cell: the spring x, or that of its `cell_angle`."""
-    x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
-    along = nominal_velocity(slider.motion) * _share(x, y, slider)
-    return CellAxis(x, y, along, -1.0 if along < 0.0 else 1.0)
-
-
-def _share(x: float, y: float, slider: Slider) -> float:
-    """Return the cosine of the angle between the cell's axis and the drive."""
-    share = float(slider.along_drive(x, y))
-    return 0.0 if abs(share) < ROUND else share  # at a right angle
-
-
 def across_force(run: Trajectory, record: Record) -> bool:
     """Return whether springs carry a force that the load cell, across it, does not measure."""
     samples = run.samples
@@ -569,18 +539,6 @@ def apparatus(slider: Slider) -> dict[str, Any]:
     }
 
 
-def stiffness_of_cell(slider: Slider, k_y: float) -> float | None:
-    """Return by how much the force along a load cell rises over the drive's way along it, N/m.
-
-    That is while the mass rests, with a stiffness `k_y` across; with 0 while the mass follows the
-    drive across. None where loading unloads the cell.
-    """
-    cell = cell_axis(slider)
-    share = _share(cell.x, cell.y, slider)
-    stiffness = slider.along_drive(cell.x * slider.k_x, cell.y * k_y) / share if share else 0.0
-    return stiffness if stiffness > 0.0 else None
-
-
 def record_of(run: Trajectory) -> Record:
     """Return a run as its load cell records it, with position, slip speed and stick intervals.
 
@@ -600,7 +558,6 @@ def record_of(run: Trajectory) -> Record:
     cell = cell_axis(slider)
     c, s = slider.direction
     x, y, way = cell.x, cell.y, cell.way
-    share = _share(x, y, slider)
     stiffer = ("v_x", "v_y")[slider.stiffer_axis]
     names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", stiffer)
     columns = np.stack([samples[name] for name in names])
@@ -618,6 +575,6 @@ def record_of(run: Trajectory) -> Record:
     travel = None
     if not isinstance(slider.motion, ConstantVelocity):
         d_X, d_Y = slider.motion.travel(time[0], time - time[0])
-        travel = way * (share * d_X + (y * c - x * s) * d_Y)
+        travel = way * (cell.share * d_X + (y * c - x * s) * d_Y)
     record._of_run = OfRun(slider, run.stick_intervals, time, rate, travel)
     return record

@@ -9,11 +9,11 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from stiction.analysis.creep.first_slip import first_slip_time
-from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats, Indices
 from stiction.errors import Status
 from stiction.result.peak import largest_between
 from stiction.result.table import largest
+from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from stiction import theory
 from stiction.analysis.creep.first_slip import slips_at_once
-from stiction.analysis.record import cell_axis
 from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, creep_distance, swing_of_slip
 from stiction.friction import Anisotropic, has_state
+from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stiction.analysis.record import Record, apparatus, stiffness_of_cell
+from stiction.analysis.record import Record, apparatus
 from stiction.analysis.report import analyse
 from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.arrays import Floats
@@ -28,6 +28,7 @@ from stiction.inference.rig import Rig
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.simulated.synthetic import NOT_OF_THE_SLIDER
+from stiction.system.load_cell import stiffness_of_cell
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent

@@ -10,9 +10,9 @@ import numpy as np
 
 from stiction import theory
 from stiction.analysis.creep.first_slip import along_force, force_direction, slips_at_once
-from stiction.analysis.record import cell_axis
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
+from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, stiffness_tensor
 

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from stiction.analysis.record import Record, cell_axis, record_of
+from stiction.analysis.record import Record, record_of
 from stiction.analysis.signals.spectrum import even_rate
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.recording.sensor import Sensor
+from stiction.system.load_cell import cell_axis
 from stiction.text.units import Quantity, SampleRate
 from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.record import ACROSS, cell_axis
 from stiction.auditing.simulated_test import CALM, SLIDES, SimulatedTest, relative_speed
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.friction import Anisotropic
 from stiction.friction.law import static_coefficient
+from stiction.system.load_cell import ACROSS, cell_axis
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
 

@@ -9,11 +9,11 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.analysis.motion.friction import friction_of
-from stiction.analysis.record import cell_axis
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.assumptions import creep_suppositions, suppositions
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip
 from stiction.friction import has_state
+from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.text.sections import Table

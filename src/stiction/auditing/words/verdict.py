@@ -14,7 +14,6 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSITIONAL,
     UNDETERMINED,
 )
-from stiction.analysis.record import ACROSS
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.simulated_test import (
     OSCILLATES,
@@ -26,6 +25,7 @@ from stiction.auditing.simulated_test import (
 from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
 from stiction.linear_stability.linear import STABLE, UNSTABLE
+from stiction.system.load_cell import ACROSS
 from stiction.text.units import in_words, to_error, with_error
 
 if TYPE_CHECKING:

@@ -8,7 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.record import cell_axis
 from stiction.analysis.signals.hum import without_bands
 from stiction.analysis.signals.robust import block_means
 from stiction.arrays import Floats
@@ -18,6 +17,7 @@ from stiction.inference.simulated.jitter import SPARE, Jitter, SampledMotion, fi
 from stiction.inference.simulated.plan import Plan
 from stiction.recording.coloured_noise import draw_lasting
 from stiction.recording.sensor import FASTEST, digitise, low_pass
+from stiction.system.load_cell import cell_axis
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 

@@ -37,12 +37,13 @@ from stiction.analysis.motion.regime.kinds import (
     STICK_SLIP,
     TRANSITIONAL,
 )
-from stiction.analysis.record import ACROSS, Record, across_force
+from stiction.analysis.record import Record, across_force
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.recording.origin import in_unit, use_of
+from stiction.system.load_cell import ACROSS
 from stiction.text.quantity_text import percent
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, times
