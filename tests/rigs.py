@@ -80,3 +80,14 @@ CALIPER = st.Slider(
     friction=st.ExponentialWeakening(mu_0=0.45, mu_inf=0.36, v_f="20 mm/s"),
     drive=st.ConstantVelocity("4 mm/s"),
 )
+
+# a pin on a plate: unstable at every misalignment, at the speed that it has
+PIN_ON_PLATE = st.Slider(
+    mass="80 g",
+    k_x="2.3 kN/m",
+    k_y="900 kN/m",
+    phi="2 deg",
+    normal_load="4 N",
+    friction=st.ExponentialWeakening(mu_0=0.6, mu_inf=0.45, v_f="10 mm/s"),
+    drive=st.ConstantVelocity("0.5 mm/s"),
+)

@@ -69,14 +69,19 @@ class Remedy(NamedTuple):
     @property
     def works(self) -> bool:
         """Whether the simulation from rest reaches steady sliding, and keeps to it."""
-        seen = self.tried
-        slides = seen is not None and seen.run.status.ok and seen.comes_to == SLIDES
-        return slides and self.growth < 0.0
+        return holds(self.tried)
 
     @property
     def growth(self) -> float:
         """Growth rate of a small disturbance of steady sliding at the advised value, 1/s."""
         return self.tried.growth if self.tried else nan
+
+
+def holds(tried: SimulatedTest | None) -> bool:
+    """Return whether a simulation from rest reaches steady sliding, and keeps to it."""
+    if tried is None or not tried.run.status.ok:
+        return False
+    return tried.comes_to == SLIDES and tried.growth < 0.0
 
 
 def advise(

@@ -8,7 +8,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
-from stiction.auditing.words.changes import name_of
+from stiction.auditing.words.changes import in_symbols, name_of
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.auditing.words.verdict import short_motion
 from stiction.friction import has_state
@@ -73,6 +73,11 @@ def trials(found: Audit) -> Figure | None:
             each.tried.record,
         )
         for each in found.advices
+        if each.tried is not None
+    ]
+    tried += [
+        Trial(f"{in_symbols(each)}: {short_motion(each.tried)}", each.tried.record)
+        for each in found.pairs
         if each.tried is not None
     ]
     return figure_of(plot_trials, found.observation.record, tried) if tried else None

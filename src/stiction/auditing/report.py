@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from stiction.analysis.record import Record, as_record
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
+from stiction.auditing.pairs import Pair, advise_pairs
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import (
     MOST_WORK,
@@ -44,7 +45,7 @@ if TYPE_CHECKING:  # a fit takes 0.3 s to import
     from stiction.auditing.tolerance import Budget
     from stiction.inference.priors import Prior
 
-# parts of the work: two tests, the advices, critical misalignments, and springs replaced
+# parts of the work: two tests, springs replaced, the advices, and pairs of them
 PARTS = 4 + len(LEVERS)
 FITTING = 0.8  # of the time of an audit with a measured record
 MORE = 12  # such parts of a tolerance budget
@@ -69,6 +70,8 @@ class Audit(NamedTuple):
         The simulated test, from steady sliding with a small disturbance.
     advices : tuple of Remedy
         Changes that would make it slide steadily, each tried from rest; empty if it does.
+    pairs : tuple of Pair
+        The same of two parameters, where no misalignment alone makes it slide steadily.
     chain : Chain or None
         The springs in series, and each replaced; None for a single spring.
     budget : Budget or None
@@ -93,6 +96,7 @@ class Audit(NamedTuple):
     observation: SimulatedTest
     sliding_on: SimulatedTest
     advices: tuple[Remedy, ...]
+    pairs: tuple[Pair, ...] = ()
     chain: chain.Chain | None = None
     budget: Budget | None = None
     measured: RecordComparison | None = None
@@ -119,7 +123,8 @@ class Audit(NamedTuple):
     @property
     def ok(self) -> bool:
         """Whether every simulation reached its end."""
-        tried = (each.tried for each in self.advices if each.tried)
+        advices: list[Remedy | Pair] = [*self.advices, *self.pairs]
+        tried = (each.tried for each in advices if each.tried)
         replaced = self.chain.replacements if self.chain else ()
         stiffer = (each.tried for each in replaced if each.tried)
         runs = [self.observation, self.sliding_on, *tried, *stiffer]
@@ -232,10 +237,14 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
         springs = chain.examine(system, work // 2, report(2))
         work -= sum(each.tried.work for each in springs.replacements if each.tried)
     advices: tuple[Remedy, ...] = ()
+    pairs: tuple[Pair, ...] = ()
     misalignment = critical(system, "phi")
     if not sliding.stable or observation.comes_to != SLIDES:
         known = None if sliding.stable else misalignment
         advices = tuple(advise(system, known, work, report(3, of=len(LEVERS))))
+        work -= sum(each.work for each in advices)
+        if not any(each.works for each in advices if each.path == "phi"):
+            pairs = tuple(advise_pairs(system, work, report(3 + len(LEVERS))))
     tolerance = None
     if rig.priors:
         from stiction.auditing.tolerance import budget
@@ -244,8 +253,8 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     progress(1.0)
     both = observation, sliding_on
     return Audit(
-        system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured,
-        rig.priors,
+        system, prediction, sliding, misalignment, *both, advices, pairs, springs, tolerance,
+        measured, rig.priors,
     )  # fmt: skip
 
 

@@ -24,7 +24,7 @@ from stiction.explorer.motion import Check, Reply
 from stiction.explorer.protocols import names, protocol
 from stiction.explorer.source import Opened
 from stiction.friction import LAWS
-from stiction.linear_stability.linear import growth_rate
+from stiction.linear_stability.linear import growth_at, growth_rate
 from stiction.media.sound import RATE, SHORTEST_SOUND, audible_speed, rate_at
 from stiction.presets import PRESETS, find
 from stiction.system.description import Description
@@ -278,17 +278,9 @@ def stability_map(description: Description, check: Check) -> Iterator[Reply]:
             driven = change_unchecked(slider, "drive.velocity", float(speed))
             for column, angle in enumerate(angles):
                 check()
-                found[row, column] = growth_at(driven, float(angle))
+                found[row, column] = growth_at(driven, "phi", float(angle))
         head = {"angles": ANGLES, "speeds": (low, high), "own": degrees(abs(slider.phi))}
         yield head, {"growth": found}
-
-
-def growth_at(slider: object, angle: float) -> float:
-    """Return the growth rate at an angle (rad); NaN where there is no steady sliding."""
-    try:
-        return growth_rate(change_unchecked(slider, "phi", angle))  # type: ignore[arg-type]
-    except (StictionError, ArithmeticError, ValueError):
-        return float("nan")
 
 
 def middles(low: float, high: float, count: int) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from math import hypot, pi
+from math import hypot, nan, pi
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,7 @@ from stiction.linear_stability.eigenvalues import (
 )
 from stiction.names import warn_renamed
 from stiction.system.initial import Initial
+from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, mobility_tensor
 from stiction.text.validation import equal
@@ -243,6 +244,17 @@ def growth_rate(slider: Slider) -> float:
     [True, False]
     """
     return leading_mode(slider).real
+
+
+def growth_at(slider: Slider, path: str, value: float) -> float:
+    """Return the growth rate (1/s) with a parameter at a value (SI), for maps of many values.
+
+    NaN where there is no steady sliding. For the rest see `change_unchecked`.
+    """
+    try:
+        return growth_rate(change_unchecked(slider, path, value))
+    except (StictionError, ArithmeticError, ValueError):
+        return nan
 
 
 def leading_mode(slider: Slider) -> complex:

@@ -6,10 +6,12 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from stiction.auditing.advice import Remedy, is_compliance
+from stiction.auditing.pairs import ANGLES, FACTORS, Pair
 from stiction.auditing.simulated_test import (
     MOST_WORK,
     OSCILLATES,
     UNSETTLED,
+    SimulatedTest,
 )
 from stiction.auditing.words.verdict import final_motion, where
 from stiction.text.sections import Table
@@ -24,6 +26,7 @@ NAMES = {
     "drive.velocity": "drive velocity V",
     "c_x": "damping c_x",
     "k_x": "stiffness k_x",
+    "k_y": "transverse stiffness k_y",
 }
 
 
@@ -32,17 +35,20 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
     if not found.advices:
         return ["Nothing: it slides steadily after the start."], None
     rows = [_change(found, advice) for advice in found.advices]
+    rows += [_change_of_two(found, pair) for pair in found.pairs]
     goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
     remedies = [
         f"{name_of(found, each.path)} of {in_words(each.then, each.unit)}"
         for each in found.advices
         if each.works
     ]
-    undecided = any(each.tried and each.tried.comes_to == UNSETTLED for each in found.advices)
+    remedies += [" with ".join(settings(found, each)) for each in found.pairs if each.works]
+    every: list[Remedy | Pair] = [*found.advices, *found.pairs]
+    undecided = any(each.tried and each.tried.comes_to == UNSETTLED for each in every)
     none = f"None of these {'is seen to make' if undecided else 'makes'} it {goal}"
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else none
     lines = [f"{what}. Each change was simulated from rest; the last column shows the result."]
-    cut = [name_of(found, each.path) for each in found.advices if each.cut]
+    cut = [name_of(found, each.path) for each in every if each.cut]
     if cut:
         lines.append(
             f"Values farther from the present one were not tried of {', or '.join(cut)}: all "
@@ -78,18 +84,50 @@ def _change(found: Audit, advice: Remedy) -> tuple[str, ...]:
         if advice.critical:
             tried = " to ".join(in_words(end, advice.unit) for end in advice.critical.between)
         return name, now, "nowhere", tried, "no value in that range"
-    then, seen = in_words(advice.then, advice.unit), advice.tried
     stable = where(advice.critical, True) if advice.critical else "now"
-    if advice.works:
-        return name, now, stable, then, final_motion(seen)
+    then = in_words(advice.then, advice.unit)
+    return name, now, stable, then, _result(found, advice.tried, advice.works)
+
+
+def settings(found: Audit, pair: Pair) -> list[str]:
+    """Return the two advised settings in words."""
+    return [
+        f"{name_of(found, each.path)} of {in_words(each.then, each.unit)}" for each in pair.changes
+    ]
+
+
+def in_symbols(pair: Pair) -> str:
+    """Return the two advised settings by their symbols, for the title of a figure."""
+    symbols = (NAMES[each.path].rpartition(" ")[2] for each in pair.changes)
+    values = (in_words(each.then, each.unit) for each in pair.changes)
+    return ", ".join(f"{symbol} = {its}" for symbol, its in zip(symbols, values, strict=True))
+
+
+def _change_of_two(found: Audit, pair: Pair) -> tuple[str, ...]:
+    name = f"{name_of(found, 'phi')}, {name_of(found, pair.path)}"
+    if pair.tried is None:
+        if pair.cut:
+            return name, "", "", "none", "not tried"
+        tried = f"to {ANGLES[-1]:g} deg and {FACTORS[-1]:g} times"
+        return name, "", "nowhere", tried, "no values in that range"
+    now, then = (
+        ", ".join(in_words(value, each.unit) for each, value in zip(pair.changes, its, strict=True))
+        for its in zip(*((each.now, each.then) for each in pair.changes), strict=True)
+    )
+    return name, now, "together", then, _result(found, pair.tried, pair.works)
+
+
+def _result(found: Audit, seen: SimulatedTest, works: bool) -> str:
+    """Return what the simulation with a change shows."""
+    if works:
+        return final_motion(seen)
     if not seen.run.status.ok:
-        until = in_words(float(seen.record.time[-1]), "s")
-        return name, now, stable, then, f"not known: the simulation was cut at {until}"
+        return f"not known: the simulation was cut at {in_words(float(seen.record.time[-1]), 's')}"
     if seen.comes_to == UNSETTLED:
-        return name, now, stable, then, f"not decided: {final_motion(seen)}"
+        return f"not decided: {final_motion(seen)}"
     what, drop = f"no remedy: {final_motion(seen)}", seen.mean("drop")
     if seen.comes_to == OSCILLATES and isfinite(drop):
         if drop < ALMOST * found.observation.mean("drop"):
             what = f"almost: {final_motion(seen)}"
         what += f", force drop {in_words(drop, 'N')}"
-    return name, now, stable, then, what
+    return what

@@ -1,0 +1,132 @@
+"""Remedies of two parameters at once: turned further, and driven faster or held more stiffly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from math import copysign, radians
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from stiction.auditing.advice import MOST_TURNED, holds, try_change
+from stiction.auditing.simulated_test import LEAST_WORK, SimulatedTest
+from stiction.inference.progress import Progress, part, silent
+from stiction.linear_stability.linear import growth_at
+from stiction.system.parameter import change_parameter, change_unchecked, quantity, read, unit
+from stiction.system.slider import Slider
+
+PARTNERS = ("drive.velocity", "k_y")  # of the misalignment
+# Steady sliding must be stable for all neighbours, too: a fifth away in angle and in the partner
+ANGLES = np.geomspace(1.0, MOST_TURNED, 24)  # degrees
+FACTORS = np.geomspace(1.0, 1e3, 37)
+DIGITS = 2  # of advised values: who turns a rig needs no more, and neighbours are stable
+MOST_TRIED = 3  # where it is stable, but not reached from rest
+FARTHER = 1.5  # times the factor of the last try
+
+
+class Change(NamedTuple):
+    """A parameter, its SI unit, its present value and another one."""
+
+    path: str
+    unit: str
+    now: float
+    then: float
+
+
+class Pair(NamedTuple):
+    """Two parameters changed at once for steady sliding, and the simulation with both.
+
+    Parameters
+    ----------
+    path : str
+        The parameter beside the misalignment.
+    changes : tuple of Change
+        Of the misalignment and of that parameter; empty where no pair in the range slides steadily.
+    tried : SimulatedTest or None
+        The simulation.
+    work : int
+        Steps and samples of all simulations of these two.
+    cut : bool
+        Whether the limit of work was reached before all pairs were tried.
+    """
+
+    path: str
+    changes: tuple[Change, ...] = ()
+    tried: SimulatedTest | None = None
+    work: int = 0
+    cut: bool = False
+
+    @property
+    def works(self) -> bool:
+        """Whether the simulation from rest reaches steady sliding, and keeps to it."""
+        return holds(self.tried)
+
+
+def advise_pairs(slider: Slider, work: int, progress: Progress = silent) -> Iterator[Pair]:
+    """Yield, for each partner of the misalignment, the nearest pair with steady sliding, tried.
+
+    Nearest is the pair whose partner changes least, and of these that with the least turn. `work`
+    limits all simulations together, and `progress` receives the fraction done.
+    """
+    partners = [path for path in PARTNERS if path != "k_y" or not slider.springs]
+    for number, path in enumerate(partners):
+        advice = _advise(slider, path, work // (len(partners) - number), number, progress)
+        work -= advice.work
+        yield advice
+
+
+def _advise(slider: Slider, path: str, work: int, number: int, progress: Progress) -> Pair:
+    """Return the nearest pair, tried from rest; `number` counts the pairs before it."""
+    advice = Pair(path)
+    for attempt, changes in enumerate(nearest_pairs(slider, path)):
+        left = work - advice.work
+        if attempt >= MOST_TRIED:
+            break
+        if left < LEAST_WORK:
+            return advice._replace(cut=True)
+        changed = slider
+        for each in changes:
+            changed = change_parameter(changed, each.path, quantity(slider, each.path, each.then))
+        report = part(progress, number * MOST_TRIED + attempt, len(PARTNERS) * MOST_TRIED)
+        tried = try_change(changed, left, report)
+        advice = Pair(path, changes, tried, advice.work + tried.work)
+        if advice.works:
+            break
+    return advice
+
+
+def nearest_pairs(slider: Slider, path: str) -> Iterator[tuple[Change, Change]]:
+    """Yield pairs of misalignment and partner that slide steadily, as all their neighbours do.
+
+    Each has the least turn for its partner, which changes ever more.
+    """
+    side, now = copysign(1.0, slider.misalignment), read(slider, path)
+    turns = slider.turn + side * np.radians(ANGLES)
+    rows: list[NDArray[np.bool_]] = []
+    last = 0.0
+    for factor in FACTORS:
+        changed = change_unchecked(slider, path, now * float(factor))
+        rows.append(np.array([growth_at(changed, "phi", float(each)) < 0.0 for each in turns]))
+        if len(rows) < 3 or FACTORS[len(rows) - 2] < FARTHER * last:
+            continue
+        inner = np.logical_and.reduce(rows[-3:])
+        fit = np.flatnonzero(inner[:-2] & inner[1:-1] & inner[2:]) + 1
+        if not len(fit):
+            continue
+        last = FACTORS[len(rows) - 2]
+        turned = abs(np.abs(ANGLES[fit]) - abs(np.degrees(slider.misalignment)))
+        angle = slider.turn + side * radians(_few_digits(ANGLES[fit[np.argmin(turned)]]))
+        yield (
+            Change("phi", "rad", slider.phi, angle),
+            Change(path, unit(slider, path), now, _few_digits(now * last)),
+        )
+
+
+def _few_digits(value: float) -> float:
+    """Return a value with the digits that are advised.
+
+    >>> _few_digits(0.0028731)
+    0.0029
+    """
+    return float(f"{value:.{DIGITS}g}")
