@@ -2,8 +2,10 @@
 
 import re
 import shlex
+from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 
@@ -17,8 +19,10 @@ PAGES = [
     *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "SECURITY.md")),
     *(each for each in sorted(DOCS.rglob("*.md")) if not MADE & {*each.relative_to(DOCS).parts}),
 ]
+NOTES = [ROOT / "benchmarks" / name for name in ("README.md", "NOTES.md")]
 TESTED = {"README.md", "CONTRIBUTING.md"}  # tests/integration runs their Python
 BLOCK = re.compile(r"^( *)(?:<!-- not run: ([^\n]+) -->\n\n *)?```(\w+)\n(.*?)^\1```$", re.M | re.S)
+FENCED = re.compile(r"^( *)```.*?^\1```$", re.M | re.S)
 SPANS = re.compile(r"`(?:uv run (?:--extra explorer )?)?(stiction [a-z][^`]*)`")
 READER_S = {"study.toml": ROOT / "examples" / "study.toml"}  # files that a page asks for
 PREFIX = re.compile(r"^uv run( --(group|extra) \S+)* ")
@@ -123,16 +127,47 @@ def test_commands_in_sentences_are_those_of_the_command_line(page):
         assert [each for each in arguments if each[0] == "-" and each not in known] == [], span
 
 
-def test_python_in_pages_names_what_there_is():
-    """`st.NAME(...)` in sentences."""
-    wrong = []
-    for page in PAGES:
-        for path in re.findall(r"`st\.([\w.]+)[(`]", page.read_text("utf-8")):
-            found = st
-            for part in path.split("."):
-                found = getattr(found, part, None)
-            wrong += [f"{name_of(page)}: st.{path}"] if found is None else []
-    assert wrong == []
+@pytest.mark.parametrize("page", [*PAGES, *NOTES], ids=name_of)
+def test_what_sentences_name_is_there(page):
+    """Names of this package, modules to run and their options, and files."""
+    text = page.read_text("utf-8")
+    spans = re.findall(r"`([^`\n]+)`", FENCED.sub("", text))
+    names = {
+        name for span in spans for name in re.findall(r"\bst(?:iction)?\.((?:\w+\.)*\w+)", span)
+    }
+    assert sorted(name for name in names if not is_name(name)) == []
+    modules = {name for span in spans for name in re.findall(r"python -m ([\w.]+)", span)}
+    assert sorted(name for name in modules if find_spec(name) is None) == []
+    options = {found for span in spans for found in re.findall(r"(?<!\S)--[a-z][\w-]*", span)}
+    assert sorted(options - known_options()) == []
+    files = {
+        span for span in spans if re.fullmatch(r"(\.ci|src|tests|docs|benchmarks)/[\w./]+", span)
+    }
+    made = {path for path in files if f"In `{path}`:\n" in text}  # by a worked example
+    assert sorted(path for path in files - made if not (ROOT / path).exists()) == []
+
+
+def is_name(path: str) -> bool:
+    """Return whether a path leads to something in the package."""
+    try:
+        resolve_name(f"stiction.{path}")
+    except (AttributeError, ImportError):
+        return False
+    return True
+
+
+@cache
+def known_options() -> set[str]:
+    """Return the options of all commands, of the benchmarks, and those of uv and ruff in pages."""
+    own = {
+        name
+        for each in COMMANDS
+        for a in app[each].assemble_argument_collection()
+        for name in a.names
+    }
+    sources = [path.read_text("utf-8") for path in (ROOT / "benchmarks").rglob("*.py")]
+    theirs = {option for text in sources for option in re.findall(r'"(--[a-z][\w-]*)"', text)}
+    return own | theirs | {"--extra", "--fix", "--group", "--help", "--version"}
 
 
 def test_pages_have_something_to_run():
