@@ -141,7 +141,7 @@ def _slide_hold_slide(run: Trajectory) -> list[float]:
     _slide_hold_slide,
     shows="slide-hold-slide: the longer at rest, the higher the peak",
     reference="Marone, Annu. Rev. Earth Planet. Sci. 26, 643 (1998); parameters: rsfmodel",
-    doi="",
+    doi="10.1146/annurev.earth.26.1.643",
     grade="half",
     assumed=ASSUMED,
     published=(

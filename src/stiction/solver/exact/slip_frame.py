@@ -2,7 +2,8 @@
 
 e is the slip direction at the step's start (at take-off: the direction of the force that
 held). In these axes the slip velocity is s = p (1, w) (M11), and with a = (K u + C du/dt)/m +
-dv_d/dt (M2) (the last only where the plate is driven) and f = F(|s|)/m, Eqs. (4) and (5) read
+dv_d/dt (M2) (the last only where the plate is driven) and f = F(|s|)/m, Eqs. (4) and (5) read,
+on an isotropic surface,
 
     p'   = a_1 - f/sqrt(1 + w^2)        (M13)
     p w' = a_2 - w a_1                  (M14)
