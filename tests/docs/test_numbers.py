@@ -59,10 +59,58 @@ def test_the_page_on_the_physics_says_what_is_computed(slider, paper_run):
     assert f"they are {static:.4f} and {kinetic:.4f}" in page
 
 
+def test_the_page_on_the_physics_says_how_far_the_mass_creeps_and_when_it_rests(paper_run):
+    page, data = page_in_words("explanation/physics"), paper_run.samples
+    at = np.searchsorted(data["time"], 2.0)
+    along, across = (1e6 * data[name][at] for name in ("X", "Y"))
+    assert f"{along:.0f} µm along the drive and {across:.0f} µm across it in the first 2 s" in page
+    ends = paper_run.stick_intervals[:, 1]
+    slip = data["time"][data["spring_x"][: np.searchsorted(data["time"], 2.05)].argmax()]
+    assert f"until {slip - ends[ends < slip].max():.2f} s before the slip" in page
+
+
+def test_the_first_half_hour_says_what_the_force_across_does_after_a_slip(paper_run):
+    time, force = paper_run.samples["time"], paper_run.samples["spring_y"]
+    after = force[(time > 2.05) & (time < 2.2)].max()
+    assert after / force[time < 0.1].max() == pytest.approx(4 / 5, abs=0.05)
+    assert "after a slip to four fifths of it" in page_in_words("tutorials/first-half-hour")
+
+
 def test_the_lecture_asks_for_the_right_angles(slider):
     damped, stable = angles_of(slider)
     told = f"They differ: {damped:.1f}, 8.2 and {stable:.1f} degrees"
     assert told in page_in_words("tutorials/lecture")
+
+
+def test_the_lecture_answers_its_questions(slider):
+    page = page_in_words("tutorials/lecture")
+    critical = st.linear_stability.critical(slider, "drive.velocity").values[0]
+    assert f"`st.stability(slider)` says {1e3 * critical:.1f} mm/s" in page
+    swings = []
+    for velocity in (93e-3, 100e-3, 150e-3, 300e-3):
+        run = st.simulate(
+            slider.replace(drive=st.ConstantVelocity(velocity)), 51.0, sample_rate=2e3
+        )
+        swings.append(np.ptp(run.samples["spring_x"][run.samples["time"] > 50.0]))
+    told = "{:.1f}, {:.1f}, {:.1f} and {:.1f} N after 50 s".format(*swings)
+    assert f"still swings by {told}" in page
+    told = []
+    for each in (slider.replace(mass=2.0 * slider.mass), slider, slider.replace(phi="2 deg")):
+        cycles = st.analysis.find_cycles(st.simulate(each, 20.0, sample_rate=5e3))
+        told += [float(cycles[name].mean()) for name in ("mu_static", "mu_kinetic")]
+    pair = "{:.4f} and {:.4f}"
+    words = f"{pair} in place of {pair}. Twice the misalignment gives {pair}"
+    assert words.format(*told) in page
+
+
+def test_the_lecture_says_what_coulomb_friction_leaves(slider):
+    """One rise, which exceeds 2 N, and settles where friction points along the drive."""
+    run = st.simulate(slider.replace(friction=st.Coulomb(mu_0=0.2)), 10.0, sample_rate=5e3)
+    force, page = run.samples["spring_x"], page_in_words("tutorials/lecture")
+    assert f"exceeds 2 N by {100.0 * (force.max() / 2.0 - 1.0):.1f} %" in page
+    assert force[-1] == pytest.approx(2.0 * np.cos(slider.phi), rel=1e-5)
+    [(_, end)] = run.stick_intervals
+    assert f"rests for the first {1e3 * end:.0f} ms and never again" in page
 
 
 def test_the_rig_sticks_and_slips_up_to_the_angle_that_the_pages_say(slider):
@@ -169,6 +217,18 @@ def test_times_in_the_readme_are_those_of_the_page_on_speed():
     rows = re.findall(r"^\| .* ms \| .*$", README, re.M)
     assert len(rows) == 4
     assert [row for row in rows if row not in page] == []
+
+
+def test_pages_count_the_peers_of_the_benchmark():
+    sources = (ROOT / "benchmarks" / "precision" / "peers").glob("*.py")
+    texts = [each.read_text("utf-8") for each in sources]
+    peers = {name for text in texts for name in re.findall(r'rows\("([^"]+)"', text)}
+    counts = ("ten", "eleven", "twelve", "thirteen", "fourteen", "fifteen")
+    pages = [ROOT / name for name in ("README.md", "paper/paper.md", "benchmarks/README.md")]
+    found = re.compile(rf"({'|'.join(counts)}) (?:peers|solvers of others)", re.IGNORECASE)
+    said = [found.findall(page.read_text("utf-8")) for page in [*pages, *DOCS.rglob("*.md")]]
+    assert sum(map(len, said)) == 7
+    assert {each.lower() for words in said for each in words} == {counts[len(peers) - 10]}
 
 
 @pytest.mark.parametrize("name", ["README.md", "CONTRIBUTING.md", "SECURITY.md"])

@@ -31,9 +31,9 @@ BDF = (
 def contestants() -> list[Contestant]:
     """Return the rows of the three methods."""
     return [
-        row
-        for method, settings in (("LSODA", LSODA), ("Radau", RADAU), ("BDF", BDF))
-        for row in rows(f"{method} (SciPy)", partial(solve, method), settings)
+        *rows("LSODA (SciPy)", partial(solve, "LSODA"), LSODA),
+        *rows("Radau (SciPy)", partial(solve, "Radau"), RADAU),
+        *rows("BDF (SciPy)", partial(solve, "BDF"), BDF),
     ]
 
 
