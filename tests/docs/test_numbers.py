@@ -73,7 +73,7 @@ def test_the_first_half_hour_says_what_the_force_across_does_after_a_slip(paper_
     time, force = paper_run.samples["time"], paper_run.samples["spring_y"]
     after = force[(time > 2.05) & (time < 2.2)].max()
     assert after / force[time < 0.1].max() == pytest.approx(4 / 5, abs=0.05)
-    assert "after a slip to four fifths of it" in page_in_words("tutorials/first-half-hour")
+    assert "after each slip to four fifths of it" in page_in_words("tutorials/first-half-hour")
 
 
 def test_the_lecture_asks_for_the_right_angles(slider):
