@@ -18,7 +18,7 @@ from stiction.friction import LAWS, has_state
 speeds = np.geomspace(1e-5, 1.0, 121)
 figure, axes = plt.subplots(3, 5, figsize=(7.5, 4.6), sharex=True, sharey=True)
 for ax, (name, kind) in zip(axes.flat, LAWS.items(), strict=False):
-    law = kind.like(0.20, 0.15, 0.01)  # at rest, in rapid slip, with half of the fall at 10 mm/s
+    law = kind.like(0.20, 0.15, 0.01)  # at rest, in rapid slip, most of the fall up to 10 mm/s
     colour = "#D55E00" if has_state(law) else "#0072B2"
     ax.semilogx(1e3 * speeds, [law.coefficient(v) for v in speeds], color=colour)
     ax.set_title(name, fontsize=7.5)

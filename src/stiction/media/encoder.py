@@ -20,7 +20,8 @@ HALF = 2  # of the width: a GIF is smaller
 COLORS, COMMON = 64, 32  # of a GIF: hues, and the commonest colours
 APART = 8  # of 255, colours of a palette
 MISSING = (
-    "a film needs the package av; install stiction[film], or run: uv run --extra film stiction"
+    "mp4 and webm need the package av; install stiction[film], or run: uv run --extra film"
+    " stiction; a gif does without"
 )
 
 Frames = Iterator[NDArray[np.uint8]]

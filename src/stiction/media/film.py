@@ -144,8 +144,8 @@ def animate(
     Raises
     ------
     ResultError
-        If there is no such window or format, or the package av is missing (install
-        ``stiction[film]``).
+        If there is no such window or format, or the package av is missing, which mp4 and webm
+        need (install ``stiction[film]``).
 
     Examples
     --------

@@ -1,5 +1,6 @@
 """Sound and film of a run."""
 
+import sys
 import wave
 from io import BytesIO
 from itertools import pairwise
@@ -185,6 +186,15 @@ def test_a_film_has_its_frames(run, kind, tmp_path):
     assert f"base64,{'R0lG' if kind == 'gif' else ''}" in film._repr_html_()
     with pytest.raises(st.ResultError, match=r"this film is .*kind=\"(gif|mp4)\"\)"):
         film.save(tmp_path / ("a.mp4" if kind == "gif" else "a.gif"))
+
+
+def test_a_gif_needs_no_further_package(run, monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "av", None)
+    window = ("10 ms", "40 ms")
+    made = st.animate(run, length=0.1, window=window, kind="gif").save(tmp_path / "a.gif")
+    assert made.read_bytes().startswith(b"GIF")
+    with pytest.raises(st.ResultError, match=r"mp4 and webm need the package av; .* a gif does"):
+        st.animate(run, length=0.1, window=window).save(tmp_path / "a.mp4")
 
 
 def test_a_gif_keeps_the_hues_of_thin_lines():

@@ -21,8 +21,8 @@ def animate(
 ) -> None:
     """Film a run: the apparatus from above, its time series, and the fast oscillation beside them.
 
-    It needs `stiction[film]`. For example, after `stiction run my.toml -o my.nc`; then one slip,
-    slowly:
+    All but a .gif needs `stiction[film]`. For example, after `stiction run my.toml -o my.nc`; then
+    one slip, slowly:
 
         stiction animate my.nc -o lecture.mp4
 
