@@ -78,6 +78,18 @@ def test_a_file_is_used_by_another():
         assert times[name] + times[path.stem] > own, f"{line} See CONTRIBUTING, Adding things"
 
 
+def test_contributing_names_the_rooms_from_the_bottom_up():
+    """As the contract on imports has them."""
+    text = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("from the bottom up: ")[2]
+    rooms = {path.parent.name for path in (ROOT / TREES[0]).glob("*/__init__.py")} - {"units"}
+    named = re.findall(r"`(\w+)`", text.partition("`arrays`")[0])
+    assert sorted(named) == sorted(rooms)
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
+    layers = project["tool"]["importlinter"]["contracts"][0]["layers"]
+    floor = {name: -i for i, layer in enumerate(layers) for name in re.findall(r"\.(\w+)", layer)}
+    assert named == sorted(named, key=floor.__getitem__)
+
+
 def test_each_part_of_the_benchmark_is_there():
     assert [part for part in PARTS.values() if find_spec(f"benchmarks.{part}") is None] == []
 
