@@ -78,6 +78,18 @@ def test_a_file_is_used_by_another():
         assert times[name] + times[path.stem] > own, f"{line} See CONTRIBUTING, Adding things"
 
 
+def test_a_constant_has_one_value_in_its_file():
+    """Of two, whoever reads the first is wrong."""
+    twice = []
+    for path in [*(ROOT / "src").rglob("*.py"), *(ROOT / "benchmarks").rglob("*.py")]:
+        body = ast.parse(path.read_text("utf-8")).body
+        targets = [each for node in body for each in getattr(node, "targets", ())]
+        stored = [each for top in targets for each in ast.walk(top) if isinstance(each, ast.Name)]
+        times = Counter(each.id for each in stored if isinstance(each.ctx, ast.Store))
+        twice += [f"{path.relative_to(ROOT)}: {name}" for name in times if times[name] > 1]
+    assert twice == []
+
+
 def test_contributing_names_the_rooms_from_the_bottom_up():
     """As the contract on imports has them."""
     text = (ROOT / "CONTRIBUTING.md").read_text("utf-8").partition("from the bottom up: ")[2]

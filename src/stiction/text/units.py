@@ -85,7 +85,7 @@ hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, includ
 ONE, DIMENSIONLESS = {"", "1"}, "dimensionless"  # units of numbers: of xarray's, of pint's
 LARGE = 1e6  # a number below it is written without a power of ten
 ROUNDING = 1e-12  # relative: what many sums of floating-point numbers are off by
-SMALLEST = 1e-30  # SI units: the last prefix, and an error that only keeps a divisor from zero
+LEAST_ERROR = 1e-30  # SI units: a smaller one only keeps a divisor from zero
 FACTOR = 12  # digits of a factor that is exact, such as 0.45359237 of a pound
 LONGEST_QUANTITY = 200  # characters of a number and its unit
 LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
@@ -434,7 +434,7 @@ def with_error(value: float, error: float, unit: str) -> str:
     >>> with_error(0.0, 7e-151, "N/s")
     '0 N/s'
     """
-    if not max(ROUNDING * abs(value), SMALLEST) < error < inf or not isfinite(value):
+    if not max(ROUNDING * abs(value), LEAST_ERROR) < error < inf or not isfinite(value):
         return in_words(value, unit)
     size, power, name = _scale(max(abs(value), error), unit)
     shown = float(f"{error / size:.1g}")
