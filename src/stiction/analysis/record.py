@@ -120,7 +120,8 @@ class Record(Described):
     time : array
         (n,), s, increasing; it need not be equally spaced. Samples of the same time, as a clock
         coarser than the sampling gives them, are spread evenly up to the next time. This and every
-        array may carry a unit, as a pint quantity or as ``attrs["units"]`` of a DataArray.
+        array may carry a unit, as a pint quantity or as ``attrs["units"]`` of a DataArray. Dates,
+        of Python, NumPy or pandas, become seconds since the first; spans of time, seconds.
     force : array
         (n,), N: the spring force, positive where the spring pulls the mass along the drive.
     normal_load : float or str, optional
@@ -216,6 +217,8 @@ class Record(Described):
                 read[name] = samples_to_si(values, unit or str(said or kind.unit), kind)
             except PydanticCustomError as error:
                 wrong.append(Fault(name if unit else key, error.message()))
+            except ValueError as error:
+                wrong.append(Fault(name, str(error)))
         if wrong:
             raise faulty(wrong)
         return read

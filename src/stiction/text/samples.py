@@ -11,6 +11,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.storage.checksums import bytes_of, crc
+from stiction.text.calendar import of_clock, seconds
 from stiction.text.units import Kind, to_si
 
 _whole: ContextVar[bool] = ContextVar("_whole", default=False)
@@ -57,9 +58,9 @@ def as_numbers(values: Any) -> Floats:
 
 
 def samples_to_si(values: Any, unit: str, kind: Kind) -> Any:
-    """Convert samples from a unit to SI."""
+    """Convert samples from a unit to SI; dates, to seconds since the first."""
     plain = getattr(values, "magnitude", values)
-    plain = getattr(plain, "values", plain)
+    plain = seconds(plain) if of_clock(plain) else getattr(plain, "values", plain)
     factor = to_si(f"1 {unit}", kind)
     if factor == 1.0 or np.asarray(plain).dtype.kind not in "iuf":
         return plain

@@ -32,6 +32,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.arguments import plain, whole
 from stiction.errors import echo
+from stiction.text.calendar import of_clock, span_in_seconds
 from stiction.text.quantity_text import DIGITS, MEASURABLE, angle_text, suited_unit
 from stiction.text.unit_text import UnitError, factor, short
 
@@ -188,15 +189,22 @@ def as_float(value: Any) -> float:
 
 
 def unit_on(values: Any) -> str | None:
-    """Return the unit that a pint quantity or an xarray array carries."""
+    """Return the unit that a pint quantity or an xarray array carries, or a span of time."""
     if hasattr(values, "magnitude") and hasattr(values, "units"):
         return str(values.units)
     stated = getattr(values, "attrs", {}).get("units")
-    return None if stated is None else str(stated)
+    if stated is None:
+        return "s" if of_clock(values) else None
+    return str(stated)
 
 
 def bare(value: object) -> object:
     """Turn a NumPy number into a Python number, and one that carries a unit into text."""
+    if type(value) in (float, int, str):
+        return value  # the usual case in large studies
+    if of_clock(value):
+        lasts = span_in_seconds(value)
+        return value if lasts is None else f"{lasts!r} s"
     unit, number = unit_on(value), plain(getattr(value, "magnitude", value))
     if unit is None or number is value or isinstance(number, str):
         return number

@@ -81,7 +81,7 @@ def test_a_drive_the_other_way_is_turned_round():
     ("force", "said"),
     [
         (np.ones(3) + 0j, "not of type complex128"),
-        (np.arange(3).astype("datetime64[ms]"), "not of type datetime64"),
+        (np.arange(3).astype("datetime64[ms]"), "is in s, not a unit of a force"),
         (["1", "2", "3"], "not of type <U1"),
         (np.ma.masked_greater([1.0, 2.0, 9.0], 5.0), "1 of 3 samples are not finite"),
         ([1.0, 1e200, 2.0], "below 1e+100, is 1e+200"),

@@ -55,7 +55,7 @@ def test_every_kind_of_fault_at_once():
         (T, "v", "velocity", "names a column"),
         (T, V.reshape(1, -1), "velocity", "one dimension"),
         (T, ["a"] * 101, "velocity", "must be numbers"),
-        (np.array(["2020-01-01"], "M8"), V, "time", "must be numbers"),
+        (np.arange(101).astype("m8[M]"), V, "time", "spans of time, and not in months"),
     ],
 )
 def test_what_is_wrong_is_told(time, velocity, column, words):
