@@ -32,6 +32,7 @@ from stiction.friction.user.loading import (
     read_own,
 )
 from stiction.text.toml import choose
+from stiction.text.units import hints_of, unit_of
 
 STAND_IN: Law = LAWS["coulomb"](mu_0=0.0)  # for one that cannot be read
 
@@ -62,11 +63,13 @@ def law_table(law: Any) -> dict[str, Any]:
     """Return a law as a table [friction] of numbers and lists, which `read_law` reads."""
     if isinstance(law, Anisotropic):
         return {**law_table(law.law), "anisotropy": anisotropy_table(law)}
-    name = registered_name(law)
+    name, hints = registered_name(law), hints_of(type(law))
     values = {  # NumPy numbers become Python numbers, for JSON
         key: value.tolist() if hasattr(value, "tolist") else value
         for key, value in law._asdict().items()
     }
+    angles = [key for key in values if unit_of(hints.get(key)) == "rad"]
+    values |= {key: f"{values[key]!r} rad" for key in angles}  # a number is refused
     return {**(own_table(law) if name is None else {"law": name}), **values}
 
 

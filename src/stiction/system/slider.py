@@ -37,7 +37,7 @@ from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_slider, toml_text
 from stiction.text.units import Angle, Damping, Force, Mass, Stiffness
-from stiction.text.validation import Described, faulty
+from stiction.text.validation import Described, faulty, in_si
 
 
 def _within_a_right_angle(phi: float) -> float:
@@ -54,15 +54,22 @@ def _is_law(value: Any) -> Any:
         raise ValueError(
             f"{echo(value)} is not a friction law; write for example st.Coulomb(mu_0=0.2)"
         )
-    law = value.law if isinstance(value, Anisotropic) else value
-    name = type(law).__name__
+    given = value.law if isinstance(value, Anisotropic) else value
+    name = type(given).__name__
     try:
-        is_law(type(law), name)
+        is_law(type(given), name)
+        law = in_si(given)
         if registered_name(law) is None:
             sound(law, name)
     except DescriptionError as error:
+        if error.faults[0].path.startswith(f"{name}."):
+            raise faulty(
+                [each._replace(path=each.path[len(name) + 1 :]) for each in error.faults]
+            ) from None
         raise ValueError(error.faults[0].message) from None
-    return value
+    if law is given:
+        return value
+    return value._replace(law=law) if isinstance(value, Anisotropic) else law
 
 
 def _is_drive(value: Any) -> Any:

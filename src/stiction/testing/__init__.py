@@ -19,6 +19,7 @@ from stiction.friction.user.validation import ENDING, endless, fault, is_law, no
 from stiction.testing.common import COMMON, SPEEDS
 from stiction.testing.set_valued import SET_VALUED
 from stiction.testing.with_state import WITH_STATE
+from stiction.text.validation import in_si
 
 Check = Callable[[Any, Sequence[float]], Iterator[str]]
 
@@ -62,6 +63,7 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     if isinstance(law, type):
         raise DescriptionError.of(law.__name__, f"is a class; write {law.__name__}(...)")
     is_law(type(law), type(law).__name__)
+    law = in_si(law)
     kind = type(law).__name__
     if said := endless(law):
         raise DescriptionError.of(kind, f"{said}; {ENDING}")

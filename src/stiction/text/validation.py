@@ -46,6 +46,7 @@ from stiction.text.units import (
     hints_of,
     kind_of,
     unit_of,
+    unit_on,
 )
 
 if TYPE_CHECKING:
@@ -367,14 +368,17 @@ def _no_faults(made: object) -> Iterable[tuple[str, str]]:
 
 
 @cache
-def fields(kind: Any) -> type[Described]:
-    """Return the model that validates the parameters of a NamedTuple `kind`."""
+def fields(kind: Any, only: tuple[str, ...] | None = None) -> type[Described]:
+    """Return the model that validates the parameters of a NamedTuple `kind`, or some of them."""
     hints = {name: Plain if hint is float else hint for name, hint in hints_of(kind).items()}
     defaults = kind._field_defaults
     model: type[Described] = create_model(  # type: ignore[call-overload]
         kind.__name__,
         __base__=Described,
-        **{name: (hints.get(name, Plain), defaults.get(name, ...)) for name in kind._fields},
+        **{
+            name: (hints.get(name, Plain), defaults.get(name, ...))
+            for name in (kind._fields if only is None else only)
+        },
     )
     return model
 
@@ -389,6 +393,21 @@ def make(kind: type[T], values: Mapping[str, Any]) -> T:
         return kind(**values)
     model = fields(cast(Any, kind))(**values)
     return _check(kind(**{name: getattr(model, name) for name in type(model).model_fields}))
+
+
+def in_si(value: T) -> T:
+    """Read those fields of a NamedTuple that are text or carry a unit; its numbers are in SI.
+
+    One that is `validate` has read them; another takes whatever it is called with.
+    """
+    if hasattr(type(value).__new__, READS):
+        return value
+    given: dict[str, Any] = cast(Any, value)._asdict()
+    texts = {name: each for name, each in given.items() if isinstance(each, str) or unit_on(each)}
+    if not texts:
+        return value
+    model = fields(cast(Any, type(value)), tuple(texts))(**texts)
+    return type(value)(**given | {name: getattr(model, name) for name in texts})
 
 
 def _check(value: T) -> T:
