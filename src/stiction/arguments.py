@@ -77,7 +77,7 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
             args = *map(read, order, args), *args[len(order) :]
             values = {each: read(each, value) for each, value in values.items()}
         if paths and any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
-            refuse(each for each in faults(public, args, values) if each.path in paths)
+            refuse(each for each in faults(public, args, values, NO_PATH) if each.path in paths)
         try:
             return function(*args, **values)
         except StictionError:
@@ -181,9 +181,15 @@ def refuse(faults: Iterable[Fault]) -> None:
 
 
 def faults(
-    public: Callable[..., Any], args: tuple[Any, ...], values: Mapping[str, Any]
+    public: Callable[..., Any],
+    args: tuple[Any, ...],
+    values: Mapping[str, Any],
+    suspects: type | tuple[type, ...] = object,
 ) -> list[Fault]:
-    """Return the arguments that are not of the type that the signature states."""
+    """Return the arguments that are not of the type that the signature states.
+
+    Only those of the classes `suspects` are examined.
+    """
     shape, scope = signature(public), vars(builtins) | unwrap(public).__globals__
     try:
         given = shape.bind(*args, **values).arguments
@@ -192,7 +198,7 @@ def faults(
     return [
         Fault(name, f"must be {types_in_words(hint)}, is {value_in_words(value)}{remedy(public)}")
         for name, hint, value in pairs(shape, given)
-        if not accepts(hint, value, scope)
+        if isinstance(value, suspects) and not accepts(hint, value, scope)
     ]
 
 

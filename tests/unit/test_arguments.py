@@ -181,3 +181,11 @@ def test_a_number_in_place_of_a_path_leaves_open_files_alone(verb, tmp_path):
 def test_lists_are_what_has_values_in_order():
     assert all(map(is_list, ([1], (1, 2), np.ones(2), {"a": 1}.values())))
     assert not any(map(is_list, ("1", b"1", {"a": 1}, {1, 2}, 5, None, iter([1]))))
+
+
+def test_a_whole_number_elsewhere_does_not_make_a_wrong_path_of_another_argument(paper_run):
+    """Beside ``simulations=500`` a slider was refused as a path; alone, what it lacks was told."""
+    record, slider = st.measure(paper_run, st.Sensor()), st.presets.nakano_popov_2020()
+    for options in ({}, {"simulations": 500}):
+        with pytest.raises(st.DescriptionError, match=r"nothing is uncertain.*in Python st\.Rig"):
+            st.fit(record, slider, **options)

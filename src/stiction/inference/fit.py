@@ -112,7 +112,7 @@ def check(rig: Rig) -> None:
     faults = []
     if not rig.priors:
         message = "nothing is uncertain, and a fit estimates what is; write for example "
-        message += 'phi = "2 +- 1 deg"'
+        message += 'phi = "2 +- 1 deg", in Python st.Rig(slider, {"phi": "2 +- 1 deg"})'
         faults.append(Fault("slider", message))
     faults += law_faults(rig.slider.law)
     faults += program_faults(rig.slider)

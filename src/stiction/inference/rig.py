@@ -8,7 +8,7 @@ from contextlib import suppress
 from functools import partial
 from math import radians
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Self
 
 from pydantic_core import PydanticCustomError
 
@@ -29,29 +29,54 @@ from stiction.text.units import NORMAL, QUANTITY, UNIFORM, Kind, split_uncertain
 
 NUMBER = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*?)\s*")
 LARGEST_ANGLE = radians(89.9)  # at 90 deg the drive pulls across
+UNCERTAIN = '{"phi": "2 +- 1 deg"}'
 UNDRAWN = 7.1  # standard deviations from the mean: beyond, nothing is drawn (`priors.EDGE`)
 
 
-class Rig(NamedTuple):
+class _Parts(NamedTuple):
+    slider: Slider
+    priors: dict[str, Prior]
+
+
+class Rig(_Parts):
     """A rig as its description states it.
 
     Parameters
     ----------
     slider : Slider
-        With every uncertain value in the middle of its prior.
-    priors : dict of str to Normal or Uniform
-        By the path of each uncertain parameter.
+        Every uncertain value that is stated in text is put in the middle of its prior.
+    priors : dict
+        By the path of each uncertain parameter, what a description would state:
+        ``"2 +- 1 deg"``, or a table of ``value`` and ``uncertainty``, or of ``low`` and ``high``.
+
+    Raises
+    ------
+    DescriptionError
+        With every fault of what is stated.
 
     Examples
     --------
     >>> import stiction as st
-    >>> text = st.presets.nakano_popov_2020().to_toml().replace('"1 deg"', '"1 +- 0.5 deg"')
-    >>> list(st.Rig.from_toml(text).priors)
-    ['phi']
+    >>> rig = st.Rig(st.presets.nakano_popov_2020(), {"phi": "1 +- 0.5 deg"})
+    >>> rig.to_toml().splitlines()[4]
+    'phi = { value = "1 deg", uncertainty = "0.5 deg" }'
     """
 
-    slider: Slider
-    priors: dict[str, Prior]
+    __slots__ = ()
+
+    def __new__(cls, slider: Slider, priors: Mapping[str, Any] | None = None) -> Self:
+        """Read what is stated in text or as a table."""
+        if not isinstance(priors, Mapping | None):
+            raise DescriptionError.of("priors", f"{echo(priors)} is not a dict; write {UNCERTAIN}")
+        given = {canonical(path): its for path, its in (priors or {}).items()}
+        if all(isinstance(its, Prior) for its in given.values()):
+            return super().__new__(cls, slider, given)
+        tables = {path: spread(its) or its for path, its in given.items()}
+        return super().__new__(cls, *with_priors(slider_of(slider), tables))
+
+    def __repr__(self) -> str:
+        """Return the call that makes an equal rig."""
+        return f"st.Rig({self.slider!r}, {self.priors!r})"
 
     @classmethod
     def from_toml(
@@ -102,10 +127,7 @@ class Rig(NamedTuple):
         except DescriptionError as error:
             others = [fault for fault in error.faults if fault not in wrong]
             raise DescriptionError(with_prior_faults(others, wrong, stated)) from None
-        priors = read_priors(partial(unit, slider), stated)
-        slider = in_the_middle(slider, priors)
-        priors = within_ranges(slider, priors)
-        return cls(in_the_middle(slider, priors), priors)
+        return cls(*with_priors(slider, stated))
 
     def _repr_html_(self) -> str:
         table = as_html([Section("Rig", [], parameter_table(self._tables()))])
@@ -130,6 +152,18 @@ class Rig(NamedTuple):
         }
         tables, _ = with_changes(slider_tables(self.slider), stated)
         return tables
+
+
+def with_priors(slider: Slider, stated: Mapping[str, Any]) -> tuple[Slider, dict[str, Prior]]:
+    """Return a slider in the middle of what is stated as uncertain, and all priors.
+
+    One that is given as a prior says nothing of the slider.
+    """
+    priors = read_priors(partial(unit, slider), stated)
+    told = [name for name, its in stated.items() if not isinstance(its, Prior)]
+    slider = in_the_middle(slider, {name: priors[name] for name in told})
+    priors = within_ranges(slider, priors)
+    return in_the_middle(slider, {name: priors[name] for name in told}), priors
 
 
 def rig_of(source: Any, changes: Mapping[str, Any] | None = None, trust: bool = False) -> Rig:
@@ -277,14 +311,17 @@ def own_unit(table: Mapping[str, Any]) -> str:
     return next((each for each in units if each not in ("", "%")), "")
 
 
-def read_priors(
-    unit_at: Callable[[str], str], stated: Mapping[str, Mapping[str, Any]]
-) -> dict[str, Prior]:
+def read_priors(unit_at: Callable[[str], str], stated: Mapping[str, Any]) -> dict[str, Prior]:
     """Return the prior of each uncertain parameter, whose unit is known, or every fault."""
-    priors, faults = {}, []
+    priors, faults = dict[str, Prior](), list[Fault]()
     for path, table in stated.items():
         try:
             its = unit_at(path)
+            if isinstance(table, Prior):
+                priors[path] = table
+                continue
+            if not isinstance(table, Mapping):
+                raise ValueError(f"{echo(table)} is not uncertain; write as in {UNCERTAIN}")
             example = "1 deg" if its == "rad" else f"1 {its}".rstrip()
             priors[path] = read_prior(table, Kind(path, its, example))
         except PydanticCustomError as error:

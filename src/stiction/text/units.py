@@ -162,8 +162,8 @@ def _uncertain(value: object, kind: Kind) -> Exception:
         ways = "an uncertain value has value and uncertainty, or low and high"
         return fault(f"is {echo(value)}; {ways}")
     return fault(
-        f"{echo(value)} is uncertain, which 'stiction fit', 'design' and 'audit' read; write one "
-        f"value here, for example {kind.example!r}"
+        f"{echo(value)} is uncertain, which 'stiction fit', 'design' and 'audit' read, and st.Rig; "
+        f"write one value here, for example {kind.example!r}"
     )
 
 

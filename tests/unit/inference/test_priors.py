@@ -1,5 +1,8 @@
 """Uncertain values of a description."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -179,3 +182,36 @@ def test_a_value_in_another_unit_is_told_once():
     with pytest.raises(DescriptionError) as error:
         rig(phi='{value = "2 kg", uncertainty = "0 kg"}')
     assert [fault.path for fault in error.value.faults] == ["slider.phi"]
+
+
+STATED = {"phi": "2 +- 1 deg", "friction.mu_0": {"low": 0.1, "high": 0.3}, "mass": "0.3 ± 0.1 kg"}
+
+
+def test_a_rig_of_a_slider_is_that_of_a_description() -> None:
+    found = st.Rig(st.presets.nakano_popov_2020(), STATED)
+    assert found == st.Rig.from_toml(PLAIN, STATED)
+    assert found == st.Rig.from_toml(found.to_toml())
+    assert [*found.priors] == [*STATED]
+    assert found == pickle.loads(pickle.dumps(found)) == copy.deepcopy(found)
+
+
+def test_a_prior_that_is_given_as_one_says_nothing_of_the_slider() -> None:
+    slider, prior = st.presets.nakano_popov_2020(), Normal(0.5, 0.1)
+    assert st.Rig(slider, {"phi": prior}).slider is slider
+    both = st.Rig(slider, {"phi": prior, "mass": "0.3 +- 0.1 kg"})
+    assert both.slider.phi == slider.phi
+    assert both.slider.mass == pytest.approx(0.3, rel=1e-2)
+    assert both.priors["phi"].mean == 0.5
+    assert st.Rig(slider) == (slider, {})
+
+
+def test_what_a_rig_in_python_cannot_be_is_told_at_once() -> None:
+    with pytest.raises(DescriptionError) as error:
+        st.Rig(
+            st.presets.nakano_popov_2020(),
+            {"phi": "2 deg", "friction.mu_1": "1 +- 2", "mass": "1 +- 0.1 m"},
+        )
+    assert [each.path for each in error.value.faults] == ["phi", "friction.mu_1", "mass"]
+    assert "phi: '2 deg' is not uncertain; write as in" in str(error.value)
+    with pytest.raises(DescriptionError, match=r"priors: \['phi'\] is not a dict; write"):
+        st.Rig(st.presets.nakano_popov_2020(), ["phi"])
