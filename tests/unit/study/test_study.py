@@ -36,6 +36,45 @@ def finished(tmp_path_factory):
     return path, st.sweep(st.Study(base=BASE, axes=AXES, measures=MEASURES), path)
 
 
+def test_a_run_is_described_by_its_values_as_by_its_indices(finished, study):
+    data = st.open_study(finished[0])
+    for index in np.ndindex(study.layout.shape):
+        cell = data.isel(dict(zip(study.layout.dims, index, strict=True)))
+        at = {dim: cell[dim] for dim in study.layout.dims}  # with units, as a store has them
+        assert study.description(at) == study.description(index)
+    assert study.description({"V": 1.2e-3, "phi": "2.9 deg"}) == study.description((2, 0))
+
+
+@pytest.mark.parametrize(
+    ("at", "said"),
+    [
+        ({"phi": 2.0, "v": 1}, ["at.phi: degree or radian", "at.v: unknown", "velocity: missing"]),
+        (
+            {"phi": "9 deg", "V": "1 m"},
+            ["9 deg is beyond the study", "at.drive.velocity: '1 m' is"],
+        ),
+        ({}, ["at.phi: missing", "at.drive.velocity: missing"]),
+        ((1,), ["at: (1,) is not a run of the study, of phi (5), drive.velocity (3)"]),
+        ((5, 0), ["at: (5, 0) is not a run of the study"]),
+        ((1.5, 0), ["at: (1.5, 0) is not a run of the study"]),
+        (3, ["at: 3 is not a run of the study"]),
+    ],
+)
+def test_what_is_not_a_run_is_told(study, at, said):
+    with pytest.raises(st.DescriptionError) as error:
+        study.description(at)
+    assert [words for words in said if words not in str(error.value)] == []
+    assert len(error.value.faults) == len(said)
+
+
+def test_runs_whose_parameters_vary_together_go_by_their_number():
+    axes = {"phi": st.Sobol("1 deg", "3 deg", 4), "mass": st.Sobol(0.1, 0.2, 4)}
+    study = st.Study(base=BASE, axes=axes)
+    assert study.description((2,)).slider.mass == study.coordinates["mass"].values[2]
+    with pytest.raises(st.DescriptionError, match=r"at\.sample: counts the runs"):
+        study.description({"sample": 2})
+
+
 def test_each_value_is_that_of_the_run_by_itself(finished):
     """The solver is deterministic: no tolerance."""
     data = xr.open_zarr(finished[0])

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import radians
 from typing import Any, NamedTuple
 
@@ -16,7 +16,9 @@ from stiction.study.plan.axes import Axis, Range
 from stiction.study.variables.measures import MEASURES
 from stiction.system import parameter
 from stiction.system.description import Description
-from stiction.text.units import Kind, bare, to_si
+from stiction.text.paths import canonical_path
+from stiction.text.units import Kind, bare, in_words, span, to_si
+from stiction.text.validation import unknown_name
 
 TAKEN = {"status", "message", "time", *MEASURES}  # reserved names in a store
 NAME = re.compile(r"\w[\w ,.-]*")
@@ -90,6 +92,40 @@ def values_at(
         for path, (dim, values, its) in known.items()
         if dim in at
     }
+
+
+def nearest(
+    known: Mapping[str, Coordinate], dims: Sequence[str], wanted: Mapping[str, Any]
+) -> tuple[dict[str, int], list[Fault]]:
+    """Return the places along some dimensions that are nearest to wanted values, and the faults."""
+    at, found = dict[str, int](), list[Fault]()
+    for name, value in wanted.items():
+        dim = canonical_path(name)
+        if dim not in known or dim not in dims:
+            found.append(Fault(dim, _without_values(dim, dims, known)))
+            continue
+        try:
+            sought = number(value, known[dim].unit)
+            found += [Fault(dim, message) for message in beyond(known[dim], sought)]
+            at[dim] = int(np.argmin(np.abs(known[dim].values - sought)))
+        except PydanticCustomError as error:
+            found.append(Fault(dim, error.message()))
+    return at, found
+
+
+def _without_values(dim: str, dims: Sequence[str], known: Mapping[str, Coordinate]) -> str:
+    if dim in dims:
+        return "counts the runs, whose parameters vary together: it has no values to look for"
+    return unknown_name("dimension", dim, [each for each in dims if each in known] or ["none"])
+
+
+def beyond(known: Coordinate, wanted: float) -> Iterator[str]:
+    """Say if a value lies beyond those of a study, by more than half of their distance there."""
+    values = np.unique(known.values)
+    gaps = np.diff(values)
+    if len(gaps) and not -gaps[0] <= 2.0 * (wanted - values[0]) <= 2.0 * np.ptp(values) + gaps[-1]:
+        ends = span(values[0], values[-1], known.unit)
+        yield f"{in_words(wanted, known.unit)} is beyond the study, which has {ends}"
 
 
 def vary(base: Description, changes: Mapping[str, tuple[float, str]]) -> Description:

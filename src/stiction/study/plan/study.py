@@ -20,6 +20,7 @@ from stiction.study.plan.coordinates import (
     Coordinate,
     coordinate_faults,
     coordinates,
+    nearest,
     stated_unit,
     unit,
     values_at,
@@ -42,7 +43,7 @@ from stiction.system.description import Description
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import folder_of, read_changed, read_json
-from stiction.text.units import Read, Whole
+from stiction.text.units import Quantity, Read, Whole
 from stiction.text.validation import Described, faulty, unknown_name
 
 
@@ -148,16 +149,47 @@ class Study(Described):
         """The values of each axis."""
         return coordinates(self.base, self.axes, self.seed)
 
-    def description(self, index: Index) -> Description:
+    def description(self, at: Index | Mapping[str, Quantity]) -> Description:
         """Return the description of one run.
+
+        Parameters
+        ----------
+        at : mapping or tuple of int
+            From each dimension to a value (a number, or text with its unit), of which the nearest
+            of the study is taken, as by `stiction.map`; or the indices of the run in the store.
 
         Raises
         ------
         DescriptionError
-            If the base cannot have this combination of values.
+            If the study does not have this run, or its base cannot have this combination of values.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> slider, settings = st.presets.nakano_popov_2020(), st.Settings(duration=5)
+        >>> base = st.Description(slider, st.Initial(), settings)
+        >>> study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "10 deg", 10)})
+        >>> study.description({"phi": "3 deg"}).slider == slider.replace(phi="3 deg")
+        True
         """
-        at = dict(zip(self.layout.dims, index, strict=True))
-        return vary(self.base, values_at(self.coordinates, at))
+        places = self._place(at) if isinstance(at, Mapping) else at
+        try:
+            values = values_at(self.coordinates, dict(zip(self.layout.dims, places, strict=True)))
+        except (IndexError, TypeError, ValueError):
+            sizes = ", ".join(map("{} ({})".format, self.layout.dims, self.layout.shape))
+            raise DescriptionError.of(
+                "at", f"{echo(at)} is not a run of the study, of {sizes}; write an index for each"
+            ) from None
+        return vary(self.base, values)
+
+    def _place(self, at: Mapping[str, Quantity]) -> Index:
+        found, faults = nearest(self.coordinates, self.layout.dims, at)
+        told = {fault.path for fault in faults}
+        missing = [dim for dim in self.layout.dims if dim not in found and dim not in told]
+        faults += [Fault(dim, "missing; give a value of the study") for dim in missing]
+        if faults:
+            raise DescriptionError([Fault(f"at.{path}", message) for path, message in faults])
+        return tuple(found[dim] for dim in self.layout.dims)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

@@ -7,22 +7,20 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from pydantic_core import PydanticCustomError
 
 from stiction.arrays import xr
 from stiction.errors import DescriptionError, Fault, ResultError
 from stiction.names import by_new_names
 from stiction.storage.foreign import opening, refuse_size
-from stiction.study.plan.coordinates import Coordinate, number
+from stiction.study.plan.coordinates import nearest
 from stiction.study.plan.study import Study
 from stiction.study.store import seal
 from stiction.study.store.kept import stored_variables
 from stiction.study.store.store import CHECKED, group_at, open_study
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.measures import FORMERLY, MEASURES
-from stiction.text.paths import canonical_path
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import Quantity, in_words, span
+from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
 
 REGIME = "regime"
@@ -62,19 +60,8 @@ def view_study(
         data = open_study(path)
         study = Study.from_json(data.attrs["description"], trust=trust)
     fitting(path, data, study)
-    dims, at, found = study.layout.dims, {}, []
-    for name, value in cut.items():
-        dim = canonical_path(name)
-        if dim not in study.coordinates or dim not in dims:
-            found.append(Fault(dim, unknown_name("dimension", dim, dims)))
-            continue
-        known = study.coordinates[dim]
-        try:
-            wanted = number(value, known.unit)
-            found += [Fault(dim, message) for message in beyond(known, wanted)]
-            at[dim] = int(np.argmin(np.abs(known.values - wanted)))
-        except PydanticCustomError as error:
-            found.append(Fault(dim, error.message()))
+    dims = study.layout.dims
+    at, found = nearest(study.coordinates, dims, cut)
     left = [dim for dim in dims if dim not in at]
     found += strange_measures(data, measures)
     if not found and not 1 <= len(left) <= 2:
@@ -87,15 +74,6 @@ def view_study(
     refuse_size(path, part.nbytes)
     with opening(path, "is damaged"):
         return View(study, part.load(), at, refined_changes(path))
-
-
-def beyond(known: Coordinate, wanted: float) -> Iterator[str]:
-    """Say if a value lies beyond those of a study, by more than half of their distance there."""
-    values = np.unique(known.values)
-    gaps = np.diff(values)
-    if len(gaps) and not -gaps[0] <= 2.0 * (wanted - values[0]) <= 2.0 * np.ptp(values) + gaps[-1]:
-        ends = span(values[0], values[-1], known.unit)
-        yield f"{in_words(wanted, known.unit)} is beyond the study, which has {ends}"
 
 
 def fitting(path: str | Path, data: xr.Dataset, study: Study) -> None:
