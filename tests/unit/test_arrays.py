@@ -1,13 +1,18 @@
-"""What is computed once of an array, and for how long it is kept."""
+"""What is computed once of an array, and for how long; results are compared by values."""
 
+import copy
 import gc
+import pickle
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 from weakref import ref
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import stiction as st
-from stiction.arrays import KEPT, Floats, compute_once
+from stiction.arrays import KEPT, Floats, compute_once, same_values
 
 
 class Counted:
@@ -71,3 +76,48 @@ def test_nothing_is_kept_of_a_record_that_was_analysed():
     del found
     gc.collect()
     assert [each() for each in arrays] == [None, None]
+
+
+class Pair(NamedTuple):
+    name: str
+    values: Any
+
+
+@dataclass(frozen=True)
+class Result:
+    parts: Any
+
+
+def results(x: float, n: float = np.nan) -> list[Any]:
+    """Results of every shape, with a number somewhere in each."""
+    column = np.array([n, x])
+    return [
+        column,
+        [column, {"a": (column, n)}],
+        Pair("a", Pair("b", column)),
+        Result({"a": Pair("b", [n, x])}),
+        xr.Dataset({"a": ("t", column)}),
+        np.array([str(x), "b"]),
+    ]
+
+
+def test_results_are_equal_by_their_values():
+    for one, same, other in zip(results(1.0), results(1.0), results(2.0), strict=True):
+        assert same_values(one, same)
+        assert not same_values(one, other)
+    assert not same_values(Pair("a", 1.0), ("a", 1.0, 2.0))
+    assert not same_values(Result(1.0), None)
+    assert not same_values([1.0, 2.0], [1.0])
+    assert not same_values({"a": np.ones(2)}, {"b": np.ones(2)})
+    assert not same_values(np.ones(2), None)
+
+
+def test_a_result_that_was_copied_is_equal(paper_run):
+    """Audits were not, of a NaN; sounds, advice and odds raised an error."""
+    for found in (st.audit(paper_run.slider), st.listen(paper_run)):
+        again = pickle.loads(pickle.dumps(found))
+        assert again == found
+        assert (again != found) is False  # a tuple has its own
+        assert copy.deepcopy(found) == found
+    assert st.audit(paper_run.slider.replace(phi="2 deg")) != st.audit(paper_run.slider)
+    assert st.listen(paper_run, axis="x") != st.listen(paper_run)

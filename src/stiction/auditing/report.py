@@ -9,6 +9,7 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from stiction.analysis.record import Record, as_record
+from stiction.arrays import same_values
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
 from stiction.auditing.pairs import Pair, advise_pairs
@@ -101,6 +102,14 @@ class Audit(NamedTuple):
     budget: Budget | None = None
     measured: RecordComparison | None = None
     priors: Mapping[str, Prior] = MappingProxyType({})
+
+    def __eq__(self, other: object) -> bool:
+        """Compare what was predicted and simulated; NaN equals NaN."""
+        return isinstance(other, Audit) and all(map(same_values, self, other))
+
+    def __ne__(self, other: object) -> bool:
+        """Return the opposite; a tuple has its own."""
+        return not self == other
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -175,6 +175,14 @@ class Fit(Report):
             several = ", ".join(x.name for x in found)
             raise ResultError(f"{echo(name)} is the name of several parameters: {several}")
         return found[0]
+
+    def __iter__(self) -> Iterator[str]:
+        """Go through the names of the parameters."""
+        return (x.name for x in self.estimates)
+
+    def __contains__(self, name: object) -> bool:
+        """Return whether a parameter of that name was fitted."""
+        return any(name in (x.name, last_part(x.name)) for x in self.estimates)
 
     def tables(self) -> list[Section]:
         """Return the report: what is known, and what the records do not say."""

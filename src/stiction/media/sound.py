@@ -5,7 +5,7 @@ from __future__ import annotations
 import wave
 from base64 import b64encode
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from io import BytesIO
 from math import floor, log10
 from pathlib import Path
@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.arrays import Floats
+from stiction.arrays import Floats, same_fields
 from stiction.errors import Faults, ResultError, echo
 from stiction.result.table import sample_table
 from stiction.result.window import window_of
@@ -33,7 +33,7 @@ HEARD = (50.0, 8_000.0)  # Hz: a pitch that small loudspeakers give
 LARGEST = 2**15 - 1  # of 16 bits
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class Sound:
     """A sound, which a notebook plays.
 
@@ -45,8 +45,16 @@ class Sound:
         Time in the run over time in the sound: below 1 it is slower, and deeper.
     """
 
-    samples: NDArray[np.float32] = field(repr=False)
+    samples: NDArray[np.float32]
     speed: float
+
+    def __eq__(self, other: object) -> bool:
+        """Compare samples and speed."""
+        return same_fields(self, other)
+
+    def __repr__(self) -> str:
+        """Return a one-line summary."""
+        return f"<Sound of {in_words(self.duration, 's')}, speed {self.speed:g}>"
 
     @property
     def duration(self) -> float:
@@ -129,7 +137,7 @@ def listen(
     >>> import stiction as st
     >>> run = st.simulate(st.presets.nakano_popov_2020(), "0.1 s")
     >>> st.listen(run)
-    Sound(speed=1.0)
+    <Sound of 100 ms, speed 1>
     """
     heard = passage(run, speed, window, axis, trust=trust)
     return make_sound(heard, progress)

@@ -219,6 +219,7 @@ def test_a_design_of_a_rig(designed, monkeypatch, tmp_path):
     assert kept.name == "tests-200-force.npz"
     again = st.design(TEXT, library=tmp_path, **ASKED)  # from the folder
     assert again.data.identical(data)
+    assert again == found != replace(found, doubt="It is of another rig.")
 
 
 def test_a_test_that_is_surely_better_is_named_though_another_may_be_better_still():

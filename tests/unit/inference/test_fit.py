@@ -70,6 +70,16 @@ def test_the_figures_say_what_their_lines_and_regions_are(found):
     assert words_of(pairs[0, 1])[2:] == ["95 %", "95 % of a pair", "50 % of a pair"]
 
 
+def test_a_fit_has_its_parameters_by_name(found):
+    """Of ``"phi" in fit`` it said that no parameter 0 was fitted."""
+    names = [*found]
+    assert [found[name].name for name in names] == names == [x.name for x in found.estimates]
+    assert "phi" in found
+    assert "mu_0" in found  # for friction.mu_0
+    assert "friction.mu_0" in found
+    assert "fi" not in found
+
+
 def words_of(ax):
     """The entries of a panel's legend."""
     return [text.get_text() for text in ax.get_legend().get_texts()]

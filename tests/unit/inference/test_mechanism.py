@@ -1,5 +1,6 @@
 """Mechanisms: rivals on one apparatus, a classifier that is calibrated, and what it may claim."""
 
+import pickle
 from dataclasses import replace
 from itertools import islice
 
@@ -79,6 +80,7 @@ def test_a_record_of_a_rotating_friction_vector_is_called_so(odds):
     assert f"Claimed: {ROTATION}" in said
     assert "not as straight" in said
     assert "in all directions" not in said  # the force across is measured
+    assert pickle.loads(pickle.dumps(odds)) == odds != replace(odds, counts=())
 
 
 def test_drifting_friction_has_a_trend(rig, rotating):

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.arrays import Floats, xr
+from stiction.arrays import Floats, same_fields, xr
 from stiction.inference.features import MIDDLES
 from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.rest import ALIKE, Rest
@@ -45,7 +45,7 @@ TURNING = ROTATION, MISALIGNED_STATIC  # the friction force turns, the mass cree
 CHANNEL = "force_across"  # without which the shape of the friction limit is not seen
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Odds(Report):
     """The odds of mechanisms, and what they rest on.
 
@@ -294,6 +294,10 @@ class Odds(Report):
         if self.rest is not None and self.rest.known:
             about["share_at_rest"] = self.rest.middle
         return xr.Dataset(columns, places, about)
+
+    def __eq__(self, other: object) -> bool:
+        """Compare the fields, of arrays the values."""
+        return same_fields(self, other)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""

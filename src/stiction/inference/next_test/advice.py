@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.arrays import xr
+from stiction.arrays import same_fields, xr
 from stiction.inference.next_test.expected import FEWEST_RIGS, NUMBERS, Expected
 from stiction.inference.next_test.further import AGAIN
 from stiction.inference.posterior import unit_of
@@ -20,7 +20,7 @@ from stiction.text.sections import Report, Section, Table
 from stiction.text.units import in_words
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Advice(Report):
     """What further tests are expected to tell about the parameters of a rig.
 
@@ -92,10 +92,16 @@ class Advice(Report):
         names = {"test": [test.test for test in self.tests], "parameter": [*self.plan.priors]}
         return xr.Dataset(columns, names)
 
+    def __eq__(self, other: object) -> bool:
+        """Compare the fields, of arrays the values."""
+        return same_fields(self, other)
+
     def __repr__(self) -> str:
         """Return a one-line summary."""
         best = self.best or self.ranked[0]
-        return f"Advice: best for {self.of}: {best.test}, {best.ratio[self.index]:.2f} of the error"
+        return (
+            f"<Advice: best for {self.of}: {best.test}, {best.ratio[self.index]:.2f} of the error>"
+        )
 
     def tables(self) -> list[Section]:
         """Return what is found as sentences and tables."""
