@@ -2,7 +2,12 @@ from stiction.analysis.report import Analysis as Analysis
 from stiction.auditing.report import Audit as Audit
 from stiction.checking import Check as Check
 from stiction.comparison import Comparison as Comparison
+from stiction.inference.mechanism.odds import Odds as Odds
 from stiction.inference.next_test.advice import Advice as Advice
 from stiction.inference.posterior import Fit as Fit
 from stiction.linear_stability.examination import Stability as Stability
+from stiction.media.film import Film as Film
+from stiction.media.sound import Sound as Sound
+from stiction.reproduction.reproduce import Reproduction as Reproduction
 from stiction.study.view.mapping import Map as Map
+from stiction.study.view.summary import Summary as Summary

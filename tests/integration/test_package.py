@@ -7,6 +7,7 @@ import runpy
 import shutil
 import subprocess
 import sys
+from inspect import isfunction
 from pathlib import Path
 from pkgutil import resolve_name
 
@@ -125,6 +126,14 @@ def test_public_names():
     assert callable(st.simulate)
     with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
         st.nonsense  # noqa: B018
+
+
+def test_the_class_of_what_a_verb_returns_is_public():
+    """For annotations: ``st.results.Odds`` and four others were missing."""
+    verbs = [each for name in st.__all__ if isfunction(each := getattr(st, name))]
+    words = {word for verb in verbs for word in re.findall(r"\w+", verb.__annotations__["return"])}
+    ours = {word for word in words if word[0].isupper()} - {"Any", "Dataset", "None", "Path"}
+    assert {"Odds", "Trajectory"} <= ours <= {*dir(st), *dir(st.results)}
 
 
 GLOSSARY = (ROOT / "docs/glossary.md").read_text("utf-8")

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 from pydantic import AfterValidator, model_validator
 from pydantic_core import PydanticCustomError
 
+from stiction.arguments import is_list
 from stiction.drive import (
     ConstantVelocity,
     Drive,
@@ -23,6 +24,7 @@ from stiction.drive import (
     read_drive,
     read_load,
 )
+from stiction.drive.pieces import DRIVE_PIECES
 from stiction.drive.program import fastest_turn, nominal_velocity
 from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
@@ -74,9 +76,9 @@ def _is_law(value: Any) -> Any:
 
 def _is_drive(value: Any) -> Any:
     if not isinstance(value, ConstantVelocity | DriveProgram):
-        raise ValueError(
-            f"{echo(value)} is not a drive; write for example st.ConstantVelocity('1 mm/s')"
-        )
+        pieces = is_list(value) or type(value) in DRIVE_PIECES.values()
+        right = "st.protocols.DriveProgram(program=[...])" if pieces else CONSTANT
+        raise ValueError(f"{echo(value)} is not a drive; write for example {right}")
     return value
 
 
@@ -97,6 +99,7 @@ def _are_several(springs: Any) -> bool:
 ANGLES = ("phi", "mass_angle", "damping_angle", "cell_angle")
 FROM_SPRINGS = ("k_x", "k_y")  # follow from the springs in series, where there are several
 DRIVE = "ConstantVelocity | DriveProgram"
+CONSTANT = "st.ConstantVelocity('1 mm/s')"
 
 
 class Apparatus(Described):

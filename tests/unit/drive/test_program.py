@@ -518,3 +518,14 @@ def test_the_frequencies_of_a_program_include_those_of_its_pieces():
     time = np.concatenate([np.arange(50) * 0.1, 5.0 + np.arange(20) * 0.01, [5.3, 5.4]])
     table = p.Recorded(time, velocity=np.full(len(time), 1e-3))
     assert frequencies(table) == pytest.approx((12.5,))
+
+
+def test_of_pieces_that_are_no_program_it_is_told_how_to_make_one(slider):
+    hold = st.protocols.Hold("1 s")
+    for value in (hold, [hold], (), 1e-3, "1 mm/s", None, lambda t: 1e-3):
+        with pytest.raises(st.DescriptionError, match=r"Slider\.drive.*is not a drive") as error:
+            slider.replace(drive=value)
+        pieces = value in (hold, [hold], ())
+        assert ("st.protocols.DriveProgram(program=[...])" in str(error.value)) == pieces
+        assert ("st.ConstantVelocity('1 mm/s')" in str(error.value)) != pieces
+    assert slider.replace(drive=st.protocols.DriveProgram(program=[hold])).drive.program == (hold,)
