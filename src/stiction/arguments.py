@@ -208,7 +208,7 @@ def value_in_words(value: Any) -> str:
     source = encoding.get("source") if isinstance(encoding, Mapping) else None
     if source is None:
         return echo(value)
-    return f"{_with_article(type(value).__name__)} from {echo(str(source))}: give that path"
+    return f"{with_article(type(value).__name__)} from {echo(str(source))}: give that path"
 
 
 def pairs(shape: Signature, given: Mapping[str, Any]) -> Iterator[tuple[str, ast.expr, Any]]:
@@ -238,11 +238,12 @@ def name_of(hint: ast.expr) -> str:
 def types_in_words(hint: ast.expr) -> str:
     """Return the types that an annotation allows, for a reader."""
     names = dict.fromkeys(name_of(each) for each in members(hint))
-    texts = [IN_WORDS.get(name) or _with_article(name) for name in names if name != "None"]
+    texts = [IN_WORDS.get(name) or with_article(name) for name in names if name != "None"]
     return " or ".join(texts)
 
 
-def _with_article(name: str) -> str:
+def with_article(name: str) -> str:
+    """Return the name of a class with its article: ``an Analysis``."""
     name = name.lower() if name in ("Sequence", "Iterable", "Mapping") else name
     return f"an {name}" if name[0] in "AEIOaeio" else f"a {name}"
 

@@ -1140,3 +1140,19 @@ def test_swings_that_died_out_do_not_take_the_colours_of_the_others(least, low, 
     assert mesh.colorbar.extend == end
     low, high = measure_shades(np.array([[1e-9, 1.0]])).limits  # a bar must have a length
     assert low < high
+
+
+def test_axes_without_names_are_refused_with_what_to_write(paper_run):
+    _, axes = pyplot.subplots(2)
+    for given in (axes[0], axes, list(axes)):
+        with pytest.raises(st.DescriptionError, match=r"name those to draw, such as \{'force': ax"):
+            st.plot(paper_run, given)
+    assert st.plot(paper_run, {"force": axes[0]})["force"] is axes[0]
+
+
+def test_a_slider_is_drawn_whatever_holds_it(slider):
+    _, ax = pyplot.subplots()
+    description = st.Description(slider, st.Initial(), st.Settings(duration=1.0))
+    for each in (slider, description, st.Rig(slider)):
+        assert st.plot(each, ax) is ax
+    assert slider.plot(ax) is ax

@@ -193,7 +193,9 @@ def test_a_figure_that_the_paper_has_not_is_refused(tmp_path):
 
 
 def test_what_has_no_figure_says_so():
-    with pytest.raises(st.StictionError, match="float has no figure"):
+    with pytest.raises(
+        st.StictionError, match="float has no figure; give a run, an analysis or a slider"
+    ):
         st.plot(3.0)
 
 

@@ -12,6 +12,7 @@ from pydantic_core import PydanticCustomError
 
 from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
+from stiction.arguments import with_article
 from stiction.arrays import Floats, Indices, xr
 from stiction.drive import ConstantVelocity
 from stiction.errors import Fault, ResultError, echo
@@ -512,10 +513,10 @@ def as_record(source: Trajectory | Record) -> Record:
         return source.each_value_once()
     if isinstance(source, Trajectory):
         return record_of(source)
-    raise ResultError(
-        f"a {type(source).__name__} is neither a run nor a record; make one with "
-        "st.Record(time=..., force=...)"
-    )
+    what = with_article(type(source).__name__)
+    is_rig = isinstance(getattr(source, "slider", source), Slider)
+    remedy = "st.simulate(...)" if is_rig else "st.Record(time=..., force=...)"
+    raise ResultError(f"{what} is neither a run nor a record; make one with {remedy}")
 
 
 def across_force(run: Trajectory, record: Record) -> bool:

@@ -52,7 +52,10 @@ def plot(
     """
     found = load(source, trust=trust) if isinstance(source, str | Path) else source
     if not hasattr(found, "plot"):
-        raise StictionError(f"{type(found).__name__} has no figure; give a run or an analysis")
+        found = getattr(found, "slider", found)  # of a description, or a rig
+    if not hasattr(found, "plot"):
+        remedy = "give a run, an analysis or a slider"
+        raise StictionError(f"{type(found).__name__} has no figure; {remedy}")
     if window is None:
         return found.plot(axes)
     if not isinstance(found, Trajectory | Comparison):

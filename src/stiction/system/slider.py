@@ -31,7 +31,7 @@ from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import Anisotropic, Law, has_state, read_law, registered_name
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import is_law, sound
-from stiction.names import picture, warn_renamed
+from stiction.names import draw, picture, warn_renamed
 from stiction.system.replacement import refusals
 from stiction.system.springs import Springs, read_springs, whole
 from stiction.system.tensors import ROUND, solver_axes, unit_vector
@@ -386,6 +386,10 @@ class Slider(Apparatus):
         drive = ahead(drive_stretches(self.motion), t)
         load = ahead(load_stretches(self.normal_load, self.load), t)
         return min(drive[0], load[0])
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draw the slider from above; see `stiction.plotting.plot_slider`."""
+        return draw("plot_slider", self, axes)
 
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""

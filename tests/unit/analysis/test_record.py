@@ -100,6 +100,10 @@ def test_a_run_is_read_like_its_record(paper_run: st.Trajectory) -> None:
     )
     with pytest.raises(st.ResultError, match="a str is neither a run nor a record"):
         st.analysis.classify("run.nc")
+    with pytest.raises(st.ResultError, match=r"a Slider is neither .*with st\.simulate"):
+        st.analyse(paper_run.slider)
+    with pytest.raises(st.ResultError, match=r"an Initial is neither .*with st\.Record"):
+        st.analyse(st.Initial())
 
 
 def test_units_of_arrays_are_honoured() -> None:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import ScalarFormatter
 
-from stiction.errors import StictionError
+from stiction.errors import DescriptionError, StictionError, echo
 from stiction.plotting.page.style import COLUMN, SHEET, new_figure
 from stiction.text.validation import unknown_name
 
@@ -92,6 +92,21 @@ class PlainNumbers(ScalarFormatter):
     def __call__(self, x: float, pos: int | None = None) -> str:
         """Return the label of a tick."""
         return super().__call__(x, pos).removeprefix(r"$\mathdefault{").removesuffix("}$")
+
+
+def panels_by_name(axes: Any) -> dict[str, Axes]:
+    """Return the axes that a user gives for a figure of several panels, by the panels' names.
+
+    Raises
+    ------
+    DescriptionError
+        If the axes have no names.
+    """
+    if not isinstance(axes, Mapping):
+        remedy = "name those to draw, such as {'force': ax}"
+        said = f"is {echo(axes)}, but the figure has several panels: {remedy}"
+        raise DescriptionError.of("axes", said)
+    return dict(axes)
 
 
 def find_drawing(drawings: Mapping[str, Drawing], name: str) -> Drawing:

@@ -14,7 +14,7 @@ from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.slip import cell_force, is_undersampled
 from stiction.errors import StictionError
 from stiction.friction import name_of
-from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
+from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks, panels_by_name
 from stiction.plotting.page.style import GREY, PAGE, style
 from stiction.plotting.page.words import (
     MEAN_MOTION,
@@ -99,7 +99,7 @@ def plot_comparison(
         curves = curves_of(excerpts(runs, window))
         legend = [legend_text(curve) for curve in curves]
         symbol = force_symbol(curves[0].run.slider)
-        panels = dict(_panels(curves, legend) if axes is None else axes)
+        panels = _panels(curves, legend) if axes is None else panels_by_name(axes)
         draw: dict[str, Callable[[Axes], None]] = {
             "force": lambda ax: draw_over_time(ax, curves, "force", symbol),
             "X": lambda ax: draw_over_time(ax, curves, "X", "$X$"),

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from stiction.arrays import Floats
 from stiction.plotting.apparatus.schematic import draw_schematic
-from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks
+from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks, panels_by_name
 from stiction.plotting.page.style import BLACK, BLUE, GREY, ORANGE, PAGE, RED, style
 from stiction.plotting.page.words import (
     law_in_words,
@@ -80,7 +80,7 @@ def plot_run(
     part = excerpt(run, window)
     words = _words(run, part)
     with style():
-        panels = dict(_panels(part, words) if axes is None else axes)
+        panels = _panels(part, words) if axes is None else panels_by_name(axes)
         drawings: dict[str, Callable[[Axes, Trajectory], Any]] = {
             "system": _system,
             "words": lambda ax, _: _write(ax, words),

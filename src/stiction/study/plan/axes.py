@@ -195,7 +195,8 @@ def read_axis(value: Any, name: str) -> Axis:
         return value
     path = f"axes.{name}"
     if not isinstance(value, Mapping):
-        message = f"{echo(value)} is not an axis; write for example st.Grid('1 deg', '10 deg', 10)"
+        right = "st.Values([...])" if is_list(value) else "st.Grid('1 deg', '10 deg', 10)"
+        message = f"{echo(value)} is not an axis; write for example {right}"
         raise DescriptionError.of(path, message)
     fields = {written: name for name, written in WRITTEN.items()}
     table = {fields.get(str(key), str(key)): each for key, each in value.items()}

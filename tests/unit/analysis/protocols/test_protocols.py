@@ -210,7 +210,7 @@ def test_the_line_of_two_holds_has_no_error():
     ],
 )  # fmt: skip
 def test_a_test_of_what_is_neither_run_nor_record_is_refused(analyse):
-    with pytest.raises(st.ResultError, match="a int is neither a run nor a record; make one with"):
+    with pytest.raises(st.ResultError, match="an int is neither a run nor a record; make one with"):
         analyse(5)
 
 
