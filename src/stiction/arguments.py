@@ -34,6 +34,7 @@ IN_WORDS = {
     "Path": "a path",
     "ArrayLike": "numbers",
     "Source": "a record, a run or a path",
+    "Exportable": "a run, a record, an analysis",
     "Quantity": "a number or text with a unit",
     "Callable": "a function",
     "Ends": "two numbers or texts with units",

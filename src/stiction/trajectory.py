@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -225,13 +225,21 @@ class Trajectory:
         return target
 
 
-def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = False) -> list[Path]:
+@runtime_checkable
+class Exportable(Protocol):
+    """A result that writes itself for other programs: a run, a record or an analysis."""
+
+    def export(self, path: str | Path) -> list[Path]:
+        """Write it as CSV, Parquet or MATLAB; return the paths."""
+
+
+def export(result: Exportable | str | Path, path: str | Path, *, trust: bool = False) -> list[Path]:
     """Write a run for another program: CSV, Parquet or MATLAB; return the paths.
 
     Parameters
     ----------
-    result : Trajectory, str or Path
-        A run, or its file.
+    result : Trajectory, Record, Analysis, str or Path
+        A run, or its file; a record and an analysis write their own tables.
     path : str or Path
         With .csv or .parquet, the samples go there and the stick intervals beside it
         (``run-sticks.csv``). With .mat, one file holds the structs ``samples``, ``sticks`` and
@@ -252,6 +260,8 @@ def export(result: Trajectory | str | Path, path: str | Path, *, trust: bool = F
     >>> [path.name for path in st.export(run, tempfile.mkdtemp() + "/run.csv")]
     ['run.csv', 'run-sticks.csv']
     """
+    if not isinstance(result, Trajectory | str | Path):
+        return result.export(path)
     faults = Faults()
     with faults.of_part():
         exportable(path)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import pi, sqrt
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Self
 
 import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
@@ -44,6 +44,9 @@ from stiction.text.units import (
 )
 from stiction.text.validation import Described, faulty, unknown_name
 from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 LARGEST = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
@@ -457,6 +460,27 @@ class Record(Described):
         channels = {"time": self.time, **self.channels()}
         return write_stored(path, channels, numbers, self.sensors or {}, self.origin)
 
+    @property
+    def data(self) -> xr.Dataset:
+        """The channels over time as a dataset, in SI, with units."""
+        columns = {
+            name: ("time", values, {"units": KINDS[name].unit})
+            for name, values in self.channels().items()
+        }
+        return xr.Dataset(columns, {"time": ("time", self.time, {"units": "s"})})
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Return the channels as a pandas data frame, indexed by time, in SI.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> record = st.Record(time=[0.0, 1.0], force=[0.0, 2.0], force_unit="mN")
+        >>> float(record.to_dataframe()["force"].max())
+        0.002
+        """
+        return self.data.to_dataframe()
+
     def export(self, path: str | Path) -> list[Path]:
         """Write the channels as CSV, Parquet or MATLAB, in SI; return the paths.
 
@@ -476,12 +500,7 @@ class Record(Described):
         >>> path.read_text().splitlines()[:2]
         ['time [s],force [N]', '0.0,0.0']
         """
-        columns = {
-            name: ("time", values, {"units": KINDS[name].unit})
-            for name, values in self.channels().items()
-        }
-        time = ("time", self.time, {"units": "s"})
-        return write_tables({"record": xr.Dataset(columns, {"time": time})}, path, {})
+        return write_tables({"record": self.data}, path, {})
 
     def _repr_html_(self) -> str:
         stated = {name: getattr(self, name) for name in KNOWN} | {"normal_load": self.stated_load}

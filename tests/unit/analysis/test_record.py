@@ -212,3 +212,27 @@ def test_the_channels_of_an_exported_record_are_read_again(tmp_path):
             np.testing.assert_array_equal(again.channels()[channel], values)
     with pytest.raises(st.ResultError, match="\\.csv"):
         record.export(tmp_path / "data.xyz")
+
+
+def test_a_record_and_an_analysis_are_exported_like_a_run(tmp_path, paper_run) -> None:
+    record = st.measure(paper_run, {"force": st.Sensor(), "position": st.Sensor(unit="m")})
+    (path,) = st.export(record, tmp_path / "record.csv")
+    again = st.read_record(path, position="position")
+    assert np.array_equal(again.force, record.force)
+    assert st.export(st.analyse(record), tmp_path / "found.csv")
+    for wrong in (None, record.data, 5):
+        with pytest.raises(st.DescriptionError, match="result: must be a run, a record, an analys"):
+            st.export(wrong, tmp_path / "x.csv")
+
+
+def test_a_record_is_a_dataset_and_a_data_frame(paper_run) -> None:
+    record = st.measure(paper_run, {"force": st.Sensor(), "position": st.Sensor(unit="m")})
+    frame = record.to_dataframe()
+    assert frame.index.name == "time"
+    assert np.array_equal(frame.index, record.time)
+    for name, values in record.channels().items():
+        assert np.array_equal(frame[name], values)
+        assert np.array_equal(record.data[name], values)
+    assert record.data["position"].attrs["units"] == "m"
+    again = Record(time=record.data["time"], **{x: record.data[x] for x in record.data.data_vars})
+    assert np.array_equal(again.force, record.force)
