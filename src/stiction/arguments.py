@@ -11,7 +11,9 @@ from __future__ import annotations
 import ast
 import builtins
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Set, Sized
+from contextlib import AbstractContextManager, nullcontext
 from functools import wraps
 from inspect import Signature, isclass, signature, unwrap
 from numbers import Integral, Real
@@ -80,7 +82,8 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
         if paths and any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
             refuse(each for each in faults(public, args, values, NO_PATH) if each.path in paths)
         try:
-            return function(*args, **values)
+            with _underflow_to_zero():
+                return function(*args, **values)
         except StictionError:
             raise
         except Exception:
@@ -95,6 +98,12 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
 
     public.__module__, public.__qualname__ = room, name
     return _doors.setdefault(function, public)
+
+
+def _underflow_to_zero() -> AbstractContextManager[None]:
+    """Take tails of distributions for zero, also in a session whose NumPy raises an error then."""
+    numpy = sys.modules.get("numpy")  # a session without it has set nothing
+    return nullcontext() if numpy is None else numpy.errstate(under="ignore")
 
 
 def name_arguments(function: F) -> F:

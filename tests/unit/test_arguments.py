@@ -189,3 +189,15 @@ def test_a_whole_number_elsewhere_does_not_make_a_wrong_path_of_another_argument
     for options in ({}, {"simulations": 500}):
         with pytest.raises(st.DescriptionError, match=r"nothing is uncertain.*in Python st\.Rig"):
             st.fit(record, slider, **options)
+
+
+def test_a_session_that_raises_an_error_at_underflow_is_no_obstacle():
+    """``np.seterr(all="raise")``: the tails of distributions, of which audits and analyses take."""
+    rig = {"mass": 0.1, "k_x": 2e3, "k_y": 4e6, "phi": "40 deg", "normal_load": 6.0}
+    law = st.ExponentialWeakening(mu_0=0.25, mu_inf=0.15, v_f="10 mm/s")
+    slider = st.presets.nakano_popov_2020().replace(friction=law, **rig)
+    with np.errstate(all="raise"):
+        run = st.simulate(slider, "10 s", sample_rate="20 kHz")
+        for found in (st.analyse(st.measure(run, st.Sensor(noise="0.1 mN"))), st.audit(slider)):
+            assert str(found)
+        assert {*np.geterr().values()} == {"raise"}  # as it was

@@ -8,6 +8,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+
 from stiction.analysis.record import Record, as_record
 from stiction.arrays import same_values
 from stiction.auditing import chain
@@ -143,6 +145,7 @@ class Audit(NamedTuple):
         """Return the description of the apparatus, with what is uncertain in it."""
         return Rig(self.slider, dict(self.priors)).to_toml()
 
+    @np.errstate(under="ignore")  # as by public functions: its words analyse parts of runs
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
         parts = [*_of_record(self.measured), *sections(self), *chain_sections(self)]
