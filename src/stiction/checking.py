@@ -28,7 +28,7 @@ from stiction.study.execution.repair import damage_of, restore, stores_in
 from stiction.study.store.store import CHECKED, group_at
 from stiction.study.view.view import broken_changes
 from stiction.system.description import Description
-from stiction.text.sections import Section, as_text
+from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
 
 
@@ -76,6 +76,9 @@ class Check(NamedTuple):
     def __str__(self) -> str:
         """Return the report as text."""
         return as_text(self.tables())
+
+    def _repr_html_(self) -> str:
+        return as_html(self.tables())
 
     def tables(self) -> list[Section]:
         """Return the damaged parts and the remedy, as sentences."""

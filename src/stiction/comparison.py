@@ -56,7 +56,7 @@ class Comparison(Report, dict[str, Trajectory]):
 
     def __repr__(self) -> str:
         """Name the laws."""
-        return f"<Comparison of {', '.join(self)}>"
+        return f"<Comparison of {'; '.join(self)}>"
 
     @property
     def ok(self) -> bool:

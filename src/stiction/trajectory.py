@@ -12,6 +12,7 @@ import numpy as np
 
 from stiction.arrays import xr
 from stiction.errors import DescriptionError, Faults, ResultError, Status
+from stiction.formats.table import number_of
 from stiction.friction import states
 from stiction.names import draw, picture
 from stiction.result.file import ENDS, age, read_tables, write_result
@@ -102,9 +103,12 @@ class Trajectory:
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        n, end = len(self.samples["time"]), float(self.samples["time"][-1])
-        sticks = self.statistics.stick_count
-        return f"<Trajectory to {end:g} s, {n} samples, {sticks} sticks, {self.status.name}>"
+        end, samples = (
+            float(self.samples["time"][-1]),
+            number_of(len(self.samples["time"]), "sample"),
+        )
+        sticks = number_of(self.statistics.stick_count, "stick")
+        return f"<Trajectory to {end:g} s, {samples}, {sticks}, {self.status.name}>"
 
     def __eq__(self, other: object) -> bool:
         """Compare description, status, statistics, sticks and samples."""

@@ -7,7 +7,7 @@ import runpy
 import shutil
 import subprocess
 import sys
-from inspect import isfunction
+from inspect import isfunction, ismodule
 from pathlib import Path
 from pkgutil import resolve_name
 
@@ -311,3 +311,12 @@ def test_what_a_module_held_answers_where_a_function_took_its_place() -> None:
         assert former.verdict is type(sliding).verdict
     with pytest.warns(DeprecationWarning, match=r"stiction.audit.Audit is now called"):
         assert not isinstance(slider, st.audit.Audit)
+
+
+def test_presets_are_listed_without_the_files_in_which_they_are():
+    """For completion: every preset is there, and no module."""
+    listed = {name for name in dir(st.presets) if not name.startswith("_")}
+    assert {"PRESETS", "Number", "Preset", "find", "leine_belt", "nakano_popov_2020"} <= listed
+    assert {each for each in listed if ismodule(getattr(st.presets, each))} == set()
+    assert "annotations" not in listed
+    assert all(name.replace("-", "_") in listed for name in st.presets.PRESETS)

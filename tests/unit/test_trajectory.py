@@ -403,3 +403,8 @@ def test_a_mass_that_slips_between_samples_slips(rate):
     """It moved by 8 mm, and it was said that it never slipped."""
     run = st.simulate(PAPER.replace(phi="0 deg"), "10 s", sample_rate=rate)
     assert rest_in_words(run.slider, run.samples, run.statistics.steps) == ""
+
+
+def test_one_thing_is_not_several_things_of_it(slider):
+    run = st.simulate(slider, "1 ms", times=[1e-3])
+    assert repr(run) == "<Trajectory to 0.001 s, 1 sample, 1 stick, COMPLETED>"

@@ -31,6 +31,7 @@ from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.rotation.findings import GROWING
 from stiction.arrays import TINY, xr
+from stiction.formats.table import number_of
 from stiction.names import draw, own_picture, warn_renamed
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
@@ -121,7 +122,7 @@ class Analysis(NamedTuple):
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        found = f"{self.regime.kind}, {self.cycles.sizes['cycle']} cycles"
+        found = f"{self.regime.kind}, {number_of(self.cycles.sizes['cycle'], 'cycle')}"
         missing = f"; missing: {', '.join(self.missing)}" if self.missing else ""
         return f"<Analysis: {found}{missing}>"
 

@@ -44,3 +44,14 @@ from stiction.presets.scenarios import yaw_angle_brake as yaw_angle_brake
 from stiction.presets.vibration import den_hartog as den_hartog
 from stiction.presets.vibration import free_vibration as free_vibration
 from stiction.presets.vibration import transverse_vibration as transverse_vibration
+
+
+def __dir__() -> list[str]:
+    """List the presets, and what finds them; not the files in which they are."""
+    return sorted(
+        name
+        for name, each in globals().items()
+        if name.startswith("__")
+        or each is PRESETS
+        or str(getattr(each, "__module__", "")).startswith(__name__)
+    )
