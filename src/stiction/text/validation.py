@@ -34,8 +34,9 @@ from pydantic import (
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails, PydanticCustomError
 
+from stiction.arguments import with_article
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.names import session_name
+from stiction.names import public_names, session_name
 from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import (
     QUANTITY,
@@ -321,6 +322,12 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
             return f"must be below {limit['lt']:g}, is {echo(value)}"
         case "int_parsing":
             return f"must be a whole number, is {echo(value)}"
+        case "model_type" | "model_attributes_type" | "is_instance_of":
+            kind = str(limit.get("class_name") or limit.get("class"))
+            remedy = f"; make one with st.{kind}(...)" if kind in public_names("stiction") else ""
+            return f"{echo(value)} is not {with_article(kind)}{remedy}"
+        case "dict_type":
+            return f"must be a dict, is {echo(value)}"
         case "literal_error":
             return f"must be {limit['expected']}, is {echo(value)}"
         case "unit" | "value_error":

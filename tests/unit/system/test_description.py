@@ -207,6 +207,19 @@ def test_round_trip_and_pickle(tmp_path):
     assert pickle.loads(pickle.dumps(description)) == description
 
 
+def test_of_another_thing_in_place_of_a_part_it_is_told_what_to_make():
+    """It was "Input should be a valid dictionary or instance of Slider"."""
+    with pytest.raises(st.DescriptionError) as error:
+        st.Description(3, 4, None)
+    assert str(error.value).splitlines() == [
+        "Description.slider: 3 is not a Slider; make one with st.Slider(...)",
+        "Description.initial: 4 is not an Initial; make one with st.Initial(...)",
+        "Description.run: None is not a Settings; make one with st.Settings(...)",
+    ]
+    with pytest.raises(st.DescriptionError, match=r"Record\.sensors: must be a dict, is 3"):
+        st.Record(time=[0.0], force=[0.0], sensors=3)
+
+
 def test_a_slider_is_frozen(slider):
     with pytest.raises(st.DescriptionError, match=r"frozen; write slider.replace\(mass=1.0\)"):
         slider.mass = 1.0
