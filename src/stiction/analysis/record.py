@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from math import pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Self
@@ -16,6 +17,7 @@ from stiction.arguments import with_article
 from stiction.arrays import Floats, Indices, xr
 from stiction.drive import ConstantVelocity
 from stiction.errors import Fault, ResultError, echo
+from stiction.formats.table import number_of
 from stiction.names import draw, own_picture
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.noise import ORDER, difference_gain, white_noise
@@ -236,45 +238,40 @@ class Record(Described):
         return self
 
     @model_validator(mode="after")
-    def _of_one_length(self) -> Self:
-        for name in CHANNELS:
-            values = getattr(self, name)
-            if values is not None and len(values) != len(self.time):
-                raise ValueError(
-                    f"{name} has {len(values)} samples and time {len(self.time)}; "
-                    "give one for each time"
-                )
-        back = np.flatnonzero(np.diff(self.time) < 0.0)
-        if len(back):
-            raise ValueError(
-                f"time must increase; sample {back[0] + 2}, at {self.time[back[0] + 1]:g} s, "
-                f"follows one at {self.time[back[0]]:g} s"
-            )
-        return self
-
-    @model_validator(mode="after")
-    def _with_load(self) -> Self:
-        if self.load is None or not len(self.load):
-            return self
-        mean = float(self.load.mean())
-        if mean <= 0.0:
-            raise ValueError(f"load must press the bodies together, its mean is {mean:g} N")
-        if self.normal_load is None:
-            self.__dict__.update(normal_load=mean)
+    def _consistent(self) -> Self:
+        found = [*self._wrong_lengths(), *self._wrong_load(), *self._wrong_sensors()]
+        if found:
+            raise faulty([Fault("", message) for message in found])
+        if self.load is not None and len(self.load) and self.normal_load is None:
+            self.__dict__.update(normal_load=float(self.load.mean()))
             self.__pydantic_fields_set__.discard("normal_load")
         return self
 
-    @model_validator(mode="after")
-    def _with_sensors_of_channels(self) -> Self:
+    def _wrong_lengths(self) -> Iterator[str]:
+        for name in CHANNELS:
+            values = getattr(self, name)
+            if values is not None and len(values) != len(self.time):
+                has = f"has {number_of(len(values), 'sample')} and time {len(self.time)}"
+                yield f"{name} {has}; give one for each time"
+        back = np.flatnonzero(np.diff(self.time) < 0.0)
+        if len(back):
+            yield (
+                f"time must increase; sample {back[0] + 2}, at {self.time[back[0] + 1]:g} s, "
+                f"follows one at {self.time[back[0]]:g} s"
+            )
+
+    def _wrong_load(self) -> Iterator[str]:
+        mean = 1.0 if self.load is None or not len(self.load) else float(self.load.mean())
+        if mean <= 0.0:
+            yield f"load must press the bodies together, its mean is {mean:g} N"
+
+    def _wrong_sensors(self) -> Iterator[str]:
         for name, sensor in (self.sensors or {}).items():
             if name not in CHANNELS:
-                raise ValueError(f"sensors: {unknown_name('channel', name, CHANNELS)}")
-            if sensor.unit != KINDS[name].unit:
-                raise ValueError(
-                    f"sensors: that of {name} is in {sensor.unit}; make it with "
-                    f"unit={KINDS[name].unit!r}"
-                )
-        return self
+                yield f"sensors: {unknown_name('channel', name, CHANNELS)}"
+            elif sensor.unit != KINDS[name].unit:
+                its = f"that of {name} is in {sensor.unit}"
+                yield f"sensors: {its}; make it with unit={KINDS[name].unit!r}"
 
     @model_validator(mode="after")
     def _one_sample_a_time(self) -> Self:

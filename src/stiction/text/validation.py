@@ -292,7 +292,8 @@ def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Faul
         at = ".".join([path, *keys])
         if detail["type"] == "faults":
             found += [
-                Fault(f"{at}.{inner.path}", inner.message) for inner in detail["ctx"]["found"]
+                Fault(f"{at}.{inner.path}".rstrip("."), inner.message)
+                for inner in detail["ctx"]["found"]
             ]
         else:
             found.append(Fault(at, _message(detail, tuple(known))))

@@ -236,3 +236,18 @@ def test_a_record_is_a_dataset_and_a_data_frame(paper_run) -> None:
     assert record.data["position"].attrs["units"] == "m"
     again = Record(time=record.data["time"], **{x: record.data[x] for x in record.data.data_vars})
     assert np.array_equal(again.force, record.force)
+
+
+def test_all_that_does_not_go_together_is_told_at_once() -> None:
+    """Of a short channel, a clock that goes back and two sensors, one was told at a time."""
+    sensors = {"forse": st.Sensor(), "position": st.Sensor()}
+    with pytest.raises(st.DescriptionError) as error:
+        Record(time=[1.0, 0.0], force=[1.0], load=[-1.0, -3.0], sensors=sensors)
+    said = str(error.value).splitlines()
+    assert [each.split(";")[0] for each in said] == [
+        "Record: force has 1 sample and time 2",
+        "Record: time must increase",
+        "Record: load must press the bodies together, its mean is -2 N",
+        "Record: sensors: unknown channel 'forse'",
+        "Record: sensors: that of position is in N",
+    ]
