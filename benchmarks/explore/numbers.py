@@ -139,15 +139,17 @@ def behind_filter(random: np.random.Generator) -> Known:
     return known._replace(record=record.model_copy(update={"force": force}))
 
 
-def by_ringing_cell(random: np.random.Generator) -> Known:
-    """Return irregular stick-slip by a load cell that rings after each slip."""
+def by_ringing_cell(
+    random: np.random.Generator, quality: tuple[float, float] = (0.4, 0.9)
+) -> Known:
+    """Return irregular stick-slip by a load cell that rings, of a `quality` in powers of ten."""
     known = slips(random, noise=(-9.0, -8.0), samples=(2.3, 3.3))
     record, drop = known.record, float((known.peak - known.trough).mean())
     assert record.stiffness is not None
     assert record.mass is not None
     swing = (record.stiffness / record.mass) ** 0.5 * 10 ** random.uniform(0.0, 0.7)
-    swing, quality = min(swing, 0.8 * record.sample_rate), 10 ** random.uniform(0.4, 0.9)
-    numbers = [swing**2], [1.0, swing / quality, swing**2]
+    swing = min(swing, 0.8 * record.sample_rate)
+    numbers = [swing**2], [1.0, swing / 10 ** random.uniform(*quality), swing**2]
     cell = bilinear(*numbers, record.sample_rate)
     force = lfilter(*cell, record.force, zi=lfilter_zi(*cell) * record.force[0])[0]
     force += drop * 10 ** random.uniform(-3.0, -1.3) * random.normal(size=len(force))
@@ -169,6 +171,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "zero that settles": settling,
     "behind a filter": behind_filter,
     "cell that rings": by_ringing_cell,
+    "cell that rings for long": partial(by_ringing_cell, quality=(0.9, 1.7)),
 }
 
 

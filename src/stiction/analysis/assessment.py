@@ -13,7 +13,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import cut_off, noisy_end, without_cut_off
 from stiction.analysis.motion.doubts.creep_distance import unseen_creep
-from stiction.analysis.motion.doubts.load_cell import doubt_ringing, ringing, with_ringing
+from stiction.analysis.motion.doubts.load_cell import doubt_ringing, with_ringing
 from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
 from stiction.analysis.motion.doubts.warnings import (
     VARIES,
@@ -24,6 +24,7 @@ from stiction.analysis.motion.doubts.warnings import (
 from stiction.analysis.motion.doubts.zero import why_no_friction
 from stiction.analysis.motion.drift import Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
+from stiction.analysis.motion.load_cell import swings_of_cell
 from stiction.analysis.motion.metadata.comparison import compare_metadata
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE, other_velocity
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
@@ -93,18 +94,20 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a record, whose stated parameters may contradict its force."""
     cycles, turns = found.lasting, imposed_reversal(None, regime)
     apart = cycles_apart(cycles)
-    usual = cycles.part(~apart)
+    usual, ends = cycles.part(~apart), flat_ends(record.force)
     friction = _friction(record, found, usual, regime, turns)
+    if found.cell is not None:
+        record = record.with_force(found.force)
     drift = find_drift(record, cycles)
     shown = drift if is_shown(drift, regime.kind) else None
-    ends = flat_ends(record.force) or noisy_end(record, cycles)
+    ends = ends or noisy_end(record, cycles)
     kind, slips = regime.kind, cycles
     if "slips_at" in regime.evidence and found.few is not None:
         kind, slips = STICK_SLIP, found.few
     stated = compare_metadata(record, kind, slips, shown, ends)
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
     doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
-    rings = None if turns or ends else ringing(record, usual)
+    rings = None if turns or ends else swings_of_cell(record, usual)
     doubts = *doubts, *doubt_ringing(rings)
     if record.load_variation() <= VARIES:
         friction = with_drift(friction, record, cycles, drift)
@@ -157,7 +160,7 @@ def _friction(
     Where the drive or the force turns round, for the reason `turns`, there is no kinetic friction,
     or none at all.
     """
-    changed = found.lines or found.ringing
+    changed = found.lines or found.ringing or found.cell
     clean = record.with_force(found.force) if changed else record
     if "levels" in regime.evidence:
         first = clean.before(levels(clean)[0].end)

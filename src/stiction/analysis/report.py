@@ -192,7 +192,9 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     its = assess_run(run, record, found, regime) if run else assess_record(record, found, regime)
     sticking = dataset(its.sticking)
     width = _free_of_hum(oscillation, sticking) if run is None else None
-    creep = find_creep(source, record, sticking, width)
+    taken_out = subtracted_lines(found.lines, found.ringing, found.cell)
+    answered = record if found.cell is None else record.with_force(found.force)
+    creep = find_creep(run or answered, answered, sticking, width)
     phases = None
     if run is not None and oscillation is not None:
         phases = oscillation_by_phase(oscillation, run, stick_phases(run, sticking))
@@ -200,7 +202,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         source, record, regime, dataset(its.cycles), summary(dataset(its.usual)),
         creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
         missing | creep.missing | its.missing, its.friction,
-        its.warnings + subtracted_lines(found.lines, found.ringing), {"metadata": its.stated},
+        its.warnings + taken_out, {"metadata": its.stated},
     )  # fmt: skip
     return _with_parts(analysis)
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.changes.few_slips import FEW, few_slips
+from stiction.analysis.motion.changes.free_swings import FreeSwing, free_swing, without_free_swings
 from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
@@ -45,7 +47,9 @@ from stiction.analysis.signals.turning_points import TurningPoints, turning_poin
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
 
-FEWEST_CYCLES = 3  # cycles beside a ringing
+FEWEST_CYCLES = 3  # cycles beside a ringing, or of a load cell that rings
+BESIDE = 0.1  # of a frequency: so far noise takes that of a line
+FEWEST_SWINGS, FAR_FEWER = 8, 0.75  # swings beside a load cell's own, and cycles over these
 # Of the span of the force in the last quarter: a run, whose force has no noise, ends in a trough if
 # the force has risen by more after it. A study counts each reversal by this share
 REVERSAL = 1e-3
@@ -154,6 +158,8 @@ class Swings(NamedTuple):
         `find_cycles`; the first is loaded from where its loading is even.
     driven : int
         Number of swings that were left out because jumps of the drive's velocity make them.
+    cell : FreeSwing or None
+        How a load cell swings whose swings would count as cycles; `force` is without them.
     """
 
     table: CycleTable
@@ -168,6 +174,7 @@ class Swings(NamedTuple):
     over: bool = False
     few: CycleTable | None = None
     driven: int = 0
+    cell: FreeSwing | None = None
 
     @property
     def lasting(self) -> CycleTable:
@@ -208,6 +215,8 @@ def _swings_of_any_drive(record: Record) -> Swings:
     lasting = _cycles_beside_a_ringing(record, found)
     if grid is None or lasting is not None:
         return found if lasting is None else lasting
+    if (answered := _cycles_of_ringing_cell(record, grid, found)) is not None:
+        return answered
     for _ in range(LINES):
         carried = _cycles_on_a_wave(record, grid, found, read)
         if carried is not None:
@@ -254,6 +263,32 @@ def _cycles_beside_a_ringing(record: Record, found: Swings) -> Swings | None:
     enough = len(left.table) >= FEWEST_CYCLES and not left.dying
     sticks = enough and rest_share(left.table.median("rise_share")) >= STICKING
     return left if sticks else None
+
+
+def _cycles_of_ringing_cell(record: Record, grid: EvenGrid, found: Swings) -> Swings | None:
+    """Return the cycles of the force to which a load cell answered that rings, if it does.
+
+    They are stick-slip. If its swings seem to be cycles that do not stick, they are far more.
+    """
+    its = found.table
+    if record.slip_speed is not None or not grid.serves or len(its) < FEWEST_SWINGS:
+        return None
+    fall = float(np.median(its["trough_time"] - its["peak_time"]))
+    periods = [*np.quantile(its["period"], (0.2, 0.5)), fall, 2.0 * fall, 4.0 * fall]
+    cell = free_swing(grid, record.force, periods)
+    if cell is None or _is_hum(cell, narrow_lines(grid, record.force)):
+        return None
+    force = without_free_swings(grid, record.force, cell, its.median("drop"))
+    left = own_swings(record.with_force(force))
+    most = len(its) if is_stick_slip(its) else FAR_FEWER * len(its)
+    enough = FEWEST_CYCLES <= len(left.table) <= most and not left.dying
+    return left._replace(cell=cell) if enough and is_stick_slip(left.table) else None
+
+
+def _is_hum(cell: FreeSwing, lines: Sequence[Line]) -> bool:
+    """Return whether a line of the mains is about where a cell would swing: noise lets it fade."""
+    of_grid = [line.frequency for line in lines if of_mains(line.frequency)]
+    return any(abs(each / cell.frequency - 1.0) < BESIDE for each in of_grid)
 
 
 def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings, read: Floats) -> Swings | None:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from math import pi
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.digitised import fall_by_rounding, resolution
+from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
 from stiction.arrays import TINY, Floats, Indices
 from stiction.recording.noise import dither_remainder, white_noise
@@ -29,18 +26,6 @@ FEWEST = 4  # samples between first and last of a straight part, of which half a
 # not after a small slip
 BACK, FLANK = 0.4, 1.5
 RANGE = 10.0  # standard deviations of noise: of a million samples
-OFTEN = 0.5  # of the rises: if more ring, the load cell does
-
-
-class CellSwings(NamedTuple):
-    """What the swings of a load cell after each slip do to troughs and peaks (N) and rates (N/s).
-
-    By so much they are off in the usual rise.
-    """
-
-    trough: float
-    peak: float
-    rate: float
 
 
 def loaded_until(
@@ -72,7 +57,7 @@ def loaded_until(
         ends[rises] = 0.5 * (start[rises] + ends[rises])
     shorter = until < peak_time
     its = start[shorter], until[shorter], peak_time[shorter]
-    until[shorter] = np.where(_are_flanks(time, force, *its, RANGE * noise + step), its[2], its[1])
+    until[shorter] = np.where(are_flanks(time, force, *its, RANGE * noise + step), its[2], its[1])
     return until
 
 
@@ -87,7 +72,7 @@ def _deviation(fit: Fits, time: Floats, force: Floats, begin: Indices, end: Indi
     return np.asarray(np.sqrt(np.add.reduceat(away**2, first) / counts))
 
 
-def _are_flanks(
+def are_flanks(
     time: Floats,
     force: Floats,
     start: Floats,
@@ -99,8 +84,8 @@ def _are_flanks(
 
     The mean of such swings is about zero over the whole rise. Noise hides a force of `hidden` (N).
     """
-    first, last = _ends(time, start, peak_time)
-    late = _late(time, force, first, last, 0.5 * (until + peak_time))
+    first, last = rise_ends(time, start, peak_time)
+    late = late_line(time, force, first, last, 0.5 * (until + peak_time))
     found = loading_rate(time, force, start, until) > FLANK * late.coefficients[:, 1] / late.half
     hidden = np.broadcast_to(hidden, len(start))
     for at in np.flatnonzero(found):
@@ -117,50 +102,17 @@ def _swing(time: Floats, force: Floats) -> tuple[float, float]:
     return float(lead[top]), float(force[top] - force[top:].min())
 
 
-def swings_of_cell(
-    time: Floats, force: Floats, start: Floats, start_force: Floats, peak_time: Floats
-) -> CellSwings | None:
-    """Return what the swings of a load cell do to cycles (n,), None if it does not ring.
-
-    The first swing after a slip makes the trough. Later it has faded: the line through the last
-    part of a rise tells how deep the trough is without it, and what is left of it at the peak. In a
-    radian before the peak a swing follows the force, which lags or overshoots by as much.
-    """
-    if not len(start):
-        return None
-    first, last = _ends(time, start, peak_time)
-    tops = np.array(
-        [_top(time[i : j + 1], force[i : j + 1]) for i, j in zip(first, last, strict=True)]
-    )
-    of_noise = 2.0 * np.sqrt(2.0 * np.log(last - first + 1.0))  # the usual range of so many
-    hidden = of_noise * white_noise(force) + fall_by_rounding(force)
-    rings = _are_flanks(time, force, start, tops, peak_time, hidden)
-    if not np.mean(rings) > OFTEN:
-        return None
-    late = _late(time, force, first, last, 0.5 * (tops + peak_time))
-    slope = late.coefficients[:, 1] / late.half
-    lift = late.coefficients[:, 0] + slope * (start - late.middle) - start_force
-    over = np.maximum(force[last] - late.coefficients.sum(axis=1), slope * (tops - start) / pi)
-    away = np.abs(loading_rate(time, force, start, peak_time) - slope)
-    return CellSwings(*(float(np.median(each[rings])) for each in (lift, over, away)))
-
-
-def _ends(time: Floats, start: Floats, peak_time: Floats) -> tuple[Indices, Indices]:
+def rise_ends(time: Floats, start: Floats, peak_time: Floats) -> tuple[Indices, Indices]:
     """Return first and last sample of each rise."""
     first, last = (samples_from(time, each) for each in (start, peak_time))
     last = np.clip(last, 2, len(time) - 1)
     return np.minimum(first, last - 2), last
 
 
-def _late(time: Floats, force: Floats, first: Indices, last: Indices, begin: Floats) -> Fits:
+def late_line(time: Floats, force: Floats, first: Indices, last: Indices, begin: Floats) -> Fits:
     """Return the line through each rise from a time on."""
     middle = np.maximum(np.minimum(samples_from(time, begin), last - 1), first)
     return fit_pieces(time, force, middle, last, 1)
-
-
-def _top(time: Floats, force: Floats) -> float:
-    """Return when a rise is farthest above the line to its end."""
-    return float(time[np.argmax(force - np.interp(time, time[[0, -1]], force[[0, -1]]))])
 
 
 def loading_rate(time: Floats, force: Floats, start: Floats, until: Floats) -> Floats:
@@ -172,7 +124,7 @@ def loading_rate(time: Floats, force: Floats, start: Floats, until: Floats) -> F
 
 def late_rate(time: Floats, force: Floats, start: Floats, peak_time: Floats) -> Floats:
     """Return the rate of each rise in its second half."""
-    fit = _late(time, force, *_ends(time, start, peak_time), 0.5 * (start + peak_time))
+    fit = late_line(time, force, *rise_ends(time, start, peak_time), 0.5 * (start + peak_time))
     rate: Floats = fit.coefficients[:, 1] / fit.half
     return rate
 

@@ -4,17 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.loading import CellSwings, swings_of_cell
-from stiction.analysis.record import Record
+from stiction.analysis.motion.load_cell import CellSwings
 from stiction.text.units import in_words
-
-
-def ringing(record: Record, cycles: CycleTable) -> CellSwings | None:
-    """Return what the swings of the load cell after each slip do to cycles, None without any."""
-    names = ("start", "start_force", "peak_time")
-    return swings_of_cell(record.time, record.force, *(cycles[name] for name in names))
 
 
 def doubt_ringing(its: CellSwings | None) -> Iterator[str]:

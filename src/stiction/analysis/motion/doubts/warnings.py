@@ -7,6 +7,7 @@ from math import log10, pi
 
 import numpy as np
 
+from stiction.analysis.motion.changes.free_swings import FreeSwing
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.doubts.clipping import doubt_clipping
@@ -104,9 +105,17 @@ def warnings(
     return tuple(found)
 
 
-def subtracted_lines(lines: tuple[Line, ...], ringing: Ringing | None) -> tuple[str, ...]:
-    """Return a sentence for each line, and a ringing, that was taken out of the force."""
+def subtracted_lines(
+    lines: tuple[Line, ...], ringing: Ringing | None, cell: FreeSwing | None = None
+) -> tuple[str, ...]:
+    """Return a sentence for each line, ringing, and load cell taken out of the force."""
     found = []
+    if cell is not None:
+        found.append(
+            f"After each slip the force swings at {in_words(cell.frequency, 'Hz')} and fades, with "
+            f"a quality factor of {cell.quality:.2g}, as where the load cell rings: cycles, "
+            "friction and creep are those of the force to which such a cell answers."
+        )
     if ringing is not None:
         lasts = in_words(ringing.end - ringing.begin, "s")
         found.append(

@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from stiction.analysis.motion.changes.cycles import parts_of, steady_change
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
-from stiction.analysis.motion.loading import late_rate, rounding_of_rates, swings_of_cell
+from stiction.analysis.motion.load_cell import swings_of_cell
+from stiction.analysis.motion.loading import late_rate, rounding_of_rates
 from stiction.analysis.motion.metadata.quantity import ALIKE, StatedQuantity, median_error
 from stiction.analysis.motion.regime.force_course import FASTEST
 from stiction.analysis.motion.regime.kinds import STICK_SLIP, TRANSITIONAL
@@ -40,8 +41,7 @@ def loading_rates(
     stated = record.loading_rate or nan
     # a drift of the load cell seems to load the spring; one of friction does not
     off = abs(rate_of_drift(cycles, drift))
-    rises = starts, cycles["start_force"], cycles["peak_time"]
-    if (rings := swings_of_cell(record.time, record.force, *rises)) is not None:
+    if (rings := swings_of_cell(record, cycles)) is not None:
         off = hypot(off, rings.rate)
     alike = rounding_of_rates(
         record.force, float(np.median(cycles["peak"] - cycles["start_force"]))

@@ -96,7 +96,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
             return Regime(UNDETERMINED, 0.0, {"unchanging": float(record.force[0])})
         if (pulls := strokes(record)) is not None:
             return Regime(UNDETERMINED, 0.0, {"forth": pulls[0], "back": pulls[1]})
-    if found.lines:
+    if found.lines or found.cell:
         record = record.with_force(found.force)
     per_cycle = 2.0 * len(record) / max(found.turns, 1)
     if not len(found.table) or per_cycle < MANY_SAMPLES:

@@ -1,0 +1,61 @@
+"""What the swings of a load cell after each slip do to the cycles of a record."""
+
+from __future__ import annotations
+
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+
+from stiction.analysis.motion.cycle_columns import CycleTable
+from stiction.analysis.motion.loading import are_flanks, late_line, loading_rate, rise_ends
+from stiction.analysis.record import Record
+from stiction.analysis.signals.digitised import fall_by_rounding
+from stiction.arrays import Floats
+from stiction.recording.noise import white_noise
+
+OFTEN = 0.5  # of the rises: if more ring, the load cell does
+
+
+class CellSwings(NamedTuple):
+    """What the swings of a load cell after each slip do to troughs and peaks (N) and rates (N/s).
+
+    By so much they are off in the usual rise.
+    """
+
+    trough: float
+    peak: float
+    rate: float
+
+
+def swings_of_cell(record: Record, cycles: CycleTable) -> CellSwings | None:
+    """Return what the swings of a load cell do to the cycles of a record, None without any.
+
+    The first swing after a slip makes the trough. Later it has faded: the line through the last
+    part of a rise tells how deep the trough is without it, and what is left of it at the peak. In a
+    radian before the peak a swing follows the force, which lags or overshoots by as much.
+    """
+    if not len(cycles):
+        return None
+    time, force = record.time, record.force
+    start, peak_time = cycles["start"], cycles["peak_time"]
+    first, last = rise_ends(time, start, peak_time)
+    tops = np.array(
+        [_top(time[i : j + 1], force[i : j + 1]) for i, j in zip(first, last, strict=True)]
+    )
+    of_noise = 2.0 * np.sqrt(2.0 * np.log(last - first + 1.0))  # the usual range of so many
+    hidden = of_noise * white_noise(force) + fall_by_rounding(force)
+    rings = are_flanks(time, force, start, tops, peak_time, hidden)
+    if not np.mean(rings) > OFTEN:
+        return None
+    late = late_line(time, force, first, last, 0.5 * (tops + peak_time))
+    slope = late.coefficients[:, 1] / late.half
+    lift = late.coefficients[:, 0] + slope * (start - late.middle) - cycles["start_force"]
+    over = np.maximum(force[last] - late.coefficients.sum(axis=1), slope * (tops - start) / pi)
+    away = np.abs(loading_rate(time, force, start, peak_time) - slope)
+    return CellSwings(*(float(np.median(each[rings])) for each in (lift, over, away)))
+
+
+def _top(time: Floats, force: Floats) -> float:
+    """Return when a rise is farthest above the line to its end."""
+    return float(time[np.argmax(force - np.interp(time, time[[0, -1]], force[[0, -1]]))])
