@@ -7,7 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.analysis.motion.changes.cycles import cycles_apart, parts_of
+from stiction.analysis.motion.changes.cycles import (
+    cycles_apart,
+    parts_of,
+    sizes_in_turn,
+    slip_in_each,
+)
 from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.doubts.warnings import turns_round
 from stiction.analysis.motion.regime.kinds import (
@@ -128,7 +133,8 @@ def _describe_cycles(found: Analysis) -> str:
     if plain is None:
         return ""
     falls = f"the force drops by {drop}{_each_time(found)}."
-    return f"{plain}; {falls}{_why_transverse(found)}{_not_its_own(found)}{_on_a_wave(found)}"
+    more = f"{_why_transverse(found)}{_not_its_own(found)}{_on_a_wave(found)}"
+    return f"{plain}; {falls}{_once_more(found)}{more}"
 
 
 def _after_first(found: Analysis) -> str:
@@ -346,16 +352,30 @@ def _besides(found: Analysis) -> str:
 
 
 def _each_time(found: Analysis) -> str:
-    """Return whether the force drops by so much each time, or between which values."""
+    """Return whether the force drops by so much each time, in turn, or between which values."""
     drop = found.cycles["drop"].values
     if len(drop) == 1:
         return ""
+    if (sizes := sizes_in_turn(drop)) is not None:
+        large, small = (in_words(each, "N") for each in sizes)
+        return f" on average, by about {large} and {small} in turn"
     if not isinstance(found.source, Trajectory):
         drop = drop[~cycles_apart(table_of(found.cycles))]
     if drop.std() < ALIKE * drop.mean():
         return " each time"
     low, high = (in_words(float(end), "N") for end in (drop.min(), drop.max()))
     return f" on average, at least {low} and at most {high}"
+
+
+def _once_more(found: Analysis) -> str:
+    """Return that the force falls once more in nearly each cycle, as by slips of two sizes."""
+    less = slip_in_each(table_of(found.cycles))
+    if found.regime.kind != STICK_SLIP or less is None:
+        return ""
+    return (
+        f" Within nearly each cycle it falls once more, by about {in_words(less, 'N', 2)}: large "
+        "and small slips alternate, or the mass hesitates, or a load cell swings after each slip."
+    )
 
 
 def _stick_share(found: Analysis) -> str:

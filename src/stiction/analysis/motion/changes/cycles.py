@@ -25,6 +25,12 @@ RARE = 4  # one in so many at most
 # Swings that build up: less than half the median, so many in succession (by chance once in a
 # thousand records where a quarter of all are so small)
 BELOW, BUILDING = 0.5, 5
+# Large and small drops in turn: share of the large ones that exceed both neighbours, of which
+# independent drops have a third, so that it is by chance in one of 2000 records; how many there
+# are at least; and the large ones over the small ones
+IN_TURN, FEWEST_LARGE, LARGER = 0.9, 10, 1.2
+# A small slip in each cycle: share of the cycles, and spread of the slips over their mean
+IN_EACH, EVEN_SLIPS = 0.9, 0.25
 GROWN = 0.1  # logarithm of the last over the first of some that grow, in order
 
 
@@ -108,6 +114,31 @@ def _below(size: Floats) -> int:
         return 0
     count = int(np.argmax(size >= BELOW * median(size)))
     return count if count >= BUILDING else 0
+
+
+def sizes_in_turn(drop: Floats) -> tuple[float, float] | None:
+    """Return the usual large and small drop, if large and small ones alternate (period two).
+
+    >>> sizes_in_turn(np.tile([1.0, 0.5], 11))
+    (1.0, 0.5)
+    """
+    for first in (1, 2):
+        large = np.arange(first, len(drop) - 1, 2)
+        around = np.maximum(drop[large - 1], drop[large + 1])
+        if len(large) < FEWEST_LARGE or np.mean(drop[large] > around) < IN_TURN:
+            continue
+        sizes = float(np.median(drop[large])), float(np.median(drop[first - 1 :: 2]))
+        return sizes if sizes[0] > LARGER * sizes[1] else None
+    return None
+
+
+def slip_in_each(cycles: CycleTable) -> float | None:
+    """Return by how much the force falls once more in nearly each cycle, N; None if it does not."""
+    once = cycles["hesitations"] == 1.0
+    if np.count_nonzero(once) < max(FEWEST_LARGE, IN_EACH * len(cycles)):
+        return None
+    depth = cycles["hesitation_depth"][once]
+    return float(np.median(depth)) if depth.std() < EVEN_SLIPS * depth.mean() else None
 
 
 def steady_change(rate: Floats) -> tuple[float, float] | None:
