@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.digitised import fall_by_rounding, resolution
 from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
 from stiction.arrays import TINY, Floats, Indices
 from stiction.recording.noise import dither_remainder, white_noise
@@ -57,7 +57,8 @@ def loaded_until(
         ends[rises] = 0.5 * (start[rises] + ends[rises])
     shorter = until < peak_time
     its = start[shorter], until[shorter], peak_time[shorter]
-    until[shorter] = np.where(are_flanks(time, force, *its, RANGE * noise + step), its[2], its[1])
+    least = RANGE * noise + fall_by_rounding(force)
+    until[shorter] = np.where(are_flanks(time, force, *its, least), its[2], its[1])
     return until
 
 

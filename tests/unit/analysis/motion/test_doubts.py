@@ -1091,6 +1091,50 @@ def test_a_few_peaks_that_are_cut_off_in_noise_are_no_end(end) -> None:
     assert noisy_end(record, cycles) == []
 
 
+def sliding_before_slips(unlike, noise=3e-3):
+    """Return a record and cycles of a mass that slides for 0.4 of each cycle before it slips.
+
+    Its friction differs by so much from cycle to cycle (N, a standard deviation).
+    """
+    random, count = np.random.default_rng(4), 24
+    top, low = 3.0 + unlike * random.normal(size=count), random.uniform(2.0, 2.4, count)
+    loads = top - low
+    lasts = np.stack([loads, loads * 0.4 / 0.6, np.full(count, 0.04)], axis=1).ravel()
+    corners = np.cumsum(np.append(0.0, lasts[:-1]))
+    time = np.arange(0.1, corners[-1], 4e-3)
+    force = np.interp(time, corners, np.stack([low, top, top], axis=1).ravel())
+    record = st.Record(time=time, force=force + noise * random.normal(size=len(time)))
+    return record, swings(record).lasting
+
+
+@pytest.mark.parametrize(("unlike", "is_end"), [(0.0, True), (1e-3, False), (3e-3, False)])
+def test_friction_that_differs_from_slip_to_slip_is_not_the_end_of_a_range(unlike, is_end) -> None:
+    """A third of the noise tells it: means over 60 samples know that to an eighth of it."""
+    assert bool(noisy_end(*sliding_before_slips(unlike))) is is_end
+
+
+@pytest.mark.parametrize(("share", "is_end"), [(0.125, False), (0.5, True)])
+def test_the_end_of_a_range_is_reached_in_a_quarter_of_the_cycles(share, is_end) -> None:
+    record, _ = tops(np.linspace(0.0, 1.0, 600), 0.0)
+    peaks = np.sort(swings(record).lasting["peak"])
+    end = float(peaks[-1 - round(share * len(peaks))]) - 1e-3
+    assert bool(noisy_end(*tops(np.linspace(0.0, 1.0, 600), 0.0, end, 2e-4))) is is_end
+
+
+@pytest.mark.parametrize(("samples", "is_end"), [(1, False), (6, True)])
+def test_samples_crowd_at_the_end_of_a_range(samples, is_end) -> None:
+    """More than two in each cycle, and eight times as densely as below: 15 of 1 N in 1/150 N."""
+    shape = np.append(np.linspace(0.0, 1.0, 150), np.full(samples - 1, 1.0))
+    random, fall = np.random.default_rng(3), 0.5 + 0.5 * np.cos(np.linspace(0.0, np.pi, 12))
+    rises = [
+        np.append(2.0 + low + (1.0 - low) * shape, 2.0 + fall) for low in random.uniform(0, 0.3, 40)
+    ]
+    force = np.concatenate(rises)
+    force += 2e-4 * random.normal(size=len(force))
+    record = st.Record(time=1e-2 * np.arange(len(force)), force=force)
+    assert bool(noisy_end(record, swings(record).lasting)) is is_end
+
+
 def test_a_flat_end_without_cycles_is_reached_in_none_of_them() -> None:
     time = np.arange(2000) * 1e-2
     noise = 2e-3 * np.random.default_rng(1).normal(size=2000)

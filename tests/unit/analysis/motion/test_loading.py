@@ -145,3 +145,15 @@ def test_the_late_rate_is_that_of_the_second_half():
     assert late_rate(time, rises, start, start + 99.0) == pytest.approx([0.05, 0.05])
     assert loading_rate(time, rises, start, start + 99.0) == pytest.approx([0.1, 0.1], rel=0.1)
     assert np.isfinite(late_rate(time[:3], rises, start[:1], start[:1] + 1.0)).all()  # so short
+
+
+@pytest.mark.parametrize("number", [411, 585, 641, 2515])
+def test_a_fall_by_one_step_makes_no_flank_of_a_swing(number):
+    """Rounded, the step of all values is less than some fall by one: so it was in 4 of 3000."""
+    random, time = np.random.default_rng(number), np.arange(0.0, 10.0, 0.02)
+    rate, step = random.uniform(0.3, 3.0), 10 ** random.uniform(-1.3, -0.5)
+    force = 1.0 - np.exp(-rate * time) + random.uniform()
+    force += 10 ** random.uniform(-4, -1.3) * random.normal(size=len(time))
+    force = step * np.round(force / step)
+    until = loaded_until(time, force, np.zeros(1), force[:1], np.array([9.98]))
+    assert until[0] < 9.98
