@@ -113,7 +113,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         friction = with_drift(friction, record, cycles, drift)
     friction = with_supposed_filter(friction, record, usual, stated)
     friction = with_ringing(friction, rings)
-    unreal = why_no_friction(friction, cycles)
+    unreal = why_no_friction(record, friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)
     whole, friction = friction, without_cut_off(friction, record, usual, ends)

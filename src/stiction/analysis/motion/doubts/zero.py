@@ -36,12 +36,27 @@ def is_about_zero(friction: Friction, cycles: CycleTable) -> bool:
     return abs(mean.force) < ABOUT_ZERO * swing
 
 
-def why_no_friction(friction: Friction, cycles: CycleTable) -> str:
+def trough_against(record: Record, friction: Friction, cycles: CycleTable) -> float | None:
+    """Return the usual trough of stick-slip, N, if it is against the drive and no zero is stated.
+
+    A mass slips as far below its kinetic friction as it was above: that would then be less than
+    half of the static one.
+    """
+    if friction.static is None or record.zero is not None or not len(cycles):
+        return None
+    trough, swing = cycles.median("trough"), 0.5 * cycles.median("drop")
+    against = trough < -ABOUT_ZERO * swing and cycles.median("peak") > ABOUT_ZERO * swing
+    return trough if against else None
+
+
+def why_no_friction(record: Record, friction: Friction, cycles: CycleTable) -> str:
     """Return why no force of a record is a friction, by its mean; empty if it may be one."""
     if friction.kinetic is None:
         return ""
     if is_about_zero(friction, cycles):
         return "the mean force is about zero, as no friction is"
+    if friction.kinetic.force > 0.0 and trough_against(record, friction, cycles) is not None:
+        return "the troughs are against the drive, and no zero is stated"
     return "the mean force is against the drive" if friction.kinetic.force < 0.0 else ""
 
 
@@ -66,6 +81,13 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
         yield (
             f"The mean friction is {in_words(friction.kinetic.force, 'N')}, against the drive: the "
             f"zero of the force is off, or its sign; give {ZERO}, the reading without load."
+        )
+        return
+    if (trough := trough_against(record, friction, cycles)) is not None:
+        yield (
+            f"The troughs are against the drive, at {in_words(trough, 'N')}: the zero of the force "
+            "is off, as behind an amplifier that lets no constant force through, or kinetic "
+            f"friction is less than half of the static one; give {ZERO}, the reading without load."
         )
         return
     if friction.break_away is None or record.zero is not None:
