@@ -23,8 +23,8 @@ PER_PERIOD = 12  # means of a period: the amplitude needs no more
 WINDOW = 1.5  # periods over which an amplitude is measured
 PASSES = 4  # in which frequency and factor are found ever more exactly
 NEAR, SAME = 0.3, 0.1  # of the amplitude: factors that count, and that are one and the same
-# Share of the time in which the factor is the same. Noise through a filter comes to 0.26 at most,
-# irregular stick-slip to 0.6, but with a quality outside the range below
+# Share of the time in which the factor is the same. Of load cells it is 0.26 to 0.9; vibrations and
+# hum in noise come to 0.5 and more, too, so that what is left must also be stick-slip
 OFTEN = 0.3
 LEAST_QUALITY, MOST_QUALITY = 3.0, 60.0  # a swing that fades at once, and a line that does not
 # Noise is amplified by the square of the highest frequency that is restored, over the cell's: up to

@@ -25,7 +25,7 @@ MANY, DENSE, OFTEN, EACH = 20, 8.0, 0.25, 2
 WIDTHS, WIDE = np.geomspace(1e-3, 8.0, 14), 0.1
 # Of the means of cycles at that end: how many tell whether they are one level, and their variance
 # over that which noise gives them: with such an end it is more in one of 164 records, and without,
-# where friction differs by a third of the noise, less in none of 12
+# where friction differs by a third of the noise, less in two of 12
 FEWEST_LEVELS, UNLIKE = 3, 4.0
 ENDS = {"largest": "peaks", "least": "troughs"}
 SHOWN = {

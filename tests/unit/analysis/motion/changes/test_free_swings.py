@@ -74,7 +74,7 @@ def test_small_slips_after_a_large_one_are_not_swings():
     ],
 )  # fmt: skip
 def test_vibrations_are_not_those_of_a_load_cell(make):
-    """Of 80 records of each of all families none was taken for them."""
+    """Nor was one of 30 further records of each family, by which no constant was set."""
     for number in range(8):
         record, *_ = make(np.random.default_rng([6, number]))
         assert swings(record).cell is None
