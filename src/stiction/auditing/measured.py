@@ -131,7 +131,7 @@ def compare(
     DescriptionError
         If nothing of the rig is uncertain, or it is not of a kind that can be fitted.
     """
-    check(rig)
+    check(rig, simulations)
     library_folder(library)  # refused at once, and not as a reason why there is no verdict
     report, stated = progress or silent, with_description(record, rig)
     try:

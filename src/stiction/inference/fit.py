@@ -95,7 +95,7 @@ def fit(
         If nothing is uncertain, or the rig is not of a kind that can be fitted.
     """
     known = rig_of(rig)
-    check(known)
+    check(known, simulations)
     place = library_folder(library)
     seen = observe_all(records, known.slider)
     plan_of = plan_for(known, [each.conditions for each in seen])
@@ -107,9 +107,15 @@ def fit(
     return found
 
 
-def check(rig: Rig) -> None:
-    """Refuse a rig without priors, or whose simulation has no cycles to jitter."""
+def check(rig: Rig, simulations: int = FEWEST_SIMULATIONS) -> None:
+    """Refuse a rig without priors or whose simulation has no cycles to jitter, and a small library.
+
+    Fewer simulations than are needed with cycles would be too few if all of them had some.
+    """
     faults = []
+    if simulations < FEWEST_SIMULATIONS:
+        message = f"must be at least {FEWEST_SIMULATIONS}, is {simulations}; more sharpen the fit"
+        faults.append(Fault("simulations", message))
     if not rig.priors:
         message = "nothing is uncertain, and a fit estimates what is; write for example "
         message += 'phi = "2 +- 1 deg", in Python st.Rig(slider, {"phi": "2 +- 1 deg"})'

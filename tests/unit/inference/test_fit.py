@@ -270,11 +270,19 @@ def test_the_axis_of_the_load_cell_is_told_where_it_is_supposed(found):
     assert told not in str(along.tables()[0])
 
 
-def test_too_few_cycles_of_the_record_s_length_say_so(rig, record, tmp_path):
+def test_a_library_that_cannot_be_enough_is_refused_before_it_is_simulated(rig, record, tmp_path):
+    """It was simulated for a minute, and refused then."""
+    with pytest.raises(DescriptionError, match="simulations: must be at least 300, is 299; more"):
+        st.fit(record, rig, simulations=299, library=tmp_path)
+    assert [*tmp_path.iterdir()] == []
+
+
+def test_too_few_cycles_of_the_record_s_length_say_so(rig, record, tmp_path, monkeypatch):
     """A record in fast cycles, and priors whose cycles last 30 times longer: "0 of 600"."""
+    monkeypatch.setattr("stiction.inference.fit.FEWEST_SIMULATIONS", 30)
     soft = rig._replace(slider=rig.slider.replace(drive=st.ConstantVelocity("0.01 mm/s")))
     fast = record.model_copy(update={"drive_velocity": None, "time": record.time / 5.0})
-    with pytest.raises(ResultError, match=r"no longer than 4 times the record's, 300 .* velocity"):
+    with pytest.raises(ResultError, match=r"no longer than 4 times the record's, 30 .* velocity"):
         st.fit(fast, soft, simulations=32, library=tmp_path)
 
 
