@@ -88,6 +88,19 @@ def test_words_say_how_uneven_samples_are(sampled, said):
     assert said is None or said in told
 
 
+@pytest.mark.parametrize("ratio", [2.3, 5.0, 7.0])
+def test_a_rate_that_changes_is_not_told_to_be_chance(ratio):
+    """Slow at first and quick later, as loggers do: "the samples stand at random times"."""
+    time = np.r_[np.arange(0.0, 20.0, 0.01 * ratio), np.arange(20.0, 30.0, 0.01)]
+    random = np.random.default_rng(3)
+    force = 0.1 * (time % 2.0) + 1e-3 * random.normal(size=len(time))
+    told = " ".join(st.analyse(st.Record(time=time, force=force)).warnings)
+    assert f"changes within the record, between {100.0 / ratio:.4g} Hz and 100 Hz: for" in told
+    scattered = np.sort(random.uniform(0.0, 30.0, len(time)))
+    told = " ".join(st.analyse(st.Record(time=scattered, force=force)).warnings)
+    assert "The samples stand at random times: for" in told
+
+
 def test_samples_in_bursts_get_none_and_are_told_why():
     time = np.concatenate([STEP * (np.arange(N // 10) + 3 * burst * N // 10) for burst in range(5)])
     grid = even_grid(time)

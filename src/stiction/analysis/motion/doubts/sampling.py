@@ -18,6 +18,7 @@ from stiction.analysis.motion.metadata.stiffness_over_mass import (
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid, why_not
+from stiction.arrays import Floats
 from stiction.recording.noise import white_noise
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import mean_speeds
@@ -30,6 +31,7 @@ SLOWLY = 1e3  # s between samples
 # mean over all places of the samples
 SEEN_SAMPLES = (2.3, 2.9, 3.4, 3.9, 4.7, 6.0)
 TOO_LOW = (0.50, 0.33, 0.20, 0.10, 0.05, 0.02)
+STEADY_STEP, MOSTLY = 0.1, 0.9  # change of a step, and share of steps that change by less
 FEW_OFF = 0.05  # of the samples: interpolated, they hardly weaken an oscillation
 # Periods of the cut-off in a fall of the force: with more, creep before a slip comes out to a tenth
 # or two, drops to 0.3 %; with one, drops to 7 % and slip speeds to a third (Butterworth, order 4)
@@ -61,7 +63,7 @@ def doubt_times(record: Record) -> Iterator[str]:
         return
     if grid.coarse:
         yield (
-            "The samples stand at random times: for spectra, and to find hum, the force is "
+            f"{_uneven(np.diff(record.time))}: for spectra, and to find hum, the force is "
             f"interpolated by straight lines at even times, {in_words(grid.step, 's')} apart. An "
             f"oscillation of more than {in_words(0.25 / grid.step, 'Hz')} may not be seen."
         )
@@ -83,6 +85,15 @@ def doubt_times(record: Record) -> Iterator[str]:
             "spectra, and to find hum, the force is interpolated there by straight lines."
             f"{weaker if off > FEW_OFF * len(record) else ''}"
         )
+
+
+def _uneven(steps: Floats) -> str:
+    """Return how the steps between samples (s) differ: from part to part, or at random."""
+    steadily = np.abs(np.diff(steps)) < STEADY_STEP * steps[1:]
+    if steadily.mean() < MOSTLY:
+        return "The samples stand at random times"
+    least, most = (in_words(1.0 / float(each), "Hz") for each in (steps.max(), steps.min()))
+    return f"The sample rate changes within the record, between {least} and {most}"
 
 
 def doubt_repeats(record: Record) -> Iterator[str]:
