@@ -135,9 +135,9 @@ class Analysis(NamedTuple):
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
-        doubts = [Section("Warnings", list(self.warnings))] if self.warnings else []
-        parts = (section(self) for _, section in functions("section"))
-        return doubts + [each for each in parts if each is not None]
+        doubts = Section("Warnings", list(self.warnings)) if self.warnings else None
+        brief, *parts = (section(self) for _, section in functions("section"))
+        return [each for each in (brief, doubts, *parts) if each is not None]
 
     def export(self, path: str | Path) -> list[Path]:
         """Write its tables for another program, see `stiction.analysis.export.export`."""

@@ -1,6 +1,8 @@
 import csv
 import json
 import pickle
+import re
+from collections import Counter
 from math import degrees
 
 import numpy as np
@@ -13,7 +15,8 @@ import stiction as st
 from stiction.analysis.creep.mean_curve import calibrate
 from stiction.analysis.export import write
 from stiction.analysis.parts import creep
-from stiction.analysis.parts.wording import SHOWN, mean_in_words, rows_left_out
+from stiction.analysis.parts.motion import plainly
+from stiction.analysis.parts.wording import SHOWN, first_clause, mean_in_words, rows_left_out
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
 
@@ -82,6 +85,55 @@ def test_the_first_peak_of_a_vibration_is_not_taken_for_static_friction(fast):
     )
 
 
+def load_cell(noise, hum=0.0, wave="saw"):
+    """A sawtooth, or a level, with what a record may have besides."""
+    time = np.arange(0.0, 20.0, 1e-3)
+    slips = np.interp(time % 2.0, [0.0, 1.95, 2.0], [0.0, 0.39, 0.0])
+    force = 1.0 + (slips if wave == "saw" else 0.0 * time)
+    force += hum * np.sin(2.0 * np.pi * 50.0 * time)
+    return time, force + noise * np.random.default_rng(3).standard_normal(len(time))
+
+
+KNOWN = {"stiffness": 200.0, "drive_velocity": 1e-3, "mass": 0.05}
+LOADED = {**KNOWN, "normal_load": 10.0}
+NO_MORE = 240  # letters of a line of the brief: three lines of a terminal
+
+
+@pytest.mark.parametrize(
+    ("data", "known", "lines"),
+    [
+        (load_cell(1e-3), LOADED, (
+            "Stick-slip (confidence 1.00), at rest or in creep for",
+            "The mass sticks and slips 8 times, every 2.000 s; the force drops by 391.2 mN ",
+            "Friction coefficient: static 0.1391, kinetic 0.1195 ± 0.0001.",
+            "Not determined, for the reasons below: ",
+        )),
+        (load_cell(1e-3, hum=0.02), KNOWN, (
+            "Stick-slip", "The mass", "Friction force: static 1.391 ± 0.002 N",
+            "1 warning: a line at 50 Hz", "Not determined",
+        )),
+        (load_cell(1e-3, wave="level"), LOADED, (
+            "Steady sliding", "The mass slides steadily, at a force of 1.0",
+            "Friction coefficient: kinetic 0.1; static not determined (this is steady sliding).",
+        )),
+        (([0.0, 1.0], [1.0, 1.0]), {}, ("Undetermined", "This", "Friction: not determined (of")),
+    ],
+)  # fmt: skip
+def test_a_report_begins_with_its_answer_and_says_nothing_twice(data, known, lines):
+    time, force = data
+    found = st.analyse(st.Record(time=time, force=force, **known))
+    brief, *others = found.tables()
+    assert brief.title == "In short"
+    assert str(found).startswith("In short\n")
+    assert all(map(str.startswith, brief.sentences, lines)), brief.sentences
+    assert len(brief.sentences) == len(lines)
+    assert max(map(len, brief.sentences)) < NO_MORE
+    said = [each for part in (brief, *others) for line in part.sentences
+            for each in re.split(r"(?<=\.) ", line)]  # fmt: skip
+    assert max(Counter(said).values()) == 1
+    assert all(f"{first_clause(each)}." != each for each in found.warnings)
+
+
 @pytest.mark.parametrize(("speed", "verb"), [(0.8, "moves"), (0.2, "creeps")])
 def test_a_mass_nearly_as_fast_as_the_drive_does_not_creep(speed, verb):
     """A brake pad at 1 m/s was said to creep at 911 mm/s."""
@@ -141,7 +193,7 @@ def test_short_and_constant_records_are_no_error(count):
     found = st.analyse(record)
     assert found.cycles.sizes["cycle"] == 0
     assert [part.title for part in found.tables()] == [
-        "Motion", "Friction", "Cycles", "Creep", "Oscillation", "Energy",
+        "In short", "Motion", "Friction", "Cycles", "Creep", "Oscillation", "Energy",
     ]  # fmt: skip
 
 
@@ -313,7 +365,7 @@ def test_the_motion_agrees_with_the_oscillation_in_noise(samples, period, noise,
     swings = np.sin(2.0 * np.pi * number / period) * (force == 10.0)
     scatter = noise * np.random.default_rng(1).standard_normal(len(number))
     found = st.analyse(st.Record(time=1e-3 * number, force=force + swings + scatter))
-    said = str(found).split("Motion\n")[1].split("\n")[0]
+    said = plainly(found)
     seen = found.oscillation["frequency"].values
     if np.isfinite(seen).mean() > 0.5 and abs(1e3 / period / 50.0 % 1.0) > 0.01:
         assert "swings" in said or "vibrates" in said or found.cycles.sizes["cycle"]
@@ -341,9 +393,9 @@ def test_a_run_of_a_test_with_a_name_is_told_as_such(preset, title):
     """A run of velocity steps was a "vibration", with a table of its cycles."""
     found = st.analyse(st.run(getattr(st.presets, preset)()))
     titles = [section.title for section in found.tables()]
-    assert titles[: 1 + bool(title)] == (["Warnings", title] if title else ["Motion"])
+    assert titles[1 : 2 + bool(title)] == (["Warnings", title] if title else ["Motion"])
     its = found.parts["procedure"]
-    assert str(its or "") == str(found.tables()[1] if title else "")
+    assert str(its or "") == str(found.tables()[2] if title else "")
 
 
 def test_a_test_says_along_which_axis_its_coefficients_are():

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 PARTS = (
+    "brief",
     "procedure",
     "motion",
     "friction",

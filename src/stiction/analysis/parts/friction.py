@@ -47,14 +47,8 @@ def section(found: Analysis) -> Section:
                 f"{title[0].upper()}{title[1:]}: not known; {found.friction.missing[name]}."
             )
             continue
-        error = each.error if each.error > SLIGHT * abs(each.force) else 0.0
-        force = with_error(each.force, error, "N")
         spread = with_spread(each.spread, each.force, "N")
-        slight = each.coefficient_error <= SLIGHT * abs(each.coefficient)
-        known = isfinite(each.coefficient)
-        mu_error = 0.0 if slight else each.coefficient_error
-        mu = with_error(each.coefficient, mu_error, "1") if known else ""
-        rows.append((title, mu, force, spread))
+        rows.append((title, coefficient_in_words(each), force_in_words(each), spread))
     if (
         found.friction.break_away is not None
         and found.cycles.sizes["cycle"]
@@ -74,6 +68,19 @@ def section(found: Analysis) -> Section:
     shown = [at for at in range(4) if at != 1 or any(row[1] for row in rows)]  # no µ without a load
     cells = [tuple(row[at] for at in shown) for row in rows]
     return Section("Friction", lines, Table(tuple(headings[at] for at in shown), cells))
+
+
+def coefficient_in_words(its: Measured) -> str:
+    """Return the coefficient with its error, '' if it is not known."""
+    if not isfinite(its.coefficient):
+        return ""
+    slight = its.coefficient_error <= SLIGHT * abs(its.coefficient)
+    return with_error(its.coefficient, 0.0 if slight else its.coefficient_error, "1")
+
+
+def force_in_words(its: Measured) -> str:
+    """Return the force with its error."""
+    return with_error(its.force, its.error if its.error > SLIGHT * abs(its.force) else 0.0, "N")
 
 
 def _overshoot(found: Analysis) -> list[str]:

@@ -29,7 +29,7 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import comes_to_rest, stuck_share
 from stiction.analysis.motion.vibration import COUPLED
 from stiction.analysis.oscillation import stands_out
-from stiction.analysis.parts.wording import mean_in_words, number
+from stiction.analysis.parts.wording import first_sentence, mean_in_words, number
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
@@ -66,9 +66,11 @@ TO_AND_FRO = ("forth", "plateaus")  # of these
 
 
 def section(found: Analysis) -> Section:
-    """Return the motion in a plain sentence, then the kind of motion."""
-    kind = str(found.regime)
-    return Section("Motion", [plainly(found), f"{kind[0].upper()}{kind[1:]}."])
+    """Return what follows the plain sentence of the brief, and the evidence of the kind."""
+    said = plainly(found)
+    more = said.removeprefix(first_sentence(said)).strip()
+    grounds = f"Evidence: {found.regime.grounds}." if found.regime.evidence else ""
+    return Section("Motion", [line for line in (more, grounds) if line])
 
 
 def numbers(found: Analysis) -> dict[str, Any]:
@@ -129,6 +131,7 @@ def _describe_cycles(found: Analysis) -> str:
         TRANSITIONAL: f"The mass slips {times}{every}, between stick-slip and plain vibration",
         HARMONIC: f"The {_swinging(found)} swings {times}{every}{share}",
         TRANSVERSE: f"The mass oscillates across the drive {times}{every}{share}",
+        IRREGULAR: f"The mass vibrates irregularly {times}{every}",
     }.get(found.regime.kind)
     if plain is None:
         return ""

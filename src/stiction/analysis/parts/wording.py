@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from math import isfinite
 from typing import Any
 
@@ -28,6 +29,24 @@ def mean_in_words(summary: xr.Dataset, quantity: str) -> str:
     row = summary.sel(quantity=quantity)
     error = float(row["standard_deviation"]) / max(float(row["number"]), 1.0) ** 0.5
     return to_error(float(row["mean"]), error, str(row["unit"].values))
+
+
+def first_sentence(text: str) -> str:
+    """Return the first sentence of a text.
+
+    >>> first_sentence("The force falls by 1.5 N. Analyse each part.")
+    'The force falls by 1.5 N.'
+    """
+    return re.split(r"(?<=\.) ", text, maxsplit=1)[0]
+
+
+def first_clause(text: str) -> str:
+    """Return the first clause of a sentence, without its remedy or reason.
+
+    >>> first_clause("The force drifts by 1.5 N/s: analyse its parts.")
+    'The force drifts by 1.5 N/s'
+    """
+    return re.split(r"[.:;](?: |$)", text, maxsplit=1)[0]
 
 
 def rows_left_out(count: int, things: str, file: str) -> list[str]:

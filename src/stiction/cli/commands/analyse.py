@@ -21,11 +21,12 @@ def analyse(
 ) -> None:
     """Analyse a result or a measured record: kind of motion, cycles, creep, oscillation, energy.
 
-    Prints a report and writes tables: cycles.csv (a row for each cycle), summary.csv, friction.csv,
-    creep.csv, creep-phases.csv, oscillation.csv, oscillation-phases.csv and energy.csv; of a test,
-    velocity-steps.csv, healing.csv, hysteresis.csv or load-dependence.csv; numbers in
-    analysis.json; figures of the test, cycles, creep, oscillation and energy. A quantity that is
-    not determined has no file. Creep and oscillation need several samples per transverse period.
+    Prints a report, which begins with the answer in short, and writes tables: cycles.csv (a row for
+    each cycle), summary.csv, friction.csv, creep.csv, creep-phases.csv, oscillation.csv,
+    oscillation-phases.csv and energy.csv; of a test, velocity-steps.csv, healing.csv,
+    hysteresis.csv or load-dependence.csv; numbers in analysis.json; figures of the test, cycles,
+    creep, oscillation and energy. A quantity that is not determined has no file. Creep and
+    oscillation need several samples per transverse period.
 
     For example, after `stiction run my.toml -o my.nc`:
 
@@ -71,7 +72,7 @@ def analyse(
         more = rows_left_out(count, "cycles", "cycles.csv")
         parts.insert(at, Section("Cycle by cycle", more, each_cycle(found.cycles)))
     if isinstance(source, Record) and source.origin is not None:
-        parts = [*source.origin.tables(), *parts]
+        parts += source.origin.tables()
     print_sections(str(result), parts)
     say(f"\nwrote {', '.join(path.name for path in paths)} to {folder}")
 

@@ -30,7 +30,7 @@ from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS
 from stiction.presets.preset import on_a_line
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import fastest_slip
-from stiction.text.sections import as_text
+from stiction.text.sections import Section, as_text
 from stiction.text.suggestion import as_option, suggest
 
 KNOWN = {
@@ -81,7 +81,8 @@ def test_drift_is_seen_and_taken_off(force) -> None:
     record = st.Record(time=time, force=newtons + 0.05 * time, **KNOWN)
     found = st.analyse(record)
     assert "The force drifts by 50" in found.warnings[0]
-    assert as_text(found.tables()).startswith("Warnings")
+    assert found.tables()[0].sentences[-2].startswith("1 warning: the force drifts by 50")
+    assert found.tables()[1] == Section("Warnings", list(found.warnings))
     mended = st.analyse(st.analysis.detrend(record))
     assert mended.warnings == ()
     assert mended.friction.static.coefficient == pytest.approx(0.1993, rel=2e-3)
@@ -361,7 +362,7 @@ def test_a_report_prints_itself_and_no_creep_goes_backwards() -> None:
     hum = 0.02 * np.sin(2 * np.pi * 49.99 * np.arange(0.0, 60.0, 0.001))
     known = {"stiffness": "150 N/m", "drive_velocity": "0.4 mm/s", "normal_load": "2 N"}
     text = str(st.analyse(st.Record(time=time, force=force, **known)))
-    assert text.startswith("Warnings\n")
+    assert "\n\nWarnings\n" in text
     assert "creeps at -" not in text
     fast = np.arange(0.0, 60.0, 0.001)
     humming = st.Record(time=fast, force=np.interp(fast, time, force) + hum)
@@ -845,7 +846,7 @@ def test_slip_speeds_of_few_samples_are_named_with_their_error(samples, place, r
         assert low > 0.3
     else:
         assert low < 0.05
-    assert ("samples:" in said) == (samples < 5.5) or 4.5 < samples < 6.5
+    assert ("samples, so" in said) == (samples < 5.5) or 4.5 < samples < 6.5
 
 
 def saw(rises, falls, step=0.02):

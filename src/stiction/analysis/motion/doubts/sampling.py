@@ -152,7 +152,8 @@ def doubt_few_samples(record: Record, cycles: CycleTable) -> Iterator[str]:
     slow = interval > SLOWLY  # nobody samples in nanohertz
     rate = f"every {in_words(interval, 's')}" if slow else f"at {advice(1.0 / interval, 'Hz')}"
     yield (
-        f"A fall of the force takes {samples:.1f} samples: peaks and troughs lie between them"
+        f"A fall of the force takes {samples:.1f} samples, so that peaks and troughs lie "
+        "between them"
         f"{_slow_slips(record, cycles, samples)}. Sample {rate} or more{' often' * slow}."
     )
 

@@ -127,8 +127,8 @@ def subtracted_lines(
         hum = ", probably mains hum," if of_mains(line.frequency) else ""
         found.append(
             f"A line at {in_words(line.frequency, 'Hz')} with an amplitude of "
-            f"{in_words(0.5 * line.height, 'N')}{hum} was subtracted from the force before the "
-            "search for cycles."
+            f"{in_words(0.5 * line.height, 'N')}{hum} was subtracted from the force: cycles "
+            "are sought in the rest."
         )
     return tuple(found)
 

@@ -53,6 +53,11 @@ class StatedQuantity(NamedTuple):
         return self.found - ERRORS_95 * self.error if self.is_bound else nan
 
     @property
+    def is_shown(self) -> bool:
+        """Whether the record shows a value, or at least a bound that says something."""
+        return self.at_least > 0.0 if self.is_bound else isfinite(self.found)
+
+    @property
     def agrees(self) -> bool | None:
         """Whether both agree; None if one is not known."""
         return self.low <= self.ratio <= self.high if isfinite(self.ratio) else None

@@ -225,10 +225,14 @@ class Regime(NamedTuple):
         rests = f", {self.rests}" if self.rests else ""
         return f"{self.kind} (confidence {self.confidence:.2f}{other}){rests}"
 
-    def __str__(self) -> str:
-        """Return the kind, its confidence and the evidence in words."""
+    @property
+    def grounds(self) -> str:
+        """The evidence in words."""
         # a vibration does not rest: its shape is only an estimate of that
         none = {"rest_share"} if self.kind in (HARMONIC, TRANSVERSE) else set()
         said = ((*WORDS[name], value) for name, value in self.evidence.items() if name not in none)
-        reasons = "; ".join(text.format(written(value)) for text, written, value in said)
-        return f"{self.surely}: {reasons}"
+        return "; ".join(text.format(written(value)) for text, written, value in said)
+
+    def __str__(self) -> str:
+        """Return the kind, its confidence and the evidence in words."""
+        return f"{self.surely}: {self.grounds}"
