@@ -45,13 +45,9 @@ def driven_steadily(record: Record, begin: Floats, end: Floats) -> NDArray[np.bo
     measured, either way, or that which loads the spring, X + F/k_x. Of a force alone pauses are
     seen.
     """
-    known, way = record.drive_velocity, record.drive_travel
-    if not len(begin) or (record.slider is not None and way is None):
+    if not len(begin) or (record.slider is not None and record.drive_travel is None):
         return np.ones(len(begin), bool)
-    if way is None:
-        way = record.drive_position
-    if way is None and record.position is not None and record.stiffness is not None:
-        known, way = None, record.position + record.force / record.stiffness
+    known, way = _velocity_and_way(record)
     if way is None:
         return ~_pauses(record, begin, end)
     lasts = end - begin
@@ -60,6 +56,20 @@ def driven_steadily(record: Record, begin: Floats, end: Floats) -> NDArray[np.bo
     usual = lasts * (known or np.quantile(speeds, 0.5, method="higher"))  # a pause makes it less
     most = KNOWN * usual if record.slider is not None else PAUSED * usual + NOISE * white_noise(way)
     return np.asarray(np.abs(passed - usual) <= most)
+
+
+def shows_drive(record: Record) -> bool:
+    """Return whether a record shows its drive, not only a force that hesitates as with a pause."""
+    return record.slider is not None or _velocity_and_way(record)[1] is not None
+
+
+def _velocity_and_way(record: Record) -> tuple[float | None, Floats | None]:
+    """Return the velocity (m/s) that a drive should keep, and how far it moves, (n,), m."""
+    ways = record.drive_travel, record.drive_position
+    way = next((each for each in ways if each is not None), None)
+    if way is None and record.position is not None and record.stiffness is not None:
+        return None, record.position + record.force / record.stiffness
+    return record.drive_velocity, way
 
 
 def _pauses(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:

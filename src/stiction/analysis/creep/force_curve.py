@@ -222,8 +222,8 @@ def _refuse(phi: float, error: float, excess: float, misfit: float, off: float) 
     if abs(off) > 2.0 * WIDTHS[0]:
         raise ResultError(
             "not determined: Eq. (7) fits the rises only with "
-            f"{times(1.0 / (1.0 + off), 3)} stiffness times drive velocity as stated; measure both "
-            "again"
+            f"{times(1.0 / (1.0 + off), 3)} stiffness times drive velocity as stated, and an angle "
+            f"needs that to within {percent(2.0 * WIDTHS[0])}: measure both more exactly"
         )
     if misfit > WORST:
         raise ResultError(

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from stiction.analysis.creep.conditions import shows_drive
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.misalignment import REST_SPEED
@@ -79,7 +80,10 @@ def section(found: Analysis) -> Section:
         lines = [f"{UNKNOWN.capitalize()}.{several}"]
     if found.curves is not None and (left_out := found.curves.attrs.get("left_out", 0)):
         said = "1 stick phase, in which" if left_out == 1 else f"{left_out} stick phases, in which"
-        lines.append(f"Left out: {said} the drive pauses or goes at another velocity.")
+        what = "the force hesitates, as where the drive pauses"
+        if shows_drive(found.record):
+            what = "the drive pauses or goes at another velocity"
+        lines.append(f"Left out: {said} {what}.")
     d, phi = found.divergence, found.misalignment
     if found.record.position is None and phi is None:
         lines.append("Creep is counted from the even loading in the first half of each rise.")

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from math import floor, inf, isfinite
+from math import floor, inf, isfinite, nan
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import table_of
 from stiction.analysis.motion.doubts.creep_distance import hidden_way, way_of_lag
+from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
 from stiction.analysis.parts.wording import SHOWN, mean_in_words, number, with_spread
 from stiction.arrays import xr
 from stiction.text.columns import Quantity, grid
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words
+from stiction.text.units import in_words, with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
@@ -32,6 +33,7 @@ COLUMNS = {
 }
 LATE = 100.0  # of the time of all cycles: four digits do not tell starts so late apart
 WAYS, HIDDEN = ("creep_distance", "slip_distance"), 0.1  # a share of them that is worth a word
+BY_RATE = ("stick_slope", "stiffness")  # quantities that have the relative error of that rate
 COUNTS = ("hesitations",)  # exact; a count of none is not worth a row
 
 
@@ -40,7 +42,7 @@ def section(found: Analysis) -> Section:
     count = found.cycles.sizes["cycle"]
     if not count:
         return Section("Cycles", ["None."])
-    rows = []
+    rows, off = [], _error_of_rate(found)
     for quantity in found.summary["quantity"].values:
         row = found.summary.sel(quantity=quantity)
         mean, spread = float(row["mean"]), float(row["standard_deviation"])
@@ -49,6 +51,8 @@ def section(found: Analysis) -> Section:
             exact = quantity in COUNTS and spread == 0.0
             several = "0" if exact else with_spread(spread, mean, unit)
             shown = mean_in_words(found.summary, quantity)
+            if quantity in BY_RATE and isfinite(off):
+                shown = with_error(mean, off * mean, unit)
             rows.append((str(row["meaning"].values), shown, several))
     table = Table(("quantity", "mean", "standard deviation"), rows)
     left_out = count - int(found.summary["number"].sel(quantity="period"))
@@ -63,6 +67,15 @@ def section(found: Analysis) -> Section:
         columns = ", ".join(COLUMNS[name] for name in unknown if found.missing[name] == why)
         lines.append(f"Not given: {columns}; {why}.")
     return Section("Cycles", lines, table)
+
+
+def _error_of_rate(found: Analysis) -> float:
+    """Return the relative error of the rate of loading; NaN if not known, or not of all cycles.
+
+    Drift, ringing and rounding shift the rates of all cycles alike: their scatter does not show it.
+    """
+    rates = [each for each in found.parts["metadata"] if each.quantity == LOADING_RATE]
+    return rates[0].error / rates[0].found if len(rates) == 1 else nan
 
 
 def _hidden_ways(found: Analysis) -> list[str]:

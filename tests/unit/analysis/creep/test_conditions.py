@@ -142,6 +142,10 @@ def test_so_do_records_of_which_only_the_force_shows_the_pauses(holds, channels)
     assert found.curves.attrs["left_out"] >= 3
     its = found.misalignment
     assert abs(its.phi - PAPER.phi) < 2.0 * its.phi_error
+    what = "the force hesitates, as where the drive pauses"
+    if len(channels) > 1:
+        what = "the drive pauses or goes at another velocity"
+    assert f"stick phases, in which {what}." in str(found)
 
 
 def test_samples_that_a_failed_run_lacks_are_left_out(holds):

@@ -85,3 +85,15 @@ def test_an_even_sawtooth_has_no_bend() -> None:
     found = st.analyse(record)
     assert found.misalignment is None
     assert "not determined" in found.missing["misalignment"]
+
+
+def test_a_rate_that_an_angle_refuses_is_not_said_to_contradict_what_is_stated() -> None:
+    """Ten lines apart, one report asked to measure again what it did not contradict."""
+    record = measure(1.0)
+    assert record.stiffness is not None
+    stated = record.model_copy(update={"stiffness": record.stiffness / 1.09})
+    said = str(st.analyse(stated))
+    assert (
+        "times stiffness times drive velocity as stated, and an angle needs that to within" in said
+    )
+    assert "The record contradicts" not in said
