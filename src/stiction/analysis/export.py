@@ -16,9 +16,12 @@ if TYPE_CHECKING:
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset]:
-    """Return all tables by name."""
+    """Return all tables with rows, by name."""
     named = {name: each for _, of in functions("tables") for name, each in of(found).items()}
-    return {name: table for name, table in named.items() if table is not None}
+    return {
+        name: table for name, table in named.items()
+        if table is not None and 0 not in table.sizes.values()
+    }  # fmt: skip
 
 
 def numbers(found: Analysis) -> dict[str, Any]:

@@ -221,6 +221,17 @@ def test_a_run_without_samples_or_misalignment_is_no_error():
         assert all(part.sentences for part in st.analyse(run).tables())
 
 
+@pytest.mark.parametrize(("wave", "named"), [("level", set()), ("saw", {"cycles", "summary"})])
+def test_a_table_without_rows_has_no_file(wave, named, tmp_path):
+    """Steady sliding wrote a table of cycles, and of creep, of a heading alone."""
+    time, force = load_cell(1e-3, wave=wave)
+    found = st.analyse(st.Record(time=time, force=force, **LOADED))
+    write(found, tmp_path)
+    tables = [*tmp_path.glob("*.csv")]
+    assert {path.stem for path in tables} & {"cycles", "summary"} == named
+    assert all(len(path.read_text().splitlines()) > 1 for path in tables)
+
+
 def test_tables_and_numbers_as_files(found, tmp_path):
     names = [path.name for path in write(found, tmp_path)]
     assert names == [

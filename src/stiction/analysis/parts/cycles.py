@@ -132,7 +132,9 @@ def each_cycle(table: xr.Dataset) -> Table:
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
-    """Return a row for each cycle, and mean and spread over all."""
+    """Return a row for each cycle, and mean and spread over all; nothing without cycles."""
+    if not found.cycles.sizes["cycle"]:
+        return {}
     return {"cycles": found.cycles, "summary": found.summary}
 
 

@@ -46,16 +46,14 @@ def section(found: Analysis) -> Section | None:
     known = {each.name: verdict(each) for each in its if verdict(each) not in UNSAID}
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
-    bounds = dict.fromkeys(
-        each.how for each in its if _is_shown_as_bound(each) and each.at_least > 0.0
-    )
+    bounds = dict.fromkeys(each.how for each in its if _is_shown_as_bound(each) and each.is_shown)
     lines += [WHY[how] for how in bounds]
     return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
 
 
 def _is_shown_as_bound(each: StatedQuantity) -> bool:
     """Return whether a value is a lower bound of the true one; not where that stated is below."""
-    return isfinite(each.at_least) and not each.stated < each.at_least
+    return each.is_bound and isfinite(each.error) and not each.stated < each.at_least
 
 
 def _agreement(known: Mapping[str, str]) -> str:
@@ -88,7 +86,7 @@ def _verdict_of_bound(each: StatedQuantity) -> str:
     """Return the same for a lower bound: only one that is near what is stated agrees with it."""
     if not each.agrees:
         return DOUBTED
-    if not each.at_least > 0.0:  # nothing is shown
+    if not each.is_shown:
         return ""
     return AGREES if each.at_least >= (1.0 - ALIKE) * each.stated else ALLOWED
 

@@ -552,3 +552,19 @@ def test_rises_that_are_steeper_at_first_and_then_as_stated_contradict_nothing(l
     alike = np.array([0.98, 0.99, 1.0])  # no steeper than as stated: the late rate adds no error
     errors = [_loading_rate(alike, each, 1.0, 0.0, 0.0).error for each in (alike, 0.95 * alike)]
     assert errors[0] == errors[1]
+
+
+@pytest.mark.parametrize(
+    ("error", "bound", "word"),
+    [(0.1, 0.8, "possible"), (0.6, np.nan, ""), (0.5, np.nan, ""), (np.nan, np.nan, "agrees")],
+)
+def test_a_bound_that_is_not_positive_is_none(error, bound, word):
+    """A stiffness over mass that noise hides was at least -5707 1/s² in metadata.csv."""
+    its = StatedQuantity(
+        LOADING_RATE, "N/s", 1.0, error, 1.2, 0.5, 1.5, BY_RISE, is_bound=True
+    )  # fmt: skip
+    assert its.at_least == pytest.approx(bound, nan_ok=True)
+    assert parts_of_metadata.verdict(its) == word
+    assert its.is_shown is bool(word)
+    shown = parts_of_metadata._value_in_words(its)
+    assert (shown == "not determined") is not its.is_shown

@@ -49,13 +49,18 @@ class StatedQuantity(NamedTuple):
 
     @property
     def at_least(self) -> float:
-        """The lower bound, two standard errors below what was found; NaN if it is none."""
-        return self.found - ERRORS_95 * self.error if self.is_bound else nan
+        """The lower bound, two standard errors below what was found; NaN if it says nothing.
+
+        What is bounded is positive: a bound that is not says no more than that.
+        """
+        bound = self.found - ERRORS_95 * self.error if self.is_bound else nan
+        return bound if bound > 0.0 else nan
 
     @property
     def is_shown(self) -> bool:
         """Whether the record shows a value, or at least a bound that says something."""
-        return self.at_least > 0.0 if self.is_bound else isfinite(self.found)
+        hidden = self.is_bound and self.found <= ERRORS_95 * self.error
+        return isfinite(self.found) and not hidden
 
     @property
     def agrees(self) -> bool | None:
