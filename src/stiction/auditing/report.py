@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.arrays import same_values
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
@@ -34,7 +34,7 @@ from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
 from stiction.inference.progress import Progress, part, silent
-from stiction.inference.rig import Rig, rig_of
+from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
@@ -223,10 +223,10 @@ def audit(
     before = FITTING if record is not None else 0.0
     measured = None
     if record is not None:
-        from stiction.analysis.measurement.reading import read_source
         from stiction.auditing.measured import compare
+        from stiction.inference.observation import record_from
 
-        seen = record if isinstance(record, Record) else as_record(read_source(record))
+        seen = record_from(record, load_of_records(rig))
         measured = compare(
             seen, rig, simulations=simulations, library=library,
             progress=lambda fraction: inform(before * fraction),

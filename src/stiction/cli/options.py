@@ -214,21 +214,25 @@ def library_or_cache(library: Path | None) -> Path:
     return folder
 
 
-def record_in(path: Path, measured: RecordOptions | None, trust: bool) -> Record:
-    """Read a measured record, or a run as if it was measured."""
+def record_in(
+    path: Path, measured: RecordOptions | None, trust: bool, rig_load: float | None = None
+) -> Record:
+    """Read a measured record, or a run as if it was measured; `rig_load` is as of `read_source`."""
     from stiction.analysis.record import as_record
 
-    return as_record(source_in(path, measured, trust))
+    return as_record(source_in(path, measured, trust, rig_load))
 
 
-def source_in(path: Path, measured: RecordOptions | None, trust: bool) -> Trajectory | Record:
+def source_in(
+    path: Path, measured: RecordOptions | None, trust: bool, rig_load: float | None = None
+) -> Trajectory | Record:
     """Read a run, or a measured record; a bar is shown while that takes long."""
     from stiction.analysis.measurement.reading import read_source
     from stiction.cli.progress import progress
 
     said = (measured or RecordOptions()).arguments()
     with progress("reading"):
-        return read_source(path, trust=trust, **said)
+        return read_source(path, trust=trust, rig_load=rig_load, **said)
 
 
 def record_or_none(
@@ -236,6 +240,7 @@ def record_or_none(
     measured: RecordOptions | None,
     trust: bool,
     give: str = "give --record",
+    rig: Rig | None = None,
     **others: Any,
 ) -> Record | None:
     """Do as `record_in`, if there is a record; refuse options of one where there is none.
@@ -244,7 +249,9 @@ def record_or_none(
     they are not given.
     """
     if path is not None:
-        return record_in(path, measured, trust)
+        from stiction.inference.rig import load_of_records
+
+        return record_in(path, measured, trust, None if rig is None else load_of_records(rig))
     further = {name: value for name, value in others.items() if value is not None}
     if said := (measured or RecordOptions()).arguments() | further:
         named = ", ".join(f"--{name.replace('_', '-')}" for name in said)

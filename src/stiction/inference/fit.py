@@ -25,7 +25,7 @@ from stiction.inference.observation import (
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
 from stiction.inference.progress import Progress, part, silent
-from stiction.inference.rig import Rig, rig_of
+from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
 from stiction.inference.simulated.library import (
@@ -97,7 +97,7 @@ def fit(
     known = rig_of(rig)
     check(known, simulations)
     place = library_folder(library)
-    seen = observe_all(records, known.slider)
+    seen = observe_all(records, known.slider, load_of_records(known))
     plan_of = plan_for(known, [each.conditions for each in seen])
     folder = None if place is None else place / f"{plan_of.key}-{seed}"
     whole = progress or silent

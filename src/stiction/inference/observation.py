@@ -320,20 +320,27 @@ def drive_velocity(record: Record, slider: Slider) -> float:
     return float(np.copysign(stated, velocity))
 
 
-def observe_all(records: Source | Sequence[Source], slider: Slider) -> list[Observation]:
-    """Observe one or several records of a rig."""
+def observe_all(
+    records: Source | Sequence[Source], slider: Slider, rig_load: float
+) -> list[Observation]:
+    """Observe one or several records of a rig, with the load of them that its description states.
+
+    That is NaN where it is not certain.
+    """
     given = [records] if isinstance(records, Source) else [*records]
     if not given:
         raise ResultError("no record is given; name one or several")
     return [
-        observe(record_from(each), slider, f"record {number}")
+        observe(record_from(each, rig_load), slider, f"record {number}")
         for number, each in enumerate(given, 1)
     ]
 
 
-def record_from(source: Source) -> Record:
-    """Return a record as it is, that of a run, or that of a file of either."""
-    return as_record(read_source(source) if isinstance(source, str | Path) else source)
+def record_from(source: Source, rig_load: float | None = None) -> Record:
+    """Return a record as it is, that of a run, or that of a file of either, as `read_source`."""
+    if isinstance(source, str | Path):
+        source = read_source(source, rig_load=rig_load)
+    return as_record(source)
 
 
 def noise_of(record: Record, channel: str, values: Floats, bands: tuple[Band, ...] = ()) -> Noise:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
-from math import radians
+from math import nan, radians
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -181,6 +181,18 @@ def rig_of(source: Any, changes: Mapping[str, Any] | None = None, trust: bool = 
     if isinstance(source, str | Path):
         return Rig.from_toml(source, changes, trust=trust)
     return Rig(slider_of(source), {})
+
+
+def load_of_records(rig: Rig) -> float:
+    """Return the normal load (N) of a rig's records; NaN if that is uncertain, or varies.
+
+    >>> import stiction as st
+    >>> text = st.presets.nakano_popov_2020().to_toml()
+    >>> load_of_records(Rig.from_toml(text))
+    10.0
+    """
+    certain = "normal_load" not in rig.priors and rig.slider.load is None
+    return rig.slider.normal_load if certain else nan
 
 
 def stored_text(rig: Rig) -> str:

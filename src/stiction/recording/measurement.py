@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import Any, NamedTuple, TypeVar
 
@@ -77,7 +78,7 @@ class MeasuredChannel(NamedTuple):
 
 
 def read_measurements(
-    path: Path, given: Mapping[str, Any], sidecar: Path | None
+    path: Path, given: Mapping[str, Any], sidecar: Path | None, rig_load: float | None = None
 ) -> list[Measurement]:
     """Return a measurement for each block of a file, or the one that is asked for.
 
@@ -89,6 +90,8 @@ def read_measurements(
         What the user says, by the names of `ReadingOptions` and of the apparatus.
     sidecar : Path or None
         In place of the TOML file beside the file.
+    rig_load : float or None
+        As of `Request`: for a coefficient of friction whose load nothing else states.
 
     Raises
     ------
@@ -97,7 +100,7 @@ def read_measurements(
     DescriptionError
         If what the user says is wrong.
     """
-    asked = request(path, given, sidecar)
+    asked = request(path, given, sidecar)._replace(rig_load=rig_load)
     reading = asked.reading
     layout = TextLayout(SIGNS.get(reading.decimal or ""), MARKS.get(reading.separator or ""))
     found: list[Measurement] = []
@@ -222,11 +225,16 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
         notes += remarks
         if its is not None:
             found[name] = its
-    found, remarks = _weigh(path, choice.channels["force"], found, asked.known)
+    force, known = choice.channels["force"], dict(asked.known)
+    lacks = force.ratio and "load" not in found and "normal_load" not in known
+    if lacks and asked.rig_load is not None and isfinite(asked.rig_load):
+        known["normal_load"] = asked.rig_load
+        notes.append("the normal load is that of the rig's description")
+    found, remarks = _weigh(path, force, found, known, asked.rig_load is not None)
     sensors = {name: each.sensor for name, each in found.items()}
     notes += remarks
     notes += [_in_words(name, x) for name, x in sensors.items() if x.noise or x.quantisation]
-    notes += _apparatus_in_words(asked.known)
+    notes += _apparatus_in_words(known)
     if isinstance(asked.reading.wrap, float) and not found.keys() & {*DISPLACEMENTS}:
         notes.append("wrap has no effect: there is no displacement")
     channels = {"time": time, **{name: each.values for name, each in found.items()}}
@@ -240,7 +248,7 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
         start=said.start or table.start,
         notes=tuple(notes),
     )
-    return Measurement(channels, dict(asked.known), sensors, origin, asked.reading.part)
+    return Measurement(channels, known, sensors, origin, asked.reading.part)
 
 
 def _apparatus_in_words(known: Mapping[str, Any]) -> list[str]:
@@ -391,9 +399,16 @@ def _in_words(name: str, sensor: Sensor) -> str:
 
 
 def _weigh(
-    path: Path, force: Chosen, found: Mapping[str, MeasuredChannel], known: Mapping[str, Any]
+    path: Path,
+    force: Chosen,
+    found: Mapping[str, MeasuredChannel],
+    known: Mapping[str, Any],
+    of_rig: bool,
 ) -> tuple[dict[str, MeasuredChannel], list[str]]:
-    """Turn a negative normal load round, and a coefficient of friction into a force; with notes."""
+    """Turn a negative normal load round, and a coefficient of friction into a force; with notes.
+
+    `of_rig` says that the record is one of a rig that is described.
+    """
     channels, notes, load = dict(found), [], None
     if "load" in channels:
         load = channels["load"].values
@@ -409,9 +424,13 @@ def _weigh(
     if not force.ratio:
         return channels, notes
     if load is None and "normal_load" not in known:
+        say = f"say for example {Suggestion('normal_load', '10 N')}"
+        remedy = f"{say}; if the load is unknown, 1 N: forces are then coefficients"
+        if of_rig:
+            remedy = f"the rig's description states none for certain: {say}, that of this record"
         raise ResultError(
             f"{path}: column {force.column} is a friction coefficient, and the force is that times "
-            f"the normal load; say for example {Suggestion('normal_load', '10 N')}"
+            f"the normal load; {remedy}"
         )
     its = channels["force"].values * (load if load is not None else known["normal_load"])
     channels["force"] = MeasuredChannel(its, _with_noise(None, its, "force"))

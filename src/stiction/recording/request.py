@@ -140,12 +140,17 @@ class ReadingOptions(Described):
 
 
 class Request(NamedTuple):
-    """All that is said about a file: how to read it, numbers of the apparatus, sensors."""
+    """All that is said about a file: how to read it, numbers of the apparatus, sensors.
+
+    `rig_load` (N) is that of the description of a rig, whose record a file is; NaN if that states
+    none, or none for certain.
+    """
 
     reading: ReadingOptions
     known: dict[str, Any]
     sensors: dict[str, Sensor]
     beside: Path | None = None
+    rig_load: float | None = None
 
 
 def request(path: Path, given: Mapping[str, Any], sidecar: Path | None) -> Request:

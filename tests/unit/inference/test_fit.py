@@ -11,6 +11,7 @@ import xarray as xr
 from tests.uncertain import SIMULATIONS, TEXT, record_of
 
 import stiction as st
+from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.signals.robust import block_means
 from stiction.errors import DescriptionError, ResultError
 from stiction.friction import read_law
@@ -28,6 +29,7 @@ from stiction.inference.observation import (
     trend,
 )
 from stiction.inference.priors import Normal, Uniform
+from stiction.inference.rig import Rig, load_of_records
 from stiction.inference.simulated.jitter import Jitter, move, stretch
 from stiction.inference.simulated.library import build
 from stiction.inference.simulated.synthetic import draw, synthesise
@@ -660,6 +662,34 @@ def test_no_time_of_a_part_lies_beyond_its_end():
     assert short > 0
 
 
+def test_a_record_of_coefficients_takes_the_load_of_its_rig(record, rig, tmp_path):
+    """A record of F/W was refused, though the description of its rig stated W."""
+    path, beside = tmp_path / "data.csv", tmp_path / "data.toml"
+    rows = np.column_stack([record.time, record.force / 4.0])
+    np.savetxt(path, rows, "%.9g", ",", header="t (s),F/W (-)", comments="")
+    load = load_of_records(rig)
+    own = read_source(path, rig_load=load)
+    assert own.normal_load == load == 4.0
+    np.testing.assert_allclose(own.force, record.force, rtol=1e-8)
+    assert "the normal load is that of the rig's description" in own.origin.notes
+    (seen,) = observe_all(path, rig.slider, load)
+    assert seen.conditions.normal_load == 4.0
+    with pytest.raises(st.ResultError, match="if the load is unknown, 1 N: forces are then"):
+        st.read_record(path)
+    uncertain = st.Rig.from_toml(rig.to_toml().replace('"4 N"', '"4 +- 0.5 N"'))
+    for unclear in (
+        uncertain,
+        Rig(rig.slider.replace(load=st.protocols.load_ramp(["2 N", "4 N"], ramp="1 s")), {}),
+    ):
+        with pytest.raises(st.ResultError, match="states none for certain: say for example normal"):
+            read_source(path, rig_load=load_of_records(unclear))
+    assert read_source(path, rig_load=load, normal_load="2 N").normal_load == 2.0
+    beside.write_text('[record]\nnormal_load = "3 N"\n')
+    stated = read_source(path, rig_load=load)
+    assert stated.normal_load == 3.0  # what is said of the record comes before the rig
+    assert "that of the rig" not in str(stated.origin)
+
+
 def test_a_record_is_taken_from_its_file_and_from_a_run(record, rig, tmp_path):
     """A path was "must be a Record or a sequence, is 'data.csv'", though audits take one."""
     path = tmp_path / "data.csv"
@@ -667,12 +697,12 @@ def test_a_record_is_taken_from_its_file_and_from_a_run(record, rig, tmp_path):
     np.savetxt(path, rows, "%.9g", ",", header="t (s),F (N)", comments="")
     plain = observe(st.read_record(path), rig.slider)
     for given in (path, str(path), [path]):
-        (seen,) = observe_all(given, rig.slider)
+        (seen,) = observe_all(given, rig.slider, 4.0)
         assert seen.conditions == plain.conditions
         np.testing.assert_array_equal(seen.features, plain.features)
     run = st.simulate(rig.slider, "1 ms", sample_rate="1 kHz")
     with pytest.raises(st.ResultError, match="record 1"):  # of too few samples
-        observe_all(run, rig.slider)
+        observe_all(run, rig.slider, 4.0)
     with pytest.raises(st.StictionError, match="a record, a run or a path or a sequence, is 5"):
         st.fit(5, rig)
 

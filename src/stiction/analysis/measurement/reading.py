@@ -111,7 +111,17 @@ def read_record(
     >>> record.force.tolist(), record.sample_rate
     ([0.0015, 0.0025, 0.0005], 2.0)
     """
-    found = _measurements(path, sidecar, dict(said))
+    return _only_record(path, sidecar, dict(said))
+
+
+def _only_record(
+    path: str | Path,
+    sidecar: str | Path | None,
+    said: dict[str, Any],
+    rig_load: float | None = None,
+) -> Record:
+    """Return the record of a file that holds one, or of which one is asked for."""
+    found = _measurements(path, sidecar, said, rig_load)
     if len(found) > 1:
         listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")
         raise ResultError(
@@ -171,9 +181,13 @@ def read_source(
     *,
     trust: bool = False,
     sidecar: str | Path | None = None,
+    rig_load: float | None = None,
     **said: Unpack[ReadArguments],
 ) -> Trajectory | Record:
     """Return the run or the record of a file, for a function that takes either.
+
+    `rig_load` (N) is the normal load of the rig whose record it is, NaN if that is not certain; it
+    turns coefficients of friction into forces if nothing else does.
 
     Raises
     ------
@@ -181,7 +195,7 @@ def read_source(
         As of `stiction.load` or `read_record`; also if something is said about the file of a run.
     """
     if not is_run(Path(path)):
-        return read_record(path, sidecar=sidecar, **said)
+        return _only_record(path, sidecar, dict(said), rig_load)
     given = [name for name, value in said.items() if value is not None]
     if given:
         raise ResultError(
@@ -212,14 +226,18 @@ def _files_of(folder: Path) -> Sequence[Path]:
 
 
 def _measurements(
-    path: str | Path, sidecar: str | Path | None, said: dict[str, Any]
+    path: str | Path,
+    sidecar: str | Path | None,
+    said: dict[str, Any],
+    rig_load: float | None = None,
 ) -> list[Measurement]:
     """Return the measurements of one file; a stored record is one, whose numbers may be changed."""
     file = Path(path)
     names = root_attributes(file) or ()
     refuse_kinds(path, names, [FIT_KIND])
     if RECORD_KIND not in names:
-        return read_measurements(file, said, None if sidecar is None else Path(sidecar))
+        beside = None if sidecar is None else Path(sidecar)
+        return read_measurements(file, said, beside, rig_load)
     stored = read_stored(file)
     changed = {name: value for name, value in said.items() if value is not None}
     part = {x: changed.pop(x) for x in AskedPart._fields if x in changed}

@@ -71,7 +71,7 @@ def audit(
     from stiction.cli.tables import print_sections
     from stiction.inference.simulated import SIMULATIONS
 
-    faults = Faults()
+    faults, rig = Faults(), None
     given = changes(set, faults)
     with faults.of_part():
         rig = rig_from(config, preset, given, trust)
@@ -83,8 +83,11 @@ def audit(
         with faults.of_part():
             placeable(output, SUFFIXES)
     with faults.of_part():
-        seen = record_or_none(record, measured, trust, simulations=simulations, library=library)
+        seen = record_or_none(
+            record, measured, trust, rig=rig, simulations=simulations, library=library
+        )
     faults.refuse()
+    assert rig is not None
     kept = None if seen is None else library_or_cache(library)
     count = SIMULATIONS if simulations is None else simulations
     with progress("auditing") as report:

@@ -28,7 +28,7 @@ from stiction.inference.mechanism.rivals import (
 from stiction.inference.mechanism.static_check import ELASTIC, StaticCheck
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
 from stiction.inference.progress import Progress, part, silent
-from stiction.inference.rig import Rig, rig_of
+from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import explain_unlike
@@ -93,7 +93,7 @@ def mechanism(
         message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
         raise DescriptionError.of("phi", message)
     place = library_folder(library)
-    seen = observe_all(records, known.slider)
+    seen = observe_all(records, known.slider, load_of_records(known))
     rivals = mechanisms(known, [each.conditions for each in seen])
     whole = progress or silent
     simulating = part(whole, 0, 10, of=8)

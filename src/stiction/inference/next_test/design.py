@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -133,7 +134,7 @@ def design(
     faults, place = Faults(), None
     with faults.of_part():
         place = library_folder(library)
-    read_record = None if record is None else lambda: record_from(record)
+    read_record = None if record is None else partial(record_from, record)
     question = ask(
         rig, read_record, of, faults, channels=channels, angles=angles, velocities=velocities,
         loads=loads, noise=noise, position_noise=position_noise, simulations=simulations,

@@ -13,7 +13,7 @@ from stiction.errors import DescriptionError, Fault, Faults
 from stiction.inference.fit import check
 from stiction.inference.next_test.further import Wanted
 from stiction.inference.posterior import OWN_UNITS
-from stiction.inference.rig import Rig, rig_of, stated_names
+from stiction.inference.rig import Rig, load_of_records, rig_of, stated_names
 from stiction.inference.simulated.plan import Plan
 from stiction.text.paths import canonical, last_part
 from stiction.text.units import in_words
@@ -46,7 +46,7 @@ class Question(NamedTuple):
 
 def ask(
     rig: Rig | str | Path,
-    read_record: Callable[[], Record] | None,
+    read_record: Callable[[float | None], Record] | None,
     of: str,
     faults: Faults,
     *,
@@ -64,7 +64,7 @@ def ask(
         check(known)
     if read_record is not None:
         with faults.of_part():
-            seen = read_record()
+            seen = read_record(None if known is None else load_of_records(known))
         if several(given["channels"]) != ("force",):
             with faults.of_part():
                 message = "are those of the record; leave them out, or the record"

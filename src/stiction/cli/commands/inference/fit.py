@@ -93,10 +93,10 @@ def fit(
     from stiction.inference.fit import fit as infer
     from stiction.inference.mechanism.comparison import SHARE
     from stiction.inference.mechanism.comparison import mechanism as find
-    from stiction.inference.rig import Rig
+    from stiction.inference.rig import Rig, load_of_records
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
-    faults, given = Faults(), []
+    faults, given, known = Faults(), [], None
     altered = changes(set, faults)
     with faults.of_part():
         placeable(output, NETCDF)
@@ -111,10 +111,12 @@ def fit(
             )
     with faults.of_part():
         known = Rig.from_toml(rig, altered, trust=trust)
+    load = None if known is None else load_of_records(known)
     for path in records:
         with faults.of_part():
-            given.append(record_in(path, measured, trust))
+            given.append(record_in(path, measured, trust, load))
     faults.refuse()
+    assert known is not None
     kept = library_or_cache(library)
     with progress("simulating and learning") as report:
         found = infer(
