@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from stiction.analysis.motion.friction import without_loading
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
 from stiction.analysis.parts.motion import plainly
+from stiction.analysis.parts.procedure import name_of
 from stiction.analysis.parts.wording import first_clause, first_sentence
 from stiction.text.sections import Section
 from stiction.text.units import with_error
@@ -24,9 +25,10 @@ OF_LOADING = {  # by their name in `Analysis.missing`
 
 
 def section(found: Analysis) -> Section:
-    """Return the kind of motion, friction, the first warning, and what is not determined."""
-    kind = found.regime.surely
+    """Return test, kind of motion, friction, the first warning, and what is not determined."""
+    kind, test = found.regime.surely, found.parts["procedure"]
     lines = [
+        *([] if test is None else [f"A test of {name_of(test).replace('-', ' ')}, as below."]),
         f"{kind[0].upper()}{kind[1:]}.",
         first_sentence(plainly(found)),
         _friction(found),

@@ -196,7 +196,8 @@ def test_an_analysis_of_a_record_with_its_drive_begins_with_its_test():
         normal_load=1e3,
     )
     found = st.analyse(record)
-    assert found.tables()[0].title == "Healing"
+    assert [part.title for part in found.tables()[:2]] == ["In short", "Healing"]
+    assert found.tables()[0].sentences[0] == "A test of healing, as below."
     healing = found.parts["procedure"]
     assert healing.hold == pytest.approx([10.0, 100.0], rel=1e-3)
     assert "Friction heals by" in str(found)
