@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib import import_module
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -114,3 +115,8 @@ FORMATS: dict[str, Callable[[Tables, Path, Mapping[str, str]], None]] = {
     ".parquet": _parquet,
     ".mat": _mat,
 }
+
+
+def number(value: Any) -> float | None:
+    """Return a number for JSON, None for NaN and infinity."""
+    return float(value) if isfinite(float(value)) else None

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from stiction.text.quantity_text import DIGITS, MEASURABLE, SI, thousands
 from stiction.text.sections import Table
 
+SHOWN = 8  # rows in the terminal; tables that are exported hold all
 PICO = -4  # the power of a thousand
 
 
@@ -60,3 +61,19 @@ def scale(values: Sequence[float], unit: str) -> tuple[int, int]:
 def cell(value: float, decimals: int) -> str:
     """Return a number with fixed decimals, zero without a sign, or 'none' if not finite."""
     return f"{round(value, decimals) + 0.0:.{decimals}f}" if isfinite(value) else "none"
+
+
+def rows_left_out(count: int, things: str, file: str) -> list[str]:
+    """Return a sentence on the rows that a table lacks, if there are more than it shows.
+
+    Examples
+    --------
+    >>> rows_left_out(8, "cycles", "cycles.csv")
+    []
+    >>> print(*rows_left_out(53, "cycles", "cycles.csv"))
+    These are the first 8 of 53 cycles; export(...) writes all, stiction analyse to cycles.csv.
+    """
+    if count <= SHOWN:
+        return []
+    some = f"These are the first {SHOWN} of {count} {things}"
+    return [f"{some}; export(...) writes all, stiction analyse to {file}."]

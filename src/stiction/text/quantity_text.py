@@ -14,6 +14,7 @@ BARE = ("", "1", "%", "1/s", "1/s²", "deg")  # units that take no prefix
 DIGITS = 4  # of a number in a sentence
 LONG = 8  # characters of a number that no prefix makes short
 ALL = 1e-6  # a share that is less is none, and one that lacks less is the whole
+SLIGHT = 1e-3  # of a value: an error that is less is not worth a word
 MEASURABLE = 1e-12  # m, a hundredth of an atom: no instrument follows a mass so closely
 YEAR = 31557600.0  # s: 365.25 days, as "yr" is read
 PREFIXES = {3 * power: "u" if letter == "µ" else letter for power, letter in SI.items()}

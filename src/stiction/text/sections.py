@@ -154,3 +154,21 @@ def table_html(table: Table) -> str:
 
     body = "".join(line("td", row) for row in table.rows)
     return f"<table><thead>{line('th', table.headings)}</thead><tbody>{body}</tbody></table>"
+
+
+def first_sentence(text: str) -> str:
+    """Return the first sentence of a text.
+
+    >>> first_sentence("The force falls by 1.5 N. Analyse each part.")
+    'The force falls by 1.5 N.'
+    """
+    return re.split(r"(?<=\.) ", text, maxsplit=1)[0]
+
+
+def first_clause(text: str) -> str:
+    """Return the first clause of a sentence, without its remedy or reason.
+
+    >>> first_clause("The force drifts by 1.5 N/s: analyse its parts.")
+    'The force drifts by 1.5 N/s'
+    """
+    return re.split(r"[.:;](?: |$)", text, maxsplit=1)[0]

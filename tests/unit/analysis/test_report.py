@@ -14,11 +14,13 @@ from tests.parts import assess, creep_of
 import stiction as st
 from stiction.analysis.creep.mean_curve import calibrate
 from stiction.analysis.export import write
+from stiction.analysis.motion.cycle_columns import mean_in_words
 from stiction.analysis.parts import creep
 from stiction.analysis.parts.motion import plainly
-from stiction.analysis.parts.wording import SHOWN, first_clause, mean_in_words, rows_left_out
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
+from stiction.text.columns import SHOWN, rows_left_out
+from stiction.text.sections import first_clause
 
 PAPER = st.presets.nakano_popov_2020()
 

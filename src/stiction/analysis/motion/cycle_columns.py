@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import isfinite
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,6 +15,8 @@ from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, Indices, xr
 from stiction.result.table import UNSEEN_PEAK, mean_speeds
+from stiction.text.quantity_text import percent
+from stiction.text.units import in_digits, to_error
 
 # name: (unit, long name), as CF attributes
 COLUMNS = {
@@ -37,6 +40,7 @@ COLUMNS = {
     "hesitation_depth": ("N", "depth of the deepest hesitation"),
 }
 UNSEEN = 0.25  # of a period without a sample: the cycle is not known
+ALIKE = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 SLIPPED = 0.1  # of the way from trough to peak, by small slips: it is not creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
@@ -307,3 +311,19 @@ def summary(cycles: xr.Dataset) -> xr.Dataset:
             "meaning": ("quantity", [cycles[name].attrs["long_name"] for name in names]),
         },
     )
+
+
+def with_spread(spread: float, mean: float, unit: str) -> str:
+    """Return a spread in words, or an upper limit if it is below the accuracy of a run."""
+    if not isfinite(spread):
+        return ""
+    if spread <= ALIKE * abs(mean):
+        return f"< {percent(ALIKE)}"
+    return in_digits(spread, unit, 2)
+
+
+def mean_in_words(summary: xr.Dataset, quantity: str) -> str:
+    """Return the mean of a quantity over cycles, in the digits that it has by their spread."""
+    row = summary.sel(quantity=quantity)
+    error = float(row["standard_deviation"]) / max(float(row["number"]), 1.0) ** 0.5
+    return to_error(float(row["mean"]), error, str(row["unit"].values))

@@ -9,8 +9,7 @@ from stiction.analysis.motion.friction import without_loading
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
 from stiction.analysis.parts.motion import plainly
 from stiction.analysis.parts.procedure import name_of
-from stiction.analysis.parts.wording import first_clause, first_sentence
-from stiction.text.sections import Section
+from stiction.text.sections import Section, first_clause, first_sentence
 from stiction.text.units import with_error
 
 if TYPE_CHECKING:

@@ -12,9 +12,9 @@ import numpy as np
 
 from stiction.analysis.motion.changes.cycles import parts_of
 from stiction.analysis.motion.changes.levels import levels
-from stiction.analysis.parts.wording import number
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.arrays import Floats, xr
+from stiction.storage.table_files import number
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory

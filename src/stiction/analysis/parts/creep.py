@@ -12,13 +12,13 @@ from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.misalignment import REST_SPEED
 from stiction.analysis.motion.regime.kinds import STUCK
-from stiction.analysis.parts.wording import SLIGHT, number
 from stiction.analysis.rotation.findings import BOTH, TURNING
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import xr
 from stiction.friction import states
-from stiction.text.quantity_text import MEASURABLE
+from stiction.storage.table_files import number
+from stiction.text.quantity_text import MEASURABLE, SLIGHT
 from stiction.text.sections import Section
 from stiction.text.units import in_words, times, with_error
 from stiction.trajectory import Trajectory

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.analysis.motion.cycle_columns import table_of
+from stiction.analysis.motion.cycle_columns import mean_in_words, table_of, with_spread
 from stiction.analysis.motion.doubts.creep_distance import hidden_way, way_of_lag
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
-from stiction.analysis.parts.wording import SHOWN, mean_in_words, number, with_spread
 from stiction.arrays import xr
-from stiction.text.columns import Quantity, grid
+from stiction.storage.table_files import number
+from stiction.text.columns import SHOWN, Quantity, grid
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.analysis.parts.wording import SHOWN, rows_left_out
 from stiction.arrays import xr
 from stiction.errors import ResultError
-from stiction.text.columns import Quantity, grid
+from stiction.text.columns import SHOWN, Quantity, grid, rows_left_out
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words

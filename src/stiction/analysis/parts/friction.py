@@ -5,11 +5,13 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from stiction.analysis.motion.cycle_columns import with_spread
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
-from stiction.analysis.parts.wording import SLIGHT, number, with_spread
 from stiction.arrays import xr
 from stiction.recording.noise import white_noise
+from stiction.storage.table_files import number
+from stiction.text.quantity_text import SLIGHT
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from stiction.analysis.motion.metadata.loading_rate import BY_RISE, LOADING_RATE
 from stiction.analysis.motion.metadata.quantity import ALIKE, StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS, SWING
-from stiction.analysis.parts.wording import number
 from stiction.arrays import xr
+from stiction.storage.table_files import number
 from stiction.text.sections import Section, Table
 from stiction.text.units import at_least, in_words, times, with_error
 

@@ -13,7 +13,7 @@ from stiction.analysis.motion.changes.cycles import (
     sizes_in_turn,
     slip_in_each,
 )
-from stiction.analysis.motion.cycle_columns import table_of
+from stiction.analysis.motion.cycle_columns import mean_in_words, table_of
 from stiction.analysis.motion.doubts.warnings import turns_round
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -29,15 +29,15 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.analysis.motion.rest import comes_to_rest, stuck_share
 from stiction.analysis.motion.vibration import COUPLED
 from stiction.analysis.oscillation import stands_out
-from stiction.analysis.parts.wording import first_sentence, mean_in_words, number
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
 from stiction.formats.units import with_other_sign
 from stiction.recording.origin import in_unit, use_of
 from stiction.recording.strokes import by_strokes
 from stiction.result.rest import longer
+from stiction.storage.table_files import number
 from stiction.text.quantity_text import percent
-from stiction.text.sections import Section
+from stiction.text.sections import Section, first_sentence
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import advice, in_words, times, to_error, with_error
 from stiction.trajectory import Trajectory

@@ -10,10 +10,10 @@ import numpy as np
 
 from stiction.analysis.motion.doubts.warnings import variations
 from stiction.analysis.motion.regime.kinds import STICK_SLIP
-from stiction.analysis.parts.wording import number
 from stiction.analysis.record import Record
 from stiction.arrays import xr
 from stiction.errors import ResultError
+from stiction.storage.table_files import number
 from stiction.text.sections import Section
 from stiction.trajectory import Trajectory
 

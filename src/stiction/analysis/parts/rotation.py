@@ -6,7 +6,6 @@ from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.doubts.warnings import VARIES
-from stiction.analysis.parts.wording import number
 from stiction.analysis.rotation.findings import (
     BOTH,
     GROWING,
@@ -18,6 +17,7 @@ from stiction.analysis.rotation.findings import (
 from stiction.analysis.rotation.loading import SEVERAL
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.errors import ResultError
+from stiction.storage.table_files import number
 from stiction.text.sections import Section
 from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory

@@ -47,7 +47,6 @@ def analyse(
     """
     from stiction.analysis.export import write as write_tables
     from stiction.analysis.parts.cycles import each_cycle
-    from stiction.analysis.parts.wording import rows_left_out
     from stiction.analysis.record import Record
     from stiction.analysis.report import analyse as understand
     from stiction.cli.progress import progress
@@ -55,6 +54,7 @@ def analyse(
     from stiction.plotting.analysis.overview import figures
     from stiction.plotting.page.save import drawable, write
     from stiction.storage.files import make_folder, usable_folder
+    from stiction.text.columns import rows_left_out
     from stiction.text.sections import Section
 
     source = source_in(result, measured, trust)
