@@ -147,7 +147,10 @@ def time_to_end(slider: Slider, initial: Initial) -> float:
     """Return how long the programs of drive and load go on from the start of a run, s."""
     until = end(slider.motion, slider.load)
     if until is None:
-        message = "missing; only a program of drive or load whose last piece ends has one"
+        message = (
+            "missing; write for example st.simulate(slider, '5 s'); only a program of drive or "
+            "load whose last piece ends has one by itself"
+        )
         raise DescriptionError.of("duration", message)
     if not until > initial.time:
         message = f"missing; the programs end at {until:g} s, where the run starts"

@@ -242,6 +242,70 @@ def test_a_wrong_path_is_one_message(config, tmp_path, monkeypatch, capsys, argu
     assert [path.name for path in tmp_path.iterdir()] == ["slider.toml"]
 
 
+SYSTEM = "stiction run --preset leine-belt -o leine-belt.nc"
+READY = "stiction sweep --preset damping-diagram -o damping-diagram.zarr"
+
+
+@pytest.mark.parametrize(
+    ("words", "remedy"),
+    [
+        ("run leine-belt -o a.nc", SYSTEM),
+        ("run leine_belt -o a.nc", SYSTEM),
+        ("audit Leine-Belt", SYSTEM),
+        ("stability leine-belt.toml", SYSTEM),
+        ("compare leine-belt --law coulomb -o a.png", SYSTEM),
+        ("fit a.csv --rig leine-belt -o a.nc", SYSTEM),
+        ("design leine-belt", SYSTEM),
+        ("explore leine-belt --no-browser", SYSTEM),
+        ("sweep leine-belt -o a.zarr", SYSTEM),
+        ("sweep --preset leine-belt -o a.zarr", SYSTEM),
+        ("plot leine-belt -o a.png", SYSTEM),
+        ("analyse leine-belt", SYSTEM),
+        ("export leine-belt -o a.csv", SYSTEM),
+        ("map leine-belt", SYSTEM),
+        ("sweep damping-diagram -o a.zarr", READY),
+        ("run damping-diagram -o a.nc", READY),
+        ("run --preset damping-diagram -o a.nc", READY),
+        ("map damping_diagram", READY),
+        ("run lean-belt -o a.nc", "stiction init"),
+    ],
+)
+def test_the_name_of_a_preset_in_place_of_a_file_is_known(
+    words, remedy, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    assert inside(*words.split()) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert remedy in said
+    assert ("st.presets.leine_belt()" in said) is (remedy == SYSTEM)
+    assert not [*tmp_path.iterdir()]
+
+
+def test_a_file_with_the_name_of_a_preset_is_read(config, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("leine-belt").write_bytes(config.read_bytes())
+    assert inside("run", "leine-belt", "--set", "duration=1ms", "-o", "a.nc") == 0
+    Path("leine-belt").write_text("mass = 1 kg")
+    assert inside("run", "leine-belt", "-o", "a.nc") == 2
+    assert "--preset" not in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "head"),
+    [
+        ("analyse none.csv", "file"),
+        ("plot none.nc -o a.png", "file"),
+        ("export a.csv -o b.csv", "file"),  # whose columns are unclear
+        ("run none.toml -o a.nc", "description"),
+    ],
+)
+def test_the_head_of_a_message_says_what_it_is_about(words, head, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("a.csv").write_text("a,b,c\n" + "1,2,3\n2,3,4\n3,4,5\n" * 3)
+    assert inside(*words.split()) == 2
+    assert capsys.readouterr().err.startswith(f"error {head}:\n")
+
+
 def test_what_is_no_result_is_told_how_it_becomes_a_table(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     st.Record(time=np.arange(3.0), force=np.arange(3.0)).save("a.nc")

@@ -11,7 +11,7 @@ import cyclopts
 from rich.console import Console
 
 import stiction
-from stiction.cli.refusals import command_of, message_of, show_notices
+from stiction.cli.refusals import command_of, message_of, show_notices, subject_of
 from stiction.cli.terminal import give_up, spell_out
 from stiction.cli.tokens import join_negative_values
 from stiction.errors import (
@@ -106,7 +106,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except cyclopts.CycloptsError as error:
         refuse(errors, "command line", f"{message_of(error)}\nsee {command_of(error)} --help")
     except StictionError as error:
-        refuse(errors, type(error).__name__.removesuffix("Error").lower(), str(error))
+        refuse(errors, subject_of(error), str(error))
     except KeyboardInterrupt:
         errors.print("interrupted; files already written are complete")
         sys.exit(130)

@@ -11,7 +11,7 @@ from cyclopts.exceptions import UnusedCliTokensError
 
 from stiction.cli.terminal import note
 from stiction.cli.tokens import is_negative
-from stiction.errors import echo
+from stiction.errors import DescriptionError, ResultError, StictionError, echo
 
 EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help of an option
 BLANKS = 'put a value that holds blanks in quotation marks, as in "2 mm/s", or take it out'
@@ -31,6 +31,19 @@ def message_of(error: CycloptsError) -> str:
                 'join a value below zero to its option: --zero="-3 mN"'
             )
     return str(error)
+
+
+def subject_of(error: StictionError) -> str:
+    """Return what an error is about, for the head of its message.
+
+    A record, a result, a study and what is written are all files.
+
+    >>> subject_of(ResultError("a.csv: no such file")), subject_of(StictionError("give either"))
+    ('file', 'stiction')
+    """
+    if isinstance(error, DescriptionError):
+        return "description"
+    return "file" if isinstance(error, ResultError) else "stiction"
 
 
 def command_of(error: CycloptsError) -> str:

@@ -64,9 +64,12 @@ def format_of(path: Path) -> Format:
         If there is no such file, or its format is not read here.
     """
     if not os.path.isfile(path):
-        what = "is not a file; name one" if os.path.lexists(path) else "no such file"
-        what = f"is a folder; {use_of(path) or 'name its files'}" if os.path.isdir(path) else what
-        raise ResultError(f"{path}: {what}")
+        use = use_of(path)
+        if os.path.isdir(path):
+            raise ResultError(f"{path}: is a folder; {use or 'name its files'}")
+        if os.path.lexists(path):
+            raise ResultError(f"{path}: is not a file; name one")
+        raise ResultError(f"{path}: no such file; {use or 'name one that is there'}")
     with open(path, "rb") as file:
         head = file.read(HEAD)
     if not head:

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from stiction.arguments import name_arguments
-from stiction.errors import DescriptionError
+from stiction.errors import DescriptionError, echo
 from stiction.names import refuse_second
+from stiction.storage.kinds import use_of_name
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.validation import unknown_name
@@ -186,7 +187,9 @@ def find(name: str) -> Preset:
     """
     known = name.replace("_", "-")
     if known not in PRESETS:
-        raise DescriptionError.of("preset", unknown_name("preset", name, PRESETS))
+        use = use_of_name(name)  # of a ready study
+        message = f"{echo(name)}: {use}" if use else unknown_name("preset", name, PRESETS)
+        raise DescriptionError.of("preset", message)
     return PRESETS[known]
 
 

@@ -127,7 +127,8 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
         use = use_of(path, RESULT) or study
         raise ResultError(f"{path}: is a folder, not the file of one run; {use}")
     if not os.path.isfile(path):
-        raise ResultError(f"{path}: no such file; write one with 'stiction run'")
+        use = use_of(path) or "write one with 'stiction run'"
+        raise ResultError(f"{path}: no such file; {use}")
     with opening(path, UNREADABLE):
         _refuse_what_is_no_netcdf(path)
         whole = as_written(path)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from importlib import import_module
+from os.path import lexists
 from pathlib import Path
 
 from stiction.errors import argument
@@ -14,6 +16,13 @@ AXES = re.compile(rb"^\s*\[axes\b", re.M)
 NUMBERS = re.compile(rb"^\s*[-+]?[\d.]+(e[-+]?\d+)?\s*[;,\t ]\s*[-+]?[\d.]", re.M | re.I)
 
 DESCRIPTION, STUDY, STORE, RESULT, RECORD = "description", "study", "store", "result", "record"
+READY = {  # the room of what has a name of its own in place of a file, and what takes the name
+    "stiction.presets": "it is a published system: st.presets.{function}() in Python; stiction run "
+    "--preset {name} -o {name}.nc simulates it, and stiction init {name}.toml --preset {name} "
+    "writes a file of it",
+    "stiction.study.presets": "it is a ready study: stiction sweep --preset {name} -o {name}.zarr "
+    "runs it",
+}
 USES = {
     DESCRIPTION: "it is a description; stiction run {path} -o {stem_nc} simulates it",
     STUDY: "it describes a study; stiction sweep {path} -o {stem_zarr} runs it",
@@ -26,13 +35,33 @@ USES = {
 
 
 def use_of(path: str | Path, *wanted: str) -> str:
-    """Return what a path holds instead of what is `wanted`, and what takes it; '' if unknown."""
+    """Return what a path holds instead of what is `wanted`, and what takes it; '' if unknown.
+
+    Where nothing is there, the path may be the name of something ready, see `use_of_name`.
+    """
     kind = kind_of(Path(path))
+    if kind is None and not lexists(path):
+        return use_of_name(Path(path).stem)
     if kind is None or kind in wanted:
         return ""
     stem = Path(path).stem
     made = {f"stem_{suffix}": argument(f"{stem}.{suffix}") for suffix in ("nc", "zarr")}
     return USES[kind].format(path=argument(path), **made)
+
+
+def use_of_name(name: str) -> str:
+    """Return what takes the name of a published system or a ready study; '' of other names.
+
+    Examples
+    --------
+    >>> use_of_name("damping_diagram").partition(": ")[2]
+    'stiction sweep --preset damping-diagram -o damping-diagram.zarr runs it'
+    """
+    known, function = name.lower().replace("_", "-"), name.lower().replace("-", "_")
+    for room, use in READY.items():  # imported when called: they are above this room
+        if known in import_module(room).PRESETS:
+            return use.format(name=known, function=function)
+    return ""
 
 
 def kind_of(path: Path) -> str | None:

@@ -12,8 +12,9 @@ from math import pi
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError
+from stiction.errors import DescriptionError, echo
 from stiction.presets import nakano_popov_2020
+from stiction.storage.kinds import use_of_name
 from stiction.study.plan.axes import Axis, Grid, Values
 from stiction.study.plan.study import Study
 from stiction.system.description import Description, Settings
@@ -91,7 +92,9 @@ def preset(name: str) -> Study:
         If there is no study of this name.
     """
     if name not in PRESETS:
-        raise DescriptionError.of("preset", unknown_name("preset", name, PRESETS))
+        use = use_of_name(name)  # of a single system
+        message = f"{echo(name)}: {use}" if use else unknown_name("preset", name, PRESETS)
+        raise DescriptionError.of("preset", message)
     return PRESETS[name]()
 
 
