@@ -1,20 +1,23 @@
 """``stiction sweep``: the command line of studies."""
 
 import json
-import re
 import shutil
 import signal
 import subprocess
 import sys
+from functools import partial
+from io import StringIO
 from pathlib import Path
 
 import pytest
 import xarray as xr
-from tests.waiting import INTERRUPTIBLE, PATIENCE
+from rich.console import Console
+from tests.unit.study.test_execution import tallies
+from tests.waiting import INTERRUPTIBLE, PATIENCE, until
 
 import stiction as st
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
-from stiction.cli import main, tally
+from stiction.cli import main, progress, tally
 from stiction.study.variables.measures import MEASURES
 from stiction.study.view.view import kinds
 
@@ -71,11 +74,87 @@ def test_progress_on_a_terminal(config, tmp_path, capsys, monkeypatch):
     assert "left" in shown
 
 
-def test_progress_through_a_pipe(config, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr(tally, "FIRST", 0.0)
-    assert inside("sweep", config, "-o", tmp_path / "a.zarr", "--threads", 1) == 0
-    (shown,) = capsys.readouterr().err.splitlines()  # the next would come after a minute
-    assert re.fullmatch(r"\d of 8 runs, .* a second, about .* left", shown)
+class FakeTime:
+    """A clock without delay: all happens when the work is over, at the seconds that it would."""
+
+    def __init__(self, monkeypatch, ends):
+        self.now, self.ends, self.events = 0.0, ends, []
+        for module in (progress, tally):
+            monkeypatch.setattr(module, "monotonic", lambda: self.now)
+        monkeypatch.setattr(progress, "Event", lambda: self)
+        monkeypatch.setattr(progress, "Thread", Late)
+
+    def wait(self, pause):
+        """Let a pause pass, and what happens in it; return whether the work is over."""
+        until = self.now + pause
+        while self.events and self.events[0][0] <= min(until, self.ends):
+            self.now, event = self.events.pop(0)
+            event()
+        self.now = until
+        return self.now > self.ends
+
+    def set(self):
+        """Leave the end of the work to the clock."""
+
+
+class Late:
+    """A thread that does its work when it is waited for."""
+
+    def __init__(self, target, daemon):
+        self.join = target
+
+    def start(self):
+        """Begin later."""
+
+
+def said_through_a_pipe(found, ends, monkeypatch):
+    """Return what is printed, and when, of tallies that come at their seconds."""
+    clock = FakeTime(monkeypatch, ends)
+    lines = []
+    monkeypatch.setattr(tally, "print_line", lambda text: lines.append((clock.now, text)))
+    with tally.show_tally(quiet=False, json_lines=False) as (report, _):
+        clock.events += [(each.seconds, partial(report, each)) for each in found]
+    return lines
+
+
+def test_progress_through_a_pipe_goes_on_while_no_run_comes(monkeypatch):
+    """`damping-diagram` said "about 5 s left", and then nothing for 177 s."""
+    costs = [0.5] * 14 + [177.0] + [0.5] * 17
+    lines = said_through_a_pipe(tallies(costs), sum(costs), monkeypatch)
+    assert lines == [
+        (5.0, "10 of 32 runs after 5 s, 2 a second, about 11 s left"),
+        (15.0, "14 of 32 runs after 15 s, the latest 8 s ago"),
+        (35.0, "14 of 32 runs after 35 s, the latest 28 s ago"),
+        (75.0, "14 of 32 runs after 1 min, the latest 1 min ago"),
+        (135.0, "14 of 32 runs after 2 min, the latest 2 min ago"),
+    ]
+
+
+def test_progress_through_a_pipe_tells_of_compilation_and_failures(monkeypatch):
+    found = [each._replace(failed=3) for each in tallies([12.0] + [1.0] * 59)]
+    lines = said_through_a_pipe(found, 70.0, monkeypatch)
+    assert lines == [
+        (5.0, "making ready: begun 5 s ago"),
+        (15.0, "4 of 60 runs after 15 s, the latest 0 s ago, 3 failed"),
+        (35.0, "24 of 60 runs after 35 s, 1 a second, about 36 s left, 3 failed"),
+    ]
+
+
+def test_progress_on_a_terminal_moves_while_no_run_comes(monkeypatch):
+    clock = FakeTime(monkeypatch, 0.0)
+    screen = StringIO()
+    terminal = Console(file=screen, force_terminal=True, width=200, get_time=lambda: clock.now)
+    monkeypatch.setattr(tally, "Console", lambda **_: terminal)
+    costs = [0.5] * 14
+    with tally.show_tally(quiet=False, json_lines=False) as (report, _):
+        for each in tallies(costs, 32):
+            clock.now = each.seconds
+            report(each)
+        clock.now = 7.5
+        until(lambda: "14 of 32 runs" in screen.getvalue(), "the count")
+        until(lambda: "2 a second, about 8 s left" in screen.getvalue(), "the time left")
+        clock.now = 60.0
+        until(lambda: "the latest 53 s ago" in screen.getvalue(), "the pause")
 
 
 def test_progress_as_json_lines(config, tmp_path, capsys):

@@ -12,7 +12,7 @@ from rich.console import Console
 from stiction.cli.terminal import note
 
 PATIENCE = 1.0  # seconds of silence before a bar appears
-FIRST, EVERY = 5.0, 60.0  # seconds before the first line, and between lines
+FIRST, EVERY = 5.0, 60.0  # seconds before the first line, and at most between lines
 WATCHED = 0.1  # of the time so far: the pace of a shorter while says little of the time left
 
 
@@ -62,7 +62,7 @@ def progress(title: str) -> Iterator[Callable[[float], None]]:
 @contextmanager
 def _lines(title: str) -> Iterator[Callable[[float], None]]:
     """Print lines while the work lasts; yield a function that takes the fraction."""
-    begun, done, finished = monotonic(), [0.0], Event()
+    begun, done = monotonic(), [0.0]
     first: list[tuple[float, float]] = []  # the first fraction, and when it was reported
 
     def report(fraction: float) -> None:
@@ -71,16 +71,28 @@ def _lines(title: str) -> Iterator[Callable[[float], None]]:
         done[0] = fraction
 
     def tell() -> None:
+        since = first[0] if first else (0.0, 0.0)
+        print_line(line(title, done[0], monotonic() - begun, since))
+
+    with now_and_then(tell):
+        yield report
+
+
+@contextmanager
+def now_and_then(tell: Callable[[], None]) -> Iterator[None]:
+    """Call a function while the work lasts: after some seconds, and then after longer pauses."""
+    finished = Event()
+
+    def beat() -> None:
         pause = FIRST
         while not finished.wait(pause):
-            since = first[0] if first else (0.0, 0.0)
-            print_line(line(title, done[0], monotonic() - begun, since))
-            pause = EVERY if done[0] else min(2.0 * pause, EVERY)
+            tell()
+            pause = min(2.0 * pause, EVERY)
 
-    teller = Thread(target=tell, daemon=True)
+    teller = Thread(target=beat, daemon=True)
     teller.start()
     try:
-        yield report
+        yield
     finally:
         finished.set()
         teller.join()
@@ -120,12 +132,3 @@ def print_line(text: str) -> None:
     """Print a line of progress; nobody may read it."""
     with suppress(OSError, ValueError):  # closed
         note(text)
-
-
-def clock(seconds: float) -> str:
-    """Return a time in hours, minutes and seconds."""
-    if seconds == float("inf"):
-        return "-:--"
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"

@@ -11,9 +11,10 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn, TimeElapsedColumn
+from rich.text import Text
 
-from stiction.cli.progress import EVERY, FIRST, clock, in_time, print_line
+from stiction.cli.progress import in_time, line, now_and_then, print_line
 from stiction.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -32,7 +33,7 @@ def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, C
     The latter is the store, its summary, and how many runs were there before.
     """
     if json_lines:
-        yield _now_and_then(_print_tally, JSON_EVERY), _print_summary
+        yield _at_most_every(JSON_EVERY, _print_tally), _print_summary
     elif quiet:
         yield None, _tell_failures
     else:
@@ -40,13 +41,13 @@ def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, C
             yield report, _tell
 
 
-def _now_and_then(report: Report, every: float, first: float = 0.0) -> Report:
-    """Return a report that passes on one tally per interval, not before so many seconds."""
-    due = [monotonic() + first]
+def _at_most_every(seconds: float, report: Report) -> Report:
+    """Return a report that passes on one tally in so many seconds."""
+    due = [0.0]
 
     def sometimes(tally: Tally) -> None:
         if monotonic() >= due[0]:
-            due[0] = monotonic() + every
+            due[0] = monotonic() + seconds
             report(tally)
 
     return sometimes
@@ -94,42 +95,75 @@ def _failures(result: Summary) -> str:
 
 
 @contextmanager
-def _bar() -> Iterator[Report | None]:
-    """Show a bar with the rate and the time left on a terminal, elsewhere a line now and then."""
-    console = Console(stderr=True, emoji=False)
+def _bar() -> Iterator[Report]:
+    """Show a bar on a terminal, elsewhere a line now and then; both go on while no run comes."""
+    console, latest = Console(stderr=True, emoji=False), Latest()
     if not console.is_terminal:
-        yield _now_and_then(_print_line, EVERY, FIRST)
+        with now_and_then(lambda: print_line(latest.so_far())):
+            yield latest.take
         return
     columns = (
         TextColumn("{task.description}"),
         BarColumn(bar_width=20),
-        TextColumn("{task.fields[rate]}"),
         TimeElapsedColumn(),
-        TextColumn("{task.fields[left]}"),
+        PaceColumn(latest),
     )
     with Progress(*columns, console=console, transient=True) as bar:
-        task = bar.add_task("making ready", total=None, rate="", left="")
+        task = bar.add_task("making ready", total=None)
 
         def report(tally: Tally) -> None:
+            latest.take(tally)
             done = tally.before + tally.now
-            bar.update(
-                task,
-                description=f"{done} of {tally.runs} runs",
-                total=tally.runs,
-                completed=done,
-                rate=f"{tally.rate:.3g} a second",
-                left=f"{clock(tally.left)} left" + _so_far(tally.failed),
-            )
+            bar.update(task, description=runs_done(tally), total=tally.runs, completed=done)
 
         yield report
 
 
-def _print_line(tally: Tally) -> None:
-    done = tally.before + tally.now
-    left = f", about {in_time(tally.left)} left" if isfinite(tally.left) else ""
-    told = f"{done} of {tally.runs} runs, {tally.rate:.3g} a second{left}"
-    print_line(told + _so_far(tally.failed))
+class Latest:
+    """The latest tally, and how long ago that was."""
+
+    def __init__(self) -> None:
+        """Begin without any."""
+        self._began = self._came = monotonic()
+        self._tally: Tally | None = None
+
+    def take(self, tally: Tally) -> None:
+        """Take note of a tally."""
+        self._came, self._tally = monotonic(), tally
+
+    def so_far(self) -> str:
+        """Return the progress in a line."""
+        seconds = monotonic() - self._began
+        if self._tally is None:
+            return line("making ready", 0.0, seconds)
+        return f"{runs_done(self._tally)} after {in_time(seconds)}{self.pace()}"
+
+    def pace(self) -> str:
+        """Return what is known of the pace: a rate and the time left, or how long no run came."""
+        tally, waited = self._tally, monotonic() - self._came
+        if tally is None:
+            return ""
+        left = tally.left_after(waited)
+        if isfinite(left):
+            told = f", {tally.rate:.3g} a second, about {in_time(left)} left"
+        else:
+            told = f", the latest {in_time(waited)} ago"
+        return f"{told}, {tally.failed} failed" if tally.failed else told
 
 
-def _so_far(failed: int) -> str:
-    return f", {failed} failed" if failed else ""
+class PaceColumn(ProgressColumn):
+    """The pace, made anew at each refresh of the bar, and not when a run comes."""
+
+    def __init__(self, latest: Latest) -> None:
+        """Tell of the latest tally."""
+        super().__init__()
+        self._latest = latest
+
+    def render(self, task: Task) -> Text:
+        """Return the pace."""
+        return Text(self._latest.pace().removeprefix(", "))
+
+
+def runs_done(tally: Tally) -> str:
+    """Return how many runs of a study are done."""
+    return f"{tally.before + tally.now} of {tally.runs} runs"

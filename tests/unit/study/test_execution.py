@@ -21,7 +21,7 @@ import xarray as xr
 from tests.waiting import PATIENCE, until
 
 import stiction as st
-from stiction.study.execution.sweep import Recent, Tally
+from stiction.study.execution.sweep import ALIKE, FEWEST, Pace, Tally
 from stiction.study.store.store import PENDING
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
@@ -292,11 +292,61 @@ def workers(watch) -> list[int]:
 @pytest.mark.parametrize(("workers", "compilation"), [(1, 10.0), (4, 1.0), (16, 0.1)])
 def test_the_rate_leaves_compilation_out(workers, compilation):
     """From the third round of tasks of 1 s on several workers, it is theirs."""
-    recent, told = Recent(), []
+    pace, told = Pace(), []
     for done in range(1, 12 * workers + 1):
         seconds = compilation + (done - 1) // workers + 1.0
-        tally = Tally(1000, 0, done, 0, seconds, recent.since(done, seconds))
+        tally = Tally(1000, 0, done, 0, seconds, pace.since(done, seconds), pace.trend, pace.pause)
         if done % workers == 0 and done // workers > max(2, 0.1 * compilation + 1):
             told.append(tally.rate)
     assert told == pytest.approx([workers] * len(told))
     assert tally.left == pytest.approx((1000 - 12 * workers) / workers)
+
+
+def tallies(costs, runs=None):
+    """Return the tally of each task of a study of one worker, which take so many seconds."""
+    pace, seconds = Pace(), np.cumsum(costs)
+    runs = len(costs) if runs is None else runs
+    return [
+        Tally(runs, 0, done, 0, float(at), pace.since(done, float(at)), pace.trend, pace.pause)
+        for done, at in enumerate(seconds, 1)
+    ]
+
+
+def told_and_right(found):
+    """Return each time left that is told, over what it should be."""
+    ends = found[-1].seconds
+    return [each.left / (ends - each.seconds) for each in found[:-1] if np.isfinite(each.left)]
+
+
+def test_no_time_left_is_told_where_runs_differ_by_orders_of_magnitude():
+    """`damping-diagram` had done half of its runs in 4 s, and then one task took 3 minutes."""
+    found = tallies([0.3] * 14 + [177.0] + [0.3] * 17)
+    assert not any(np.isfinite(each.left) for each in found[:FEWEST])
+    assert found[13].left == pytest.approx(18 * 0.3)  # nobody can know of the long one
+    assert found[13].left_after(0.5) == pytest.approx(18 * 0.3 - 0.5)
+    assert not np.isfinite(found[13].left_after(1.0))  # but soon that it is one
+    assert not any(np.isfinite(each.left) for each in found[14:-1])
+    assert found[-1].left == 0.0
+
+
+@pytest.mark.parametrize("seed", range(200))
+def test_the_time_left_is_that_of_runs_in_a_random_order(seed):
+    """Their times differ by a factor of 10 at most: by 0.65 of their mean, as standard deviation.
+
+    The rate of 40 runs is then right to a tenth, that of the last 40 runs too: 3.5 times both
+    together are a factor of 1.6.
+    """
+    rng = np.random.default_rng(seed)
+    found = tallies([20.0, *10.0 ** rng.uniform(0.0, rng.uniform(0.0, 1.0), 400)])
+    known = [each for each in found[80:361] if np.isfinite(each.left)]  # 20 s of compilation
+    assert len(known) > 140
+    assert all(1 / 1.6 < each.left / (found[-1].seconds - each.seconds) < 1.6 for each in known)
+
+
+@pytest.mark.parametrize("decades", np.linspace(-2.0, 2.0, 17).tolist())
+def test_the_time_left_of_runs_that_become_ever_longer_or_shorter(decades):
+    """As along an axis of speeds: it is told as far as the trend would not change it much."""
+    told = told_and_right(tallies(10.0 ** (decades * np.linspace(0.0, 1.0, 100))))
+    assert all(1.0 / (1.5 * ALIKE) < ratio < 1.5 * ALIKE for ratio in told)
+    assert (len(told) > 80) is (-0.75 <= decades <= 0.5)
+    assert bool(told) is (-1.0 <= decades < 1.5)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from bisect import bisect_right
 from collections.abc import Callable, Sequence
 from functools import partial
 from math import prod
@@ -141,6 +141,10 @@ class Tally(NamedTuple):
         Time since this sweep began.
     since : tuple of int and float
         Runs and seconds from which the rate is counted: compilation comes once.
+    trend : float
+        How much longer the latter half of these runs took than the first; NaN if that is unknown.
+    pause : float
+        The longest time without a run until now, s.
     """
 
     runs: int
@@ -149,6 +153,8 @@ class Tally(NamedTuple):
     failed: int
     seconds: float
     since: tuple[int, float] = (0, 0.0)
+    trend: float = 1.0
+    pause: float = float("inf")
 
     @property
     def rate(tally) -> float:
@@ -158,41 +164,102 @@ class Tally(NamedTuple):
 
     @property
     def left(tally) -> float:
-        """Seconds left at this rate; infinite before the first task is done."""
+        """Seconds left at this rate; infinite as long as that cannot be known."""
+        return tally.left_after(0.0)
+
+    def left_after(tally, waited: float) -> float:
+        """Return the seconds left where no run has come for some time since, s.
+
+        Runs of one study may differ by orders of magnitude. The time left is known only if it is
+        much the same whether the trend goes on or ends; and a pause longer than any before is that
+        of a run unlike those before, the end of which is unknown.
+
+        Examples
+        --------
+        >>> tally = Tally(300, 0, 100, 0, 50.0, pause=2.0)
+        >>> tally.left, tally.left_after(3.0), tally.left_after(30.0)
+        (100.0, 97.0, inf)
+        """
         missing = tally.runs - tally.before - tally.now
-        return missing / tally.rate if tally.rate > 0.0 else float("inf")
+        if not missing:
+            return 0.0
+        if not tally.rate > 0.0 or waited > LONGER * tally.pause:
+            return float("inf")
+        longer = growth(tally.trend, 2.0 * missing / tally.now)
+        known = 1.0 / ALIKE <= longer <= ALIKE
+        return max(missing / tally.rate - waited, 0.0) if known else float("inf")
+
+
+def growth(trend: float, halves: float) -> float:
+    """Return how much longer runs take if a trend from half to half goes on for so many halves.
+
+    Examples
+    --------
+    >>> growth(2.0, 2.0)  # of twice and four times as long in place of two
+    3.0
+    >>> growth(1.0, 5.0), growth(3.0, 1e4)
+    (1.0, inf)
+    """
+    if trend == 1.0:
+        return 1.0
+    if halves * trend > MOST_GROWTH:
+        return float("inf")
+    grown: float = trend * (trend**halves - 1.0) / (trend - 1.0) / halves
+    return grown
 
 
 Report = Callable[[Tally], None]
 LATER = 1.1  # times the time of the first task: until then others began beside it
+FEWEST = 4  # tasks after the first, from which a rate may say how long the others take
+ALIKE = 2.0  # times as long by the trend as by the rate is still about the same
+MOST_GROWTH = 500.0  # trend times halves; more is beyond all floating-point numbers
+LONGER = 2.0  # times the longest pause until now is more than chance
 
 
-class Recent:
-    """The latter half of the time since the first task came: what is quick there stays quick.
+class Pace:
+    """When runs came, and what that says of those to come.
 
-    Before that task there is compilation; soon after it come those that began beside it.
+    The rate is that of the latter half of the time since the first task came: what is quick there
+    stays quick. Before that task there is compilation; soon after it come those that began beside
+    it.
 
     Examples
     --------
-    >>> recent = Recent()
-    >>> [recent.since(done, seconds) for done, seconds in ((1, 5.0), (2, 5.1), (3, 6.0), (9, 7.0))]
+    >>> pace = Pace()
+    >>> [pace.since(done, seconds) for done, seconds in ((1, 5.0), (2, 5.1), (3, 6.0), (9, 7.0))]
     [(0, 0.0), (0, 0.0), (2, 5.1), (3, 6.0)]
     """
 
     def __init__(self) -> None:
         """Begin without any task."""
-        self._came: deque[tuple[int, float]] = deque()
-        self._first = 0.0
+        self._runs: list[int] = []
+        self._times: list[float] = []
+        self.pause = 0.0
 
     def since(self, done: int, seconds: float) -> tuple[int, float]:
         """Return the runs and seconds where that half begins, and take note of these."""
-        came = self._came
-        self._first = self._first if came else seconds
-        while len(came) > 1 and came[1][1] <= 0.5 * (self._first + seconds):
-            came.popleft()
-        begins = came[0] if came and seconds >= LATER * self._first else (0, 0.0)
-        came.append((done, seconds))
+        runs, times = self._runs, self._times
+        if times:
+            self.pause = max(self.pause, seconds - times[-1])
+        begins = 0, 0.0
+        if times and seconds >= LATER * times[0]:
+            half = max(bisect_right(times, 0.5 * (times[0] + seconds)) - 1, 0)
+            begins = runs[half], times[half]
+        runs.append(done)
+        times.append(seconds)
         return begins
+
+    @property
+    def trend(self) -> float:
+        """How much longer the latter half of the runs since the first task took.
+
+        NaN of few tasks, and of one that took longer than all others together.
+        """
+        runs, times = self._runs, self._times
+        if len(times) <= FEWEST or self.pause > 0.5 * (times[-1] - times[0]):
+            return float("nan")
+        half = float(np.interp(0.5 * (runs[0] + runs[-1]), runs, times))
+        return (times[-1] - half) / (half - times[0]) if half > times[0] else float("nan")
 
 
 def sweep(
@@ -280,14 +347,16 @@ def do(
     """Do blocks of a study on an engine."""
     layout, begun = store.layout, perf_counter()
     left = runs_in(layout, tasks)
-    tally, recent = Tally(layout.runs, layout.runs - left, 0, 0, 0.0), Recent()
+    tally, pace = Tally(layout.runs, layout.runs - left, 0, 0, 0.0), Pace()
     for came in (engine or Cores()).results(partial(do_block, study, store), tasks):
         now, seconds = tally.now + came.runs, perf_counter() - begun
         tally = tally._replace(
             now=now,
             failed=tally.failed + came.failed,
             seconds=seconds,
-            since=recent.since(now, seconds),
+            since=pace.since(now, seconds),
+            trend=pace.trend,
+            pause=pace.pause,
         )
         if progress is not None:
             progress(tally)
