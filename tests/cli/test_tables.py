@@ -1,13 +1,14 @@
 """Tables in terminals of any width."""
 
 import io
+import re
 
 import numpy as np
 import pytest
 from rich.console import Console
 
 from stiction.cli.tables import in_lines, print_sections, table
-from stiction.text.sections import Section, Table, table_html
+from stiction.text.sections import Section, Table, html, table_html
 
 HEADINGS = (
     "law",
@@ -65,6 +66,39 @@ def test_a_table_is_turned_only_where_words_would_be_broken():
 
 def test_a_line_does_not_end_within_a_word_that_has_a_hyphen():
     assert in_lines("It is stick-slip.", 12).plain == "It is\nstick-slip."
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("φ_c = 3 deg", "φ<sub>c</sub> = 3 deg"),
+        ("force k_y u_y.", "force k<sub>y</sub> u<sub>y</sub>."),
+        ("sin φ/ω_y (k_x/k_y)", "sin φ/ω<sub>y</sub> (k<sub>x</sub>/k<sub>y</sub>)"),
+        ("less than F_0, D_c and V_star;", "F<sub>0</sub>, D<sub>c</sub> and V<sub>star</sub>;"),
+    ],
+)
+def test_symbols_are_set_in_html(text, shown):
+    assert shown in html(text).replace("\N{NO-BREAK SPACE}", " ")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "`st.audit(k_x=2)`", "friction.D_c", "friction.mu_0", "k_x=2", "in a_1.nc, and b_2.csv",
+        "column 'F_x'", "normal_load", "mu_star", "slider.k_x[0]", "V_x(t)", "runs/k168_v42.csv.gz",
+        "a_b_c", "x_axis", "--k_x",
+    ],
+)  # fmt: skip
+def test_names_are_no_symbols_in_html(text):
+    assert "<sub>" not in html(text)
+
+
+def test_what_a_cell_begins_with_is_a_name_in_html():
+    table = Table(("parameter", "value of k_x"), [("k_x", "2 k_y"), ("F_x [N]", "F_x")])
+    page = table_html(table).replace("\N{NO-BREAK SPACE}", " ")
+    assert re.findall(r"<t[hd] [^>]*>(.*?)</t[hd]>", page) == [
+        "parameter", "value of k<sub>x</sub>", "k_x", "2 k<sub>y</sub>", "F_x [N]", "F_x",
+    ]  # fmt: skip
 
 
 def test_a_table_without_rows_has_its_headings():

@@ -764,7 +764,8 @@ def test_the_titles_of_trials_stand_side_by_side() -> None:
     fig = figure_of(plot_trials, record, [Trial(title, record) for title in titles])
     axes = draw(fig).axes[:3]
     boxes = [ax._left_title.get_window_extent() for ax in axes]
-    assert [" ".join(ax.get_title(loc="left").split()) for ax in axes] == titles
+    shown = [" ".join(ax.get_title(loc="left").split()) for ax in axes]
+    assert shown == [title.replace("k_x", "$k_{x}$") for title in titles]
     assert boxes[0].x1 < boxes[1].x0
     assert boxes[1].x1 <= fig.bbox.x1
     for box, ax in zip(boxes, axes, strict=True):

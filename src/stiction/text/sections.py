@@ -119,20 +119,39 @@ def join_units(text: str) -> str:
     return re.sub(together, "\N{NO-BREAK SPACE}", text)
 
 
-def html(text: str) -> str:
-    """Return a text as HTML: commands in grave accents as code, numbers with their units.
+# a letter with a subscript, which is not a part of a name: friction.D_c, k_x=2, 'a_1', a_1.nc
+SYMBOL = re.compile(
+    r"(?<![\w.;=\\-])([A-Za-z\u0370-\u03ff])_([A-Za-z0-9]{1,2}|star|inf|static)"
+    r"(?![\w=(\[&]|[.-]\w)"
+)
 
-    >>> html("See `stiction audit` & co. of 2 N.")
-    'See <code>stiction audit</code> &amp; co. of 2\xa0N.'
+
+def html(text: str) -> str:
+    """Return a text as HTML: commands in grave accents as code, symbols, numbers with their units.
+
+    >>> html("See `stiction audit` & co. of 2 N, and k_y.")
+    'See <code>stiction audit</code> &amp; co. of 2\xa0N, and k<sub>y</sub>.'
     """
-    return re.sub("`([^`]+)`", r"<code>\1</code>", escape(join_units(text)))
+    told = re.split("`([^`]+)`", escape(join_units(text)))
+    told[::2] = [SYMBOL.sub(r"\1<sub>\2</sub>", each) for each in told[::2]]
+    told[1::2] = [f"<code>{each}</code>" for each in told[1::2]]
+    return "".join(told)
+
+
+def cell_html(text: str) -> str:
+    """Return a cell of a table as HTML: what it begins with is a name, as of a parameter or column.
+
+    >>> cell_html("k_y"), cell_html("stiffness k_y")
+    ('k_y', 'stiffness k<sub>y</sub>')
+    """
+    return escape(join_units(text)) if SYMBOL.match(text) else html(text)
 
 
 def as_html(parts: Iterable[Section]) -> str:
     """Return a report as HTML, for a notebook."""
     lines = []
     for part in parts:
-        lines.append(f"<h4>{escape(part.title)}</h4>")
+        lines.append(f"<h4>{html(part.title)}</h4>")
         lines += [f"<p>{html(sentence)}</p>" for sentence in part.sentences]
         if part.table is not None:
             lines.append(table_html(part.table))
@@ -149,7 +168,9 @@ def table_html(table: Table) -> str:
 
     def line(tag: str, cells: Sequence[str]) -> str:
         inside = zip(cells, sides, strict=True)
-        made = (f'<{tag} style="text-align: {side}">{html(cell)}</{tag}>' for cell, side in inside)
+        made = (
+            f'<{tag} style="text-align: {side}">{cell_html(cell)}</{tag}>' for cell, side in inside
+        )
         return f"<tr>{''.join(made)}</tr>"
 
     body = "".join(line("td", row) for row in table.rows)

@@ -357,8 +357,18 @@ def test_the_command_prints_and_writes(tmp_path, capsys):
     assert "damping number A, Eq. (10)" in printed
     page = report.read_text(encoding="utf-8")
     assert page.endswith("</html>")
+    assert page.count("Audit of my.toml<") == 2  # title and heading, without the folder
     described = unescape(page.split("<pre>")[1].split("</pre>")[0])
     assert st.Slider.from_toml(described) == st.Slider.from_toml(config)  # as one would write it
+
+
+def test_the_page_sets_symbols_as_symbols_and_leaves_names(text_of_page):
+    """The page had "φ_c" and "k_y u_y" beside figures that have them as symbols."""
+    assert "stiffness k<sub>x</sub></td>" in text_of_page
+    shown = text_of_page.partition("<body>")[2].partition("<pre>")[0]
+    read = re.sub(r"<code>.*?</code>|<[^>]+>", " ", shown)
+    assert re.findall(r"\w+_\w+", read) == []
+    assert "k_x = " in text_of_page.partition("<pre>")[2]  # as in a description
 
 
 def test_what_cannot_be_audited_or_written_says_why(tmp_path, capsys):

@@ -95,6 +95,6 @@ def audit(
     print_sections(title, found.tables())
     if output is not None:
         with progress("drawing"):
-            written = found.write_html(output, title)
+            written = found.write_html(output, title if config is None else config.name)
         say(f"wrote {written}")
     return 0 if found.ok else 1

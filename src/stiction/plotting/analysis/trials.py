@@ -16,9 +16,11 @@ from stiction.analysis.signals.reversals import standing_out
 from stiction.analysis.signals.turning_points import COUNTS, as_counts
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
+from stiction.plotting.page.words import symbol
 from stiction.plotting.run.lines import draw_line
 from stiction.plotting.run.time_series import name_time
 from stiction.text.quantity_text import metric_prefix
+from stiction.text.sections import SYMBOL
 
 TITLE = 48  # characters of a line above a panel
 PANEL = 1.35  # height of a row, in
@@ -101,7 +103,12 @@ def plot_trials(
 
 
 def _wrap(title: str) -> str:
-    return fill(title, TITLE)
+    """Return a title in lines, with its symbols.
+
+    >>> _wrap("stiffness k_x = 3 MN/m")
+    'stiffness $k_{x}$ = 3 MN/m'
+    """
+    return SYMBOL.sub(lambda found: symbol(found[0]), fill(title, TITLE))
 
 
 def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[str, Artist]:
