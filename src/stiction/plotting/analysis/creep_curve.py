@@ -55,7 +55,12 @@ def draw_phases(ax: Axes, curves: xr.Dataset, V: float) -> None:
 
 
 def draw_mean(ax: Axes, mean: xr.Dataset, V: float) -> None:
-    """Draw the mean creep curve with a band of two standard errors to each side."""
+    """Draw the mean creep curve with a band of two standard errors to each side.
+
+    Where one phase alone is so long, as the first of a run from rest, that phase is all there is.
+    """
+    several = mean["phases"].values > 1
+    mean = mean.isel(bin=several) if several.any() else mean
     middle = 0.5 * (mean["begin"] + mean["end"]).values
     value, error = mean["velocity"].values / V, 2.0 * mean["velocity_error"].values / V
     band = "two standard errors"

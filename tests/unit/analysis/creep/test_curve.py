@@ -391,6 +391,18 @@ def test_words_on_creep_leave_out_what_only_the_longest_phase_reaches(paper_run)
     assert int(said[3]) == counts[0]
 
 
+def test_the_figure_shows_no_mean_of_a_single_phase(curves):
+    """The first loading, from rest, is longer than all later ones: points there were its own."""
+    mean = st.analysis.mean_creep(curves)
+    for shown, drawn in ((curves, mean["phases"].values > 1), (curves.isel(phase=[0]), None)):
+        found = mean if drawn is not None else st.analysis.mean_creep(shown)
+        ax = figure_of(plot_creep, shown, found, V).axes[0]
+        (points,) = (each for each in ax.get_lines() if each.get_label() == "mean of these")
+        count = found.sizes["bin"] if drawn is None else int(drawn.sum())
+        assert len(points.get_xdata()) == count
+    assert 0 < int((mean["phases"] == 1).sum()) < mean.sizes["bin"]
+
+
 def test_the_figure_says_what_is_drawn(curves):
     mean = st.analysis.mean_creep(curves)
     found = st.analysis.fit_divergence(mean, L_X / V)
