@@ -120,6 +120,10 @@ class Analysis(NamedTuple):
         warn_renamed("Analysis.song", "Analysis.oscillation")
         return self.oscillation
 
+    def __dir__(self) -> list[str]:
+        """Return the names of attributes, without the old one."""
+        return [name for name in object.__dir__(self) if name != "song"]
+
     def __repr__(self) -> str:
         """Return a one-line summary."""
         found = f"{self.regime.kind}, {number_of(self.cycles.sizes['cycle'], 'cycle')}"

@@ -321,6 +321,8 @@ def test_old_names_go_on_working_with_a_warning(run, found) -> None:
         assert st.song_by_phase is st.analysis.oscillation_by_phase
     with pytest.warns(DeprecationWarning, match="oscillation"):
         assert found.song is found.oscillation
+    assert "song" not in dir(found)
+    assert {"oscillation", "energy", "plot"} <= {*dir(found)}
 
 
 RIG = st.Slider(
