@@ -81,8 +81,6 @@ else:
             return kind
 
 
-# the annotations of a class by field, with their quantities
-hints_of: Callable[[Any], dict[str, Any]] = cache(partial(get_type_hints, include_extras=True))
 ONE, DIMENSIONLESS = {"", "1"}, "dimensionless"  # units of numbers: of xarray's, of pint's
 LARGE = 1e6  # a number below it is written without a power of ten
 ROUNDING = 1e-12  # relative: what many sums of floating-point numbers are off by
@@ -103,6 +101,23 @@ QUANTITY = re.compile(
 UNCERTAIN = re.compile(r"\+-|\+/-|±")
 BOTH = re.compile(rf"\s*\(?\s*(.+?)\s*(?:{UNCERTAIN.pattern})\s*([^)\s]+)\s*\)?\s*(.*)")
 NORMAL, UNIFORM = {"value", "uncertainty"}, {"low", "high"}  # keys of an uncertain value
+
+
+def _hints(kind: Any) -> dict[str, Any]:
+    """Return the annotations of a class by field, with their quantities.
+
+    Of a class in a function, they may be names that only this function knows: then none is read,
+    and its values are plain numbers.
+    """
+    try:
+        return get_type_hints(kind, include_extras=True)
+    except NameError:
+        if "<locals>" in kind.__qualname__:
+            return {}
+        raise
+
+
+hints_of: Callable[[Any], dict[str, Any]] = cache(_hints)
 
 
 def to_si(value: object, kind: Kind) -> float:

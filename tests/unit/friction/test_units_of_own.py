@@ -1,6 +1,6 @@
 """A user's law that is made in Python takes units, as in a description and as ours do."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pint
@@ -51,3 +51,28 @@ def test_what_is_wrong_with_each_is_told_beside_other_faults() -> None:
     assert "it is a plain float: write a number in SI" in str(error.value)
     with pytest.raises(st.DescriptionError, match=r"Sloping.v_c: '10 kg' is in kg"):
         st.testing.check_law(Sloping(0.2, "10 kg"))
+
+
+def law_of_a_function() -> Any:
+    """Return a law whose annotations are words, as of ``from __future__ import annotations``."""
+
+    class Local(NamedTuple):
+        mu: "Share"  # type: ignore[name-defined]  # noqa: F821
+        v_c: "Share" = 0.01  # type: ignore[name-defined]  # noqa: F821
+
+        def coefficient(law, v):
+            return law.mu / (1.0 + v / law.v_c)
+
+        def slope(law, v):
+            return -law.mu / law.v_c / (1.0 + v / law.v_c) ** 2
+
+    return Local
+
+
+def test_a_law_whose_annotations_only_its_function_knows_has_plain_numbers() -> None:
+    """Its audit, and the description with it, raised a NameError."""
+    law = law_of_a_function()
+    slider = SLIDER.replace(friction=law(0.2))
+    assert "mu = 0.2" in slider.to_toml()
+    with pytest.raises(st.DescriptionError, match=r"friction\.v_c: .* write a number in SI"):
+        SLIDER.replace(friction=law(0.2, "1 cm/s"))
