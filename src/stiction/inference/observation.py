@@ -231,7 +231,10 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     found = slip_cycles(lineless["force"].values, noise["force"].error)
     refuse_few(name, len(found.peak))
     refuse_other_sign(name, lineless["force"].values, found)
-    cycle = near(float(np.mean(found.after - found.before)) * step)
+    lasts = float(np.mean(found.after - found.before)) * step
+    if seen.cell is not None:  # before means are taken, amplified noise makes cycles, too
+        lasts = seen.lasting.median("period")
+    cycle = near(lasts)
     block = max(round(cycle / step / PER_CYCLE), 1)
     thin, thin_noise, found = thin_out(lineless, noise, step, block)
     number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
@@ -263,10 +266,14 @@ def grid_of(record: Record, name: str) -> EvenGrid:
 
 
 class Lineless(NamedTuple):
-    """A channel on an even grid, less its lines, and the bands (Hz) in which these lay."""
+    """A channel on an even grid, less its lines, and the bands (Hz) in which these lay.
+
+    `restored` if it is the force to which a load cell answered that rings.
+    """
 
     values: Floats
     bands: tuple[Band, ...]
+    restored: bool = False
 
 
 def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lineless]:
@@ -280,7 +287,8 @@ def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lin
             lines = lines_like(lines, grid, values, least)
         less = seen.force if name == "force" else values - sum(line.values for line in lines)
         bands = tuple(band for line in lines for band in line.bands)
-        found[name] = Lineless(grid.on(less), bands)
+        restored = name == "force" and seen.cell is not None
+        found[name] = Lineless(grid.on(less), bands, restored)
     return found
 
 
@@ -299,7 +307,7 @@ def thin_out(
     its = {each: noise_of_means(own, block, step) for each, own in noise.items()}
     channels = {
         each: without_bands(block_means(values, block), step * block, its[each].stop_bands)
-        for each, (values, _) in lineless.items()
+        for each, (values, *_) in lineless.items()
     }
     found = slip_cycles(channels["force"], its["force"].error)
     for each, values in channels.items():
@@ -343,16 +351,23 @@ def record_from(source: Source, rig_load: float | None = None) -> Record:
     return as_record(source)
 
 
-def noise_of(record: Record, channel: str, values: Floats, bands: tuple[Band, ...] = ()) -> Noise:
+def noise_of(
+    record: Record,
+    channel: str,
+    values: Floats,
+    bands: tuple[Band, ...] = (),
+    restored: bool = False,
+) -> Noise:
     """Return the noise of a channel, as its sensor states it or as its samples show it.
 
     `values` are its samples on an even grid, between which they are interpolated, less lines in
-    some bands: rounding is noise where a line was rounded, too.
+    some bands: rounding is noise where a line was rounded, too. In a force that was restored, all
+    that its sensor states is amplified.
     """
     sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
     stated = (0.0, 0.0) if sensor is None else (sensor.noise, sensor.quantisation)
-    step = stated[1] or lattice(getattr(record, channel))
-    level = stated[0] or resolved_noise(values, step)
+    step = 0.0 if restored else stated[1] or lattice(getattr(record, channel))
+    level = (0.0 if restored else stated[0]) or resolved_noise(values, step)
     if bands or level > DITHER * step:
         level, step = hypot(level, ROUNDING_SPREAD * step), 0.0
     if sensor is None:
