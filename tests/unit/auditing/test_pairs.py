@@ -1,5 +1,7 @@
 """Remedies of two parameters: where they are sought, that they hold, and what is said of them."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from tests.rigs import PIN_ON_PLATE
@@ -124,3 +126,30 @@ def test_springs_in_series_have_no_transverse_stiffness_of_their_own():
     cell = st.Spring("load cell", k_x="2 kN/m", k_y="rigid")
     chain = slider.replace(springs=[cell, st.Spring("leaf", "2 kN/m", "10 MN/m")])
     assert [each.path for each in pairs.advise_pairs(chain, 0)] == ["drive.velocity"]
+
+
+def test_from_a_large_misalignment_the_least_turn_is_sought():
+    found = [
+        next(nearest_pairs(st.presets.nakano_popov_2020().replace(phi=phi), "drive.velocity"))
+        for phi in ("1 deg", "60 deg")
+    ]
+    assert found[1][0].then > 2.0 * found[0][0].then
+
+
+def test_pairs_that_are_not_reached_from_rest_share_the_work(pin, monkeypatch):
+    """Three of each partner, each at least half as far again as the last."""
+    tried = []
+
+    def fail(slider, left, _):
+        tried.append((slider, left))
+        return pin.observation
+
+    monkeypatch.setattr(pairs, "try_change", fail)
+    work = 100 * max(LEAST_WORK, pin.observation.work)
+    found = tuple(pairs.advise_pairs(pin.slider, work))
+    assert [each.works for each in found] == [False, False]
+    assert len(tried) == 6
+    assert tried[0][1] <= work // 2
+    for path, three in (("drive.velocity", tried[:3]), ("k_y", tried[3:])):
+        values = [read(slider, path) for slider, _ in three]
+        assert all(1.4 < after / before < 2.2 for before, after in pairwise(values))
