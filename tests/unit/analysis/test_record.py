@@ -251,3 +251,8 @@ def test_all_that_does_not_go_together_is_told_at_once() -> None:
         "Record: sensors: unknown channel 'forse'",
         "Record: sensors: that of position is in N",
     ]
+
+
+def test_a_load_of_nothing_does_not_press() -> None:
+    with pytest.raises(st.DescriptionError, match=r"press the bodies together, its mean is 0 N"):
+        Record(time=[0.0, 1.0], force=[0.0, 1.0], load=[0.0, 0.0])
