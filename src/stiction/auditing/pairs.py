@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import islice
 from math import copysign, radians
 from typing import NamedTuple
 
@@ -79,10 +80,8 @@ def advise_pairs(slider: Slider, work: int, progress: Progress = silent) -> Iter
 def _advise(slider: Slider, path: str, work: int, number: int, progress: Progress) -> Pair:
     """Return the nearest pair, tried from rest; `number` counts the pairs before it."""
     advice = Pair(path)
-    for attempt, changes in enumerate(nearest_pairs(slider, path)):
+    for attempt, changes in enumerate(islice(nearest_pairs(slider, path), MOST_TRIED)):
         left = work - advice.work
-        if attempt >= MOST_TRIED:
-            break
         if left < LEAST_WORK:
             return advice._replace(cut=True)
         changed = slider

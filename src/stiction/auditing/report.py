@@ -73,8 +73,6 @@ class Audit(NamedTuple):
         The simulated test, from steady sliding with a small disturbance.
     advices : tuple of Remedy
         Changes that would make it slide steadily, each tried from rest; empty if it does.
-    pairs : tuple of Pair
-        The same of two parameters, where no misalignment alone makes it slide steadily.
     chain : Chain or None
         The springs in series, and each replaced; None for a single spring.
     budget : Budget or None
@@ -83,6 +81,8 @@ class Audit(NamedTuple):
         A measured record beside simulations of the apparatus; None where none was given.
     priors : mapping
         Of the uncertain parameters, which `slider` has in their middle.
+    pairs : tuple of Pair
+        Changes of two parameters, where no misalignment alone makes it slide steadily.
 
     Examples
     --------
@@ -99,11 +99,11 @@ class Audit(NamedTuple):
     observation: SimulatedTest
     sliding_on: SimulatedTest
     advices: tuple[Remedy, ...]
-    pairs: tuple[Pair, ...] = ()
     chain: chain.Chain | None = None
     budget: Budget | None = None
     measured: RecordComparison | None = None
     priors: Mapping[str, Prior] = MappingProxyType({})
+    pairs: tuple[Pair, ...] = ()
 
     def __eq__(self, other: object) -> bool:
         """Compare what was predicted and simulated; NaN equals NaN."""
@@ -265,8 +265,8 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     progress(1.0)
     both = observation, sliding_on
     return Audit(
-        system, prediction, sliding, misalignment, *both, advices, pairs, springs, tolerance,
-        measured, rig.priors,
+        system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured,
+        rig.priors, pairs,
     )  # fmt: skip
 
 
