@@ -95,7 +95,7 @@ def test_the_registry_is_not_empty():
         (lambda: st.Grid(1, 2, 3, "log", None, 7), "its values have names, 7 has none"),
         (lambda: st.protocols.velocity_steps(b"12", duration=1), "must be a list of at least one"),
         (lambda: st.protocols.end(5), "5 is not a program"),
-        (lambda: st.Description(5, 6, 7), "instance of Slider, is 5"),
+        (lambda: st.Description(5, 6, 7), r"5 is not a Slider; make one with st.Slider\(...\)"),
         (lambda: st.plotting.plot_posterior("x"), "fit: must be a Fit, is 'x'; see help"),
         (lambda: st.plotting.plot_comparison({}), "there is no run to compare"),
         (lambda: st.analysis.summary([]), r"must be a Dataset, is \[\]; see help\(st.analysis"),

@@ -63,7 +63,7 @@ def doubt_times(record: Record) -> Iterator[str]:
         return
     if grid.coarse:
         yield (
-            f"{_uneven(np.diff(record.time))}: for spectra, and to find hum, the force is "
+            f"{_step_changes(np.diff(record.time))}: for spectra, and to find hum, the force is "
             f"interpolated by straight lines at even times, {in_words(grid.step, 's')} apart. An "
             f"oscillation of more than {in_words(0.25 / grid.step, 'Hz')} may not be seen."
         )
@@ -87,7 +87,7 @@ def doubt_times(record: Record) -> Iterator[str]:
         )
 
 
-def _uneven(steps: Floats) -> str:
+def _step_changes(steps: Floats) -> str:
     """Return how the steps between samples (s) differ: from part to part, or at random."""
     steadily = np.abs(np.diff(steps)) < STEADY_STEP * steps[1:]
     if steadily.mean() < MOSTLY:
