@@ -1,5 +1,6 @@
 """Remedies of two parameters: where they are sought, that they hold, and what is said of them."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -10,7 +11,7 @@ import stiction as st
 from stiction.auditing import figures, pairs
 from stiction.auditing.pairs import ANGLES, FACTORS, nearest_pairs
 from stiction.auditing.report import sections
-from stiction.auditing.simulated_test import LEAST_WORK, SLIDES
+from stiction.auditing.simulated_test import LEAST_WORK, SLIDES, SimulatedTest
 from stiction.linear_stability.linear import growth_at
 from stiction.system.parameter import change_unchecked, read
 
@@ -153,3 +154,16 @@ def test_pairs_that_are_not_reached_from_rest_share_the_work(pin, monkeypatch):
     for path, three in (("drive.velocity", tried[:3]), ("k_y", tried[3:])):
         values = [read(slider, path) for slider, _ in three]
         assert all(1.4 < after / before < 2.2 for before, after in pairwise(values))
+
+
+def test_a_pair_whose_simulation_was_cut_or_whose_slide_is_unstable_is_no_remedy(pin):
+    """Such an audit is not whole, and the pair is not advised."""
+    speed, stiffness = pin.pairs
+    cut = SimulatedTest(st.simulate(pin.slider, "1 s", max_steps=100), growth=-1.0)
+    seen = pin._replace(pairs=(speed._replace(tried=cut), stiffness))
+    assert (pin.ok, seen.ok) == (True, False)
+    what = sections(seen)[-1]
+    assert what.table.rows[-2][-1].startswith("not known: the simulation was cut at")
+    assert "with drive velocity" not in what.sentences[0]
+    assert "with transverse stiffness" in what.sentences[0]
+    assert not speed._replace(tried=replace(speed.tried, growth=1.0)).works

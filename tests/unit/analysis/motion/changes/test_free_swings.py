@@ -56,6 +56,22 @@ def test_the_force_to_which_a_cell_answered_is_without_its_swings():
     assert np.std((answered - given)[inside]) < 0.015
 
 
+@pytest.mark.parametrize(("quality", "rings"), [(2.2, False), (3.6, True), (55, True), (90, False)])
+def test_a_swing_that_fades_at_once_or_hardly_is_not_that_of_a_cell(quality, rings):
+    seen = through_cell(slips(np.random.default_rng(1).uniform(0.6, 1.4, 40)), 4.0, quality)
+    assert (free_swing(GRID, seen, [0.25]) is not None) == rings
+
+
+@pytest.mark.parametrize(("noise", "left"), [(0.0, 0.007), (0.003, 0.12), (0.01, 0.12)])
+def test_noise_is_amplified_to_a_tenth_of_a_slip_at_most(noise, left):
+    """And the force is restored up to six times the frequency of the cell where it has none."""
+    random = np.random.default_rng(1)
+    given = slips(random.uniform(0.6, 1.4, 40))
+    seen = through_cell(given, 4.0, 30.0) + noise * random.normal(size=len(TIME))
+    answered = without_free_swings(GRID, seen, free_swing(GRID, seen, [0.25]), 1.0)
+    assert np.std((answered - given)[500:-500]) < left
+
+
 def test_small_slips_after_a_large_one_are_not_swings():
     """Slips of 1, 0.5, 0.25, 0.125 N and again: each takes a time of its own."""
     sizes = np.tile([1.0, 0.5, 0.25, 0.125], 16)
