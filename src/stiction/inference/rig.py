@@ -70,7 +70,7 @@ class Rig(_Parts):
             raise DescriptionError.of("priors", f"{echo(priors)} is not a dict; write {UNCERTAIN}")
         given = {canonical(path): its for path, its in (priors or {}).items()}
         if all(isinstance(its, Prior) for its in given.values()):
-            return super().__new__(cls, slider, given)
+            return super().__new__(cls, slider_of(slider), given)
         tables = {path: spread(its) or its for path, its in given.items()}
         return super().__new__(cls, *with_priors(slider_of(slider), tables))
 

@@ -215,3 +215,7 @@ def test_what_a_rig_in_python_cannot_be_is_told_at_once() -> None:
     assert "phi: '2 deg' is not uncertain; write as in" in str(error.value)
     with pytest.raises(DescriptionError, match=r"priors: \['phi'\] is not a dict; write"):
         st.Rig(st.presets.nakano_popov_2020(), ["phi"])
+    with pytest.raises(DescriptionError, match="5: No such file or directory; write a description"):
+        st.Rig("5")
+    with pytest.raises(DescriptionError, match="int is not a description"):
+        st.Rig(5, {"phi": Normal(0.1, 0.01)})

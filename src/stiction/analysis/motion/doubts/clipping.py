@@ -78,7 +78,7 @@ def _is_one_level(record: Record, cycles: CycleTable, end: FlatEnd) -> bool:
     means = np.array([each.mean() for each in groups])
     among = float((count * (means - values.mean()) ** 2).sum()) / (len(groups) - 1)
     inside = float(((values - np.repeat(means, count)) ** 2).sum()) / (len(values) - len(groups))
-    return among < UNLIKE * inside
+    return among <= UNLIKE * inside  # both are 0 where all samples are alike
 
 
 def doubt_clipping(ends: Sequence[FlatEnd]) -> Iterator[str]:
