@@ -226,7 +226,8 @@ def main() -> None:
         for quantity, each in off.items():
             errors, above = np.array(each).T
             shares = [f"{np.mean(errors < most):.0%}" for most in (2.0, 4.0)]
-            shares.append("" if np.isnan(above).all() else f"{np.mean(above >= 0.0):.0%}")
+            above = above[np.isfinite(above)]  # where there is a bound
+            shares.append(f"{np.mean(above >= 0.0):.0%}" if len(above) else "")
             table.add_row(name, quantity, f"{len(errors)}", *shares)
         for warning, count in warnings.most_common():
             warned.add_row(name, warning, f"{count} of {options.records}")
