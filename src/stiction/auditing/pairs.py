@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator
 from itertools import islice
 from math import copysign, radians
@@ -72,13 +73,14 @@ def advise_pairs(slider: Slider, work: int, progress: Progress = silent) -> Iter
     """
     partners = [path for path in PARTNERS if path != "k_y" or not slider.springs]
     for number, path in enumerate(partners):
-        advice = _advise(slider, path, work // (len(partners) - number), number, progress)
+        report = part(progress, number, len(partners))
+        advice = _advise(slider, path, work // (len(partners) - number), report)
         work -= advice.work
         yield advice
 
 
-def _advise(slider: Slider, path: str, work: int, number: int, progress: Progress) -> Pair:
-    """Return the nearest pair, tried from rest; `number` counts the pairs before it."""
+def _advise(slider: Slider, path: str, work: int, progress: Progress) -> Pair:
+    """Return the nearest pair, tried from rest."""
     advice = Pair(path)
     for attempt, changes in enumerate(islice(nearest_pairs(slider, path), MOST_TRIED)):
         left = work - advice.work
@@ -87,8 +89,7 @@ def _advise(slider: Slider, path: str, work: int, number: int, progress: Progres
         changed = slider
         for each in changes:
             changed = change_parameter(changed, each.path, quantity(slider, each.path, each.then))
-        report = part(progress, number * MOST_TRIED + attempt, len(PARTNERS) * MOST_TRIED)
-        tried = try_change(changed, left, report)
+        tried = try_change(changed, left, part(progress, attempt, MOST_TRIED))
         advice = Pair(path, changes, tried, advice.work + tried.work)
         if advice.works:
             break
@@ -102,19 +103,19 @@ def nearest_pairs(slider: Slider, path: str) -> Iterator[tuple[Change, Change]]:
     """
     side, now = copysign(1.0, slider.misalignment), read(slider, path)
     turns = slider.turn + side * np.radians(ANGLES)
-    rows: list[NDArray[np.bool_]] = []
+    rows: deque[NDArray[np.bool_]] = deque(maxlen=3)
     last = 0.0
-    for factor in FACTORS:
+    for number, factor in enumerate(FACTORS):
         changed = change_unchecked(slider, path, now * float(factor))
         rows.append(np.array([growth_at(changed, "phi", float(each)) < 0.0 for each in turns]))
-        if len(rows) < 3 or FACTORS[len(rows) - 2] < FARTHER * last:
+        if len(rows) < 3 or FACTORS[number - 1] < FARTHER * last:
             continue
-        inner = np.logical_and.reduce(rows[-3:])
+        inner = np.logical_and.reduce(rows)
         fit = np.flatnonzero(inner[:-2] & inner[1:-1] & inner[2:]) + 1
         if not len(fit):
             continue
-        last = FACTORS[len(rows) - 2]
-        turned = abs(np.abs(ANGLES[fit]) - abs(np.degrees(slider.misalignment)))
+        last = FACTORS[number - 1]
+        turned = np.abs(ANGLES[fit] - abs(np.degrees(slider.misalignment)))
         angle = slider.turn + side * radians(_few_digits(ANGLES[fit[np.argmin(turned)]]))
         yield (
             Change("phi", "rad", slider.phi, angle),
