@@ -258,7 +258,9 @@ class Pace:
         runs, times = self._runs, self._times
         if len(times) <= FEWEST or self.pause > 0.5 * (times[-1] - times[0]):
             return float("nan")
-        half = float(np.interp(0.5 * (runs[0] + runs[-1]), runs, times))
+        middle = 0.5 * (runs[0] + runs[-1])
+        near = slice((after := bisect_right(runs, middle)) - 1, after + 1)  # not all of a million
+        half = float(np.interp(middle, runs[near], times[near]))
         return (times[-1] - half) / (half - times[0]) if half > times[0] else float("nan")
 
 
