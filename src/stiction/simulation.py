@@ -192,7 +192,13 @@ def run(
     """
     description = description_of(description)
     at = times_of(description) if times is None else own_times(description, times)
-    solution = solve(description, at, max_steps=max_steps, progress=progress)
+    return trajectory_of(
+        description, solve(description, at, max_steps=max_steps, progress=progress)
+    )
+
+
+def trajectory_of(description: Description, solution: Solution) -> Trajectory:
+    """Return a solution with its labels."""
     status, statistics = STATUSES[solution.code], Statistics(*solution.counts)
     arrays = partial(label, description, solution, status, statistics)
     return Trajectory(description, arrays, solution.sticks, status, statistics)

@@ -122,7 +122,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     except MemoryError as error:
         refuse(errors, "memory", f"there is not enough: {error}")
     except BaseException as error:
-        from stiction.friction.user.source import raised_in_law
+        from stiction.own_code.source import raised_in_law
 
         if (said := raised_in_law(error)) is None:
             raise

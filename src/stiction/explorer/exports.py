@@ -12,7 +12,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 
 from stiction.explorer.motion import Check
 from stiction.friction import Anisotropic, registered_name
-from stiction.friction.user.loading import own_table, split
+from stiction.friction.user.loading import own_table
 from stiction.simulation import run
 from stiction.system.description import Description
 from stiction.text.samples import with_all_values
@@ -102,7 +102,7 @@ def own_law(law: Any) -> str:
     if registered_name(law) is not None:
         return ""
     table = own_table(law)
-    file, kind = split(table["law"])
+    file, _, kind = table["law"].rpartition(":")
     if type(law).__module__ == "__main__":  # an import would run the script anew
         text = table.get("source", f"# define the law {kind} here")
         return f"{text}\n\n"

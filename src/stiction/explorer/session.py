@@ -22,7 +22,7 @@ from stiction.errors import DescriptionError, StictionError, one_line
 from stiction.explorer.answers import ANSWERS, Request, answer
 from stiction.explorer.motion import Reply
 from stiction.explorer.source import Opened
-from stiction.friction.user.source import raised_in_law
+from stiction.own_code.source import raised_in_law
 
 Send = Callable[[bytes], Awaitable[None]]
 STILL = 0.12  # s without a newer request before the slower part of an answer is computed

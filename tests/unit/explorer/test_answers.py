@@ -27,9 +27,9 @@ from stiction.explorer.form import form
 from stiction.explorer.protocols import TESTS, names, protocol
 from stiction.explorer.source import open_sources
 from stiction.friction import LAWS
-from stiction.friction.user.source import Text
 from stiction.linear_stability.linear import growth_rate
 from stiction.media.sound import LOUD
+from stiction.own_code.source import Text
 from stiction.presets import PRESETS
 from stiction.study.view.mapping import Map, plot_map
 from stiction.system.description import Settings

@@ -10,7 +10,7 @@ from tests.explored import an_opened, decode
 from stiction.explorer import answers, session
 from stiction.explorer.answers import tables_of
 from stiction.explorer.session import Session, Superseded
-from stiction.friction.user.source import Text, module_of
+from stiction.own_code.source import Text, module_of
 
 
 class Page:

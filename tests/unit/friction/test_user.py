@@ -20,8 +20,8 @@ from stiction.cli import main
 from stiction.errors import echo
 from stiction.friction import has_state
 from stiction.friction.user.derivative import jump
-from stiction.friction.user.source import excerpt, raised_in_law
 from stiction.friction.user.validation import printing
+from stiction.own_code.source import excerpt, raised_in_law
 from stiction.study.execution import sweep
 from stiction.study.store.store import ERROR
 
@@ -774,7 +774,7 @@ def test_a_law_in_a_script_is_kept_without_its_runs(tmp_path):
 
 def test_a_file_edited_after_its_import_is_not_taken_for_what_ran(tmp_path, monkeypatch):
     """Neither kept with the result, nor as the name of machine code."""
-    from stiction.friction.user.source import text_of
+    from stiction.own_code.source import text_of
     from stiction.solver.compilation.pointer import _source
 
     monkeypatch.syspath_prepend(tmp_path)

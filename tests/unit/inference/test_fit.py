@@ -16,7 +16,6 @@ from stiction.analysis.signals.robust import block_means
 from stiction.errors import DescriptionError, ResultError
 from stiction.friction import read_law
 from stiction.friction.user.loading import finder_for_descriptions
-from stiction.friction.user.source import text_of
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features, of_trend
 from stiction.inference.fit import check, plan_for
@@ -33,6 +32,7 @@ from stiction.inference.rig import Rig, load_of_records
 from stiction.inference.simulated.jitter import Jitter, move, stretch
 from stiction.inference.simulated.library import build
 from stiction.inference.simulated.synthetic import draw, synthesise
+from stiction.own_code.source import text_of
 from stiction.recording import stored
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result import fit_file

@@ -20,7 +20,7 @@ from typing import Any
 from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.law import has_state
 from stiction.friction.user.derivative import derivative, is_steep_at_rest, jump
-from stiction.friction.user.source import member
+from stiction.own_code.source import member
 from stiction.text.validation import unknown_name
 
 LINES = 100_000  # a method has about ten

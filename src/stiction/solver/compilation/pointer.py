@@ -21,7 +21,7 @@ import numba.extending
 import numpy as np
 from numba.core.registry import cpu_target
 
-from stiction.friction.user.source import text_of
+from stiction.own_code.source import text_of
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED, compiled, compiled_for
 

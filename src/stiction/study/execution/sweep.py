@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.errors import STATUSES, DescriptionError, one_line
-from stiction.friction.user.source import raised_in_law
+from stiction.own_code.source import raised_in_law
 from stiction.solver.integrate import Room
 from stiction.storage.files import folder_lock
 from stiction.study.execution.cores import Cores
@@ -23,7 +23,8 @@ from stiction.study.plan.study import Study, refuse_other
 from stiction.study.store.creation import create
 from stiction.study.store.kept import Kept, stored_variables
 from stiction.study.store.store import COMPLETED, ERROR, REFUSED, BlockResults, Store, open_store
-from stiction.study.variables.observed_run import MOST_SAMPLES, observe_run
+from stiction.study.variables.observed_run import MOST_SAMPLES, ObservedRun, observe_run
+from stiction.study.variables.own import MeasureError
 from stiction.study.view.summary import Summary, summary
 
 TOO_FEW = (
@@ -115,13 +116,27 @@ def run_one(
         if not ended.ok:
             return StoredOutcome(seen.solution.code, ended.value, ())
         why = "" if seen.resolved else TOO_FEW
-        return StoredOutcome(COMPLETED, why, tuple(each.of(seen) for each in wanted))
+        return values_of(wanted, seen, why)
     except (Unwanted, OSError, MemoryError):
         raise
     except DescriptionError as error:
         return StoredOutcome(REFUSED, "; ".join(map(str, error.faults)), ())
     except Exception as error:  # a user's law may raise anything
         return StoredOutcome(ERROR, raised_in_law(error) or one_line(error), ())
+
+
+def values_of(wanted: Sequence[Kept], seen: ObservedRun, why: str) -> StoredOutcome:
+    """Return the values to keep of a run; what a user's measure raises leaves the others."""
+    values, raised = [], []
+    for each in wanted:
+        try:
+            values.append(each.of(seen))
+        except MeasureError as error:
+            values.append(each.unknown)
+            raised.append(str(error))
+    if raised:
+        return StoredOutcome(ERROR, "; ".join(raised), tuple(values))
+    return StoredOutcome(COMPLETED, why, tuple(values))
 
 
 class Tally(NamedTuple):

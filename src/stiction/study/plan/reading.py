@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections import Counter
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.names import by_new_names
 from stiction.study.plan.axes import Axis, read_axis
+from stiction.study.plan.coordinates import TAKEN
 from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES
+from stiction.study.variables.own import FindMeasure, OwnMeasure, own_measure
 from stiction.system.description import Description
 from stiction.text.paths import canonical_path, keys_of, parameter_names
 from stiction.text.validation import faulty, unknown_name
@@ -58,28 +61,78 @@ def unknown_axes(tables: Mapping[str, Any], value: Any) -> Iterator[Fault]:
                 yield Fault(f"axes.{path}", said)
 
 
-def named_ones(
-    value: Any, what: str, known: Collection[str], former: Collection[str] = ()
-) -> tuple[str, ...]:
-    """Return distinct names, known or former ones; refuse others, with the known ones."""
-    if isinstance(value, str) or not hasattr(value, "__iter__"):
+def items_of(value: Any, what: str, known: Collection[str]) -> list[Any]:
+    """Return the items of a list; refuse anything else."""
+    if isinstance(value, str | Mapping) or not hasattr(value, "__iter__"):
         raise ValueError(f"{echo(value)} is not a list of {what}s; known: {', '.join(known)}")
-    wanted = tuple(dict.fromkeys(str(each) for each in value))
-    strange = [name for name in wanted if name not in known and name not in former]
-    if strange:
-        raise ValueError("; ".join(unknown_name(what, name, known) for name in strange))
-    return wanted
+    return [*value]
 
 
-def measures_of(value: Any) -> tuple[str, ...]:
-    """Return names of measures, with old names replaced."""
-    known = named_ones(value, "measure", MEASURES, FORMERLY)
-    return tuple(dict.fromkeys(by_new_names(known, FORMERLY, "measure")))
+def measures_of(value: Any) -> tuple[str | OwnMeasure, ...]:
+    """Return distinct measures: names, with old ones replaced, and measures of the user's own."""
+    found, faults = list[str | OwnMeasure](), list[str]()
+    for each in items_of(value, "measure", MEASURES):
+        try:
+            found.append(_measure(each))
+        except ValueError as error:
+            faults.append(str(error))
+    faults += _clashes(each for each in dict.fromkeys(found) if isinstance(each, OwnMeasure))
+    if faults:
+        raise ValueError("; ".join(faults))
+    return tuple(dict.fromkeys(found))
+
+
+def _measure(each: Any) -> str | OwnMeasure:
+    if isinstance(each, OwnMeasure):
+        return each
+    if not isinstance(each, str):
+        return own_measure(each)
+    if each not in MEASURES and each not in FORMERLY:
+        raise ValueError(unknown_name("measure", each, MEASURES))
+    return by_new_names([each], FORMERLY, "measure")[0]
+
+
+def _clashes(own: Iterable[OwnMeasure]) -> Iterator[str]:
+    """Yield a fault for each name of a user's measure that is taken."""
+    for name, count in Counter(each.name for each in own).items():
+        if count > 1:
+            yield f"{count} measures are called {name}; rename all but one"
+        elif name in TAKEN:
+            yield f"{name} has a meaning in every store; give your function another name"
+
+
+def references_of(value: Any) -> Any:
+    """Return measures of a file's list, those of the user's own without their functions."""
+    if not isinstance(value, Sequence) or isinstance(value, str):
+        return value
+    return [_reference(each) for each in value]
+
+
+def _reference(each: Any) -> Any:
+    if isinstance(each, str) and ":" in each:
+        return OwnMeasure(each, None)
+    if isinstance(each, Mapping) and {*each} == {"function", "source"}:
+        return OwnMeasure(str(each["function"]), str(each["source"]))
+    return each
+
+
+def with_functions(measures: Any, find: FindMeasure) -> Any:
+    """Return measures of a file's list, with the functions that may be run."""
+    faults, found = Faults(), []
+    for each in measures:
+        with faults.of_part():
+            own = isinstance(each, OwnMeasure) and each.function is None
+            found.append(find(each.reference, each.source) if own else each)
+    faults.refuse()
+    return found
 
 
 def traces_of(value: Any) -> tuple[str, ...]:
     """Return names of traces."""
-    return named_ones(value, "trace", TRACES)
+    wanted = tuple(dict.fromkeys(map(str, items_of(value, "trace", TRACES))))
+    if strange := [name for name in wanted if name not in TRACES]:
+        raise ValueError("; ".join(unknown_name("trace", name, TRACES) for name in strange))
+    return wanted
 
 
 def varied_faults(tables: Mapping[str, Any], changes: Iterable[str]) -> Iterator[Fault]:

@@ -32,12 +32,21 @@ from stiction.study.plan.reading import (
     is_description,
     measures_of,
     readable_axes,
+    references_of,
     traces_of,
     unknown_axes,
     varied_faults,
+    with_functions,
 )
 from stiction.study.variables.measures import DEFAULT
 from stiction.study.variables.observed_run import seconds_of
+from stiction.study.variables.own import (
+    FindMeasure,
+    OwnMeasure,
+    measures_in_folder,
+    measures_of_results,
+    refusal,
+)
 from stiction.system import parameter
 from stiction.system.description import Description
 from stiction.system.writing import parameter_table, slider_tables
@@ -58,8 +67,10 @@ class Study(Described):
         From the path of a parameter (``phi``, ``drive.velocity``, ``friction.mu_0``, ``k_x, k_y``
         for two that share a value; see `stiction.study.plan.coordinates`) to an axis, or to a
         table of the same.
-    measures : sequence of str, optional
-        Numbers to keep of each run, see `stiction.study.variables.measures.MEASURES`.
+    measures : sequence of str or callable, optional
+        Numbers to keep of each run: names in `stiction.study.variables.measures.MEASURES`, and
+        functions of your own from a `Trajectory` to a number. The annotation of what one returns
+        may give its unit: ``-> Annotated[float, "deg"]``.
     traces : sequence of str, optional
         Time series to keep as well: "force", "velocity", "position".
     trace_samples : int, optional
@@ -84,7 +95,7 @@ class Study(Described):
 
     base: Annotated[Any, AfterValidator(is_description)]
     axes: Annotated[Any, BeforeValidator(axes_of)]
-    measures: Annotated[Read[tuple[str, ...]], BeforeValidator(measures_of)] = DEFAULT
+    measures: Annotated[Read[tuple[Any, ...]], BeforeValidator(measures_of)] = DEFAULT
     traces: Annotated[Read[tuple[str, ...]], BeforeValidator(traces_of)] = ()
     trace_samples: Annotated[Whole, Field(ge=2, le=100_000)] = 256
     seed: Annotated[Whole, Field(ge=0, lt=2**63)] = 0
@@ -92,11 +103,19 @@ class Study(Described):
     @model_validator(mode="after")
     def _can_be_laid_out(self) -> Self:
         found = _faults_of_axes(partial(unit, self.base), self.axes, self.seed)
+        found += self._taken_names()
         found += [] if found else self._too_large()
         found += [] if found else self._check_endpoints()
         if found:
             raise faulty(found)
         return self
+
+    def _taken_names(self) -> list[Fault]:
+        """Return the measures of the user's own that are called like an axis."""
+        names = {*self.axes, *(axis.along for axis in self.axes.values())}
+        own = [each.name for each in self.measures if isinstance(each, OwnMeasure)]
+        said = "is the name of an axis, too; give your function another name"
+        return [Fault("measures", f"{name} {said}") for name in own if name in names]
 
     def _too_large(self) -> list[Fault]:
         """Return the faults of a study that does not fit into memory."""
@@ -198,7 +217,7 @@ class Study(Described):
 
     def _repr_html_(self) -> str:
         axes = {"axes": {path: axis_table(axis) for path, axis in self.axes.items()}}
-        kept = f"Stored of each run: {', '.join([*self.measures, *self.traces])}."
+        kept = f"Stored of each run: {', '.join(map(str, (*self.measures, *self.traces)))}."
         return as_html(
             [
                 Section(f"Study of {self.layout.runs} runs", [kept], parameter_table(axes)),
@@ -230,7 +249,8 @@ class Study(Described):
         find, locate = finder_for_descriptions(folder, trust), locator(folder, trust)
         raw, strange = read_changed(path, changes)
         known = [*strange, *varied_faults(raw, changes or {})]
-        return cls.from_dict(raw, find=find, locate=locate, known=known)
+        own = measures_in_folder(folder, trust)
+        return cls.from_dict(raw, find=find, locate=locate, find_measure=own, known=known)
 
     @classmethod
     def from_dict(
@@ -239,12 +259,13 @@ class Study(Described):
         *,
         find: Find | None = None,
         locate: Locate | None = None,
+        find_measure: FindMeasure | None = None,
         known: Sequence[Fault] = (),
     ) -> Self:
         """Read a study from nested tables, as in the TOML file; `known` faults are told too.
 
-        First come the study's own tables, as a user's law is not run beside a fault, then the base,
-        and then the axes with it.
+        First come the study's own tables, as code of the user's is not run beside a fault, then the
+        base, and then the axes with it.
         """
         axes = raw.get("axes")
         rest = {key: value for key, value in raw.items() if key not in ("study", "axes")}
@@ -260,7 +281,9 @@ class Study(Described):
         if found:
             also = _faults_of_axes(partial(unit, base), readable_axes(axes))
             raise DescriptionError([*found, *also])
-        return cls._make(own, axes, base)
+        find_measure = find_measure or measures_in_folder(Path())
+        measures = with_functions(own.get("measures", DEFAULT), find_measure)
+        return cls._make({**own, "measures": measures}, axes, base)
 
     @classmethod
     def _own_table(cls, own: Any, axes: Any) -> tuple[dict[str, Any], Sequence[Fault]]:
@@ -276,6 +299,8 @@ class Study(Described):
         strange = [key for key in own if key not in keys | places.keys()]
         found += [Fault(f"study.{key}", unknown_name("key", key, keys)) for key in strange]
         own = {key: own[key] for key in own if key in keys}
+        if "measures" in own:
+            own["measures"] = references_of(own["measures"])
         try:
             cls._make(own, axes, None)
         except DescriptionError as error:
@@ -293,13 +318,20 @@ class Study(Described):
     @classmethod
     def from_json(cls, text: str, *, trust: bool = False) -> Self:
         """Read back what `to_json` wrote; `trust` is that of `Description.from_json`."""
-        return cls.from_dict(read_json(text), find=finder_for_results(trust), locate=locate_nothing)
+        return cls.from_dict(
+            read_json(text),
+            find=finder_for_results(trust),
+            locate=locate_nothing,
+            find_measure=measures_of_results(trust),
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Return nested tables, which `from_dict` reads."""
         base: Description = self.base
+        own = [each.table() if isinstance(each, OwnMeasure) else each for each in self.measures]
+        rest = self.model_dump(mode="json", exclude={"base", "axes", "measures"})
         return {
-            "study": self.model_dump(mode="json", exclude={"base", "axes"}),
+            "study": {"measures": own, **rest},
             "axes": {path: axis_table(axis) for path, axis in self.axes.items()},
             **base.to_dict(),
         }
@@ -332,7 +364,10 @@ def _in_file(fault: Fault) -> Fault:
 
 
 def refuse_other(study: object) -> None:
-    """Refuse what is not a study."""
+    """Refuse what is not a study, or has measures that may not be run."""
     if not isinstance(study, Study):
         remedy = "make one with st.Study(...) or read one with st.Study.from_toml(path)"
         raise DescriptionError.of("study", f"{echo(study)} is not a Study; {remedy}")
+    for each in study.measures:
+        if isinstance(each, OwnMeasure) and each.function is None:
+            raise refusal(each.reference)

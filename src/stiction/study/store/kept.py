@@ -12,6 +12,7 @@ from stiction.arrays import Floats
 from stiction.study.plan.study import Study
 from stiction.study.variables.measures import MEASURES, TRACES
 from stiction.study.variables.observed_run import ObservedRun
+from stiction.study.variables.own import OwnMeasure
 
 UNKNOWN = "unknown"  # the meaning of -1 in the code of a kind
 TIME = "time"  # dimension of traces
@@ -47,14 +48,21 @@ class Kept(NamedTuple):
 def stored_variables(study: Study) -> list[Kept]:
     """Return the variables that a study keeps of each run."""
     return [
-        *(_measure(name) for name in study.measures),
+        *(
+            _own_measure(each) if isinstance(each, OwnMeasure) else _measure(each)
+            for each in study.measures
+        ),
         *(_trace(name, study.trace_samples) for name in study.traces),
     ]
 
 
 def names_kept(study: Mapping[str, Any]) -> list[str]:
     """Return the names of the kept variables, from the table [study] of a description."""
-    return [*study["measures"], *map(_trace_name, study["traces"])]
+    return [*map(_measure_name, study["measures"]), *map(_trace_name, study["traces"])]
+
+
+def _measure_name(measure: str | Mapping[str, str]) -> str:
+    return measure if isinstance(measure, str) else measure["function"].rpartition(":")[2]
 
 
 def _trace_name(name: str) -> str:
@@ -68,6 +76,12 @@ def _measure(name: str) -> Kept:
         return Kept(name, known.value, (), np.int8, -1, labels)
     labels = {"units": known.unit, "long_name": known.long_name}
     return Kept(name, known.value, (), np.float64, nan, labels)
+
+
+def _own_measure(measure: OwnMeasure) -> Kept:
+    unit = {"units": measure.unit} if measure.unit else {}
+    labels = {**unit, "long_name": measure.long_name}
+    return Kept(measure.name, measure.value, (), np.float64, nan, labels)
 
 
 def _trace(name: str, count: int) -> Kept:

@@ -23,7 +23,7 @@ from stiction.analysis.motion.vibration import FAST_PERIODS, FastOscillation
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
-from stiction.simulation import sample_times, solve, solve_coarsely
+from stiction.simulation import sample_times, solve, solve_coarsely, trajectory_of
 from stiction.solver.integrate import Room, Solution
 from stiction.study.variables.fast_regime import (
     Circumstances,
@@ -36,6 +36,7 @@ from stiction.study.variables.features import Features, even_columns, features, 
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.system.tensors import stiffness_and_mass_along
+from stiction.trajectory import Trajectory
 
 # With samples this dense, cubics find peaks to 4e-6 of the amplitude for a harmonic, and to 5e-7
 # for the paper's system. The samples cost a fifth of the run's time.
@@ -102,6 +103,13 @@ class ObservedRun:
 
     def _thin_out(self, values: Floats) -> Floats:
         return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
+
+    @cached_property
+    def trajectory(self) -> Trajectory:
+        """The run at its even samples, as `stiction.run` returns it, in memory of its own."""
+        samples = self._thin_out(self.solution.samples)
+        even = self.solution._replace(times=self.time, samples=samples)
+        return trajectory_of(self.description, even)
 
     @cached_property
     def _columns(self) -> Floats:

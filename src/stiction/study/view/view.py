@@ -124,7 +124,7 @@ def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
         )
     if measures:
         return list(measures)
-    numbers = [name for name in view.study.measures if name != REGIME]
+    numbers = [str(each) for each in view.study.measures if each != REGIME]
     two = len(view.data["status"].dims) == 2 or not numbers
     return [REGIME] if REGIME in kept and two else numbers[:1] or [REGIME]
 

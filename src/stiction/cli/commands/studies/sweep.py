@@ -55,7 +55,8 @@ def sweep(
         count = 20
         spacing = "log"
 
-    The reference lists the measures; `measures = ["?"]` is refused with the names of all.
+    The reference lists the measures; `measures = ["?"]` is refused with the names of all. One of
+    your own is a function from a run to a number in a file: "mymeasures.py:friction_heat".
 
     There are ready studies: `stiction sweep --preset yaw-angle -o yaw.zarr`, then `stiction map
     yaw.zarr`.

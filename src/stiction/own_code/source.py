@@ -1,8 +1,9 @@
-"""From the text of a user's law to a module, and from a law to the statements that define it."""
+"""From a user's text to a module, and from a law or function to the statements that define it."""
 
 from __future__ import annotations
 
 import ast
+import builtins
 import copyreg
 import hashlib
 import inspect
@@ -15,7 +16,7 @@ from importlib.abc import InspectLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
 from traceback import extract_tb
-from types import CodeType, ModuleType
+from types import CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple
 
 from stiction.errors import one_line
@@ -134,8 +135,8 @@ def member(module: ModuleType, name: str) -> Any:
     return found
 
 
-def text_of(kind: type) -> Text | None:
-    """Return the text that defines a law; from a script or notebook, only the parts it needs.
+def text_of(kind: type | FunctionType) -> Text | None:
+    """Return the text that defines it; from a script or notebook, only the parts it needs.
 
     None if the text is unavailable, or the file has changed since it was imported.
     """
@@ -155,8 +156,8 @@ def text_of(kind: type) -> Text | None:
         return None
 
 
-def _defines(text: str, kind: type, file: str) -> bool:
-    """Return whether a text contains the methods of a class, line for line."""
+def _defines(text: str, kind: type | FunctionType, file: str) -> bool:
+    """Return whether a text contains a function, or the methods of a class, line for line."""
     there: set[CodeType] = set()
     codes = [compile(text, file, "exec", dont_inherit=True)]
     while codes:
@@ -166,16 +167,16 @@ def _defines(text: str, kind: type, file: str) -> bool:
     return all(code in there for code in _codes(kind) if code.co_filename == file)
 
 
-def _codes(kind: type) -> Iterator[CodeType]:
-    """Yield the code of a class's methods."""
-    for value in vars(kind).values():
+def _codes(kind: type | FunctionType) -> Iterator[CodeType]:
+    """Yield the code of a function, or of a class's methods."""
+    for value in [kind] if isinstance(kind, FunctionType) else vars(kind).values():
         code = getattr(getattr(value, "__func__", value), "__code__", None)
         if code is not None:
             yield code
 
 
-def _from_script(kind: type) -> Text | None:
-    """Return the text of a law in a script, a notebook or a prompt, if available."""
+def _from_script(kind: type | FunctionType) -> Text | None:
+    """Return the text of it in a script, a notebook or a prompt, if available."""
     for file in (code.co_filename for code in _codes(kind)):
         found = excerpt("".join(linecache.getlines(file)), kind.__qualname__.split(".")[0])
         if found:
@@ -217,6 +218,27 @@ def excerpt(text: str, name: str) -> str:
                 names += [node.id for node in ast.walk(statement) if isinstance(node, ast.Name)]
     lines = text.splitlines()
     return "\n".join(_lines(lines, statement) for statement in statements if statement in wanted)
+
+
+def missing_names(text: str) -> list[str]:
+    """Return the names that a text uses and does not define: it was cut out of a larger one.
+
+    >>> missing_names("import math\\ndef f(x): return math.exp(x) + offset + len(str(x))")
+    ['offset']
+    """
+    nodes = [*ast.walk(ast.parse(text))]
+    names = [node for node in nodes if isinstance(node, ast.Name)]
+    known = {node.id for node in names if isinstance(node.ctx, ast.Store)}
+    known.update(dir(builtins), ("__file__",))
+    for node in nodes:
+        match node:
+            case (
+                ast.arg(arg=name) | ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name))
+            ):
+                known.add(name)
+            case ast.FunctionDef() | ast.ClassDef() | ast.Import() | ast.ImportFrom():
+                known.update(_bound(node))
+    return sorted({node.id for node in names} - known)
 
 
 def _bound(statement: ast.stmt) -> Iterator[str]:

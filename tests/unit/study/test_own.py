@@ -1,0 +1,352 @@
+"""Measures of the user's own: kept like built-in ones, run only where they may be."""
+
+import json
+import os
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import numpy as np
+import pytest
+from tests.waiting import PATIENCE
+
+import stiction as st
+from stiction.cli import main
+from stiction.own_code.source import missing_names
+from stiction.study.execution.cores import Cores
+from stiction.study.execution.engines import Threads
+from stiction.study.execution.repair import restore
+from stiction.study.store.store import ERROR
+
+BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="50 ms"))
+PHI = {"phi": st.Grid("1 deg", "3 deg", 3)}
+TEXT = '''
+from pathlib import Path
+from typing import Annotated
+
+Path("ran").touch()
+
+
+def stuck(run) -> Annotated[float, "ms"]:
+    """Time at rest."""
+    return 1e3 * float(run.sticks["stick_duration"].sum())
+
+
+def never(run):
+    return None
+'''
+FILE = """
+[study]
+measures = ["time_stuck", "mine.py:stuck"]
+[axes.phi]
+values = ["1 deg", "3 deg"]
+"""
+KEPT = []
+
+
+def longest(run: st.Trajectory) -> Annotated[float, "s"]:
+    """Duration of the longest stick.
+
+    More is in the second paragraph.
+    """
+    return run.sticks["stick_duration"].max()
+
+
+def highest(run):
+    return run.samples["spring_x"].max()
+
+
+def moody(run) -> float:
+    if run.slider.phi > 0.03:
+        raise RuntimeError("no such angle")
+    return 1.0
+
+
+def keep(run):
+    KEPT.append(run)
+    return 0.0
+
+
+def angle_in_wrong_unit(run) -> Annotated[float, "degg"]: ...
+def of_two(run, other): ...
+def period(run): ...
+def phi(run): ...
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.py").write_text(TEXT)
+    (tmp_path / "study.toml").write_text(FILE + BASE.to_toml())
+    yield tmp_path
+    for name in [each for each in sys.modules if each.startswith("stiction_law_mine")]:
+        del sys.modules[name]
+
+
+def command(*words):
+    with pytest.raises(SystemExit) as left:
+        main([*words])
+    return left.value.code
+
+
+def of(*measures, axes=PHI):
+    return st.Study(base=BASE, axes=axes, measures=measures)
+
+
+def test_it_is_what_the_function_returns_for_the_run(tmp_path):
+    study = of(longest, highest, "peak_force")
+    st.sweep(study, tmp_path / "a.zarr", engine=Threads(1))
+    with st.open_study(tmp_path / "a.zarr") as data:
+        for place, angle in enumerate(data["phi"].values):
+            run = st.run(study.description({"phi": f"{angle} deg"}))
+            np.testing.assert_allclose(data["longest"][place], longest(run), rtol=1e-12)
+        # a built-in peak lies between samples; 32 in a period miss it by 0.5 % of an oscillation
+        np.testing.assert_allclose(data["highest"], data["peak_force"], rtol=5e-3)
+        assert data["longest"].attrs == {"units": "s", "long_name": "Duration of the longest stick"}
+        assert data["highest"].attrs == {"long_name": "highest"}
+
+
+def test_a_file_names_it_by_file_and_function(folder):
+    assert command("sweep", "study.toml", "-o", "a.zarr", "--quiet") == 0
+    with st.open_study("a.zarr") as data:
+        np.testing.assert_allclose(data["stuck"], 1e3 * data["time_stuck"], rtol=1e-12)
+        assert data["stuck"].attrs["units"] == "ms"
+    assert command("map", "a.zarr", "--of", "stuck") == 0
+    assert Path("a.png").exists()
+
+
+def test_what_it_raises_leaves_the_other_measures(tmp_path):
+    done = st.sweep(of("time_stuck", moody, highest), tmp_path / "a.zarr", engine=Threads(1))
+    assert done.failed == {"error": 2}
+    with st.open_study(tmp_path / "a.zarr") as data:
+        assert data["status"].values.tolist() == [0, ERROR, ERROR]
+        assert np.isfinite(data["time_stuck"]).all()
+        assert np.isfinite(data["highest"]).all()
+        np.testing.assert_array_equal(data["moody"], [1.0, np.nan, np.nan])
+        line = moody.__code__.co_firstlineno + 2
+        assert data["message"].values[1] == (
+            f"moody: test_own.py, line {line}: RuntimeError: no such angle"
+        )
+
+
+def test_a_measure_must_return_one_number(folder):
+    text = FILE.replace('stuck"]', 'never"]') + BASE.to_toml()
+    (folder / "study.toml").write_text(text)
+    done = st.sweep(st.Study.from_toml("study.toml"), "a.zarr", engine=Threads(1))
+    assert "never returned None; it must be one number" in done.first.message
+
+
+def test_a_run_that_it_keeps_stays_as_it_was(tmp_path):
+    """Memory of samples is used again for the next run."""
+    KEPT.clear()
+    st.sweep(of(keep), tmp_path / "a.zarr", engine=Threads(1))
+    found = [run.samples["spring_x"].max() for run in KEPT]
+    fresh = [
+        st.simulate(run.slider, times=run.samples["time"]).samples["spring_x"].max() for run in KEPT
+    ]
+    np.testing.assert_allclose(found, fresh, rtol=1e-4)  # inside steps: the steps' tolerance
+    assert len({*found}) == 3
+
+
+def test_another_process_reads_its_numbers_and_runs_nothing(folder):
+    study = st.Study.from_toml("study.toml")
+    st.sweep(study, "a.zarr", engine=Threads(1))
+    (folder / "ran").unlink()
+    (folder / "elsewhere").mkdir()
+    look = "import stiction as st; print(st.map('../a.zarr', 'stuck').data['stuck'].size)"
+    assert python(look, folder / "elsewhere") == "2"
+    again = (
+        "import stiction as st\n"
+        "data = st.open_study('../a.zarr')\n"
+        "study = st.Study.from_json(data.attrs['description'], trust={trust})\n"
+        "try: print(st.sweep(study, 'b.zarr').failed)\n"
+        "except st.DescriptionError as error: print(error)\n"
+    )
+    said = python(again.format(trust=False), folder / "elsewhere")
+    assert "study.measures: 'mine.py:stuck' is a user's measure" in said
+    assert "trust=True" in said
+    assert not list((folder / "elsewhere").iterdir())  # no store either
+    assert python(again.format(trust=True), folder / "elsewhere") == "{}"
+    assert (folder / "elsewhere" / "ran").exists()
+
+
+def test_damage_is_computed_again_with_trust(folder):
+    st.sweep(st.Study.from_toml("study.toml"), "a.zarr", engine=Threads(1))
+    before = st.open_study("a.zarr").load()
+    chunk = next((folder / "a.zarr" / "stuck" / "c").glob("*"))
+    chunk.write_bytes(bytes(len(chunk.read_bytes())))
+    for name in [each for each in sys.modules if each.startswith("stiction_law_mine")]:
+        del sys.modules[name]
+    with pytest.raises(st.DescriptionError, match="not run without permission"):
+        restore(folder / "a.zarr")
+    assert restore(folder / "a.zarr", trust=True)
+    assert before.equals(st.open_study("a.zarr").load())
+
+
+def test_a_changed_function_is_another_study(folder):
+    st.sweep(st.Study.from_toml("study.toml"), "a.zarr", engine=Threads(1))
+    (folder / "mine.py").write_text(TEXT.replace("1e3", "1e6"))
+    with pytest.raises(st.ResultError, match=r"holds another study: study\.measures\.2\.source"):
+        st.sweep(st.Study.from_toml("study.toml"), "a.zarr")
+
+
+def test_it_is_not_run_beside_a_fault(folder):
+    text = (folder / "study.toml").read_text()
+    (folder / "study.toml").write_text(text.replace('mass = "', 'mass = "-'))
+    with pytest.raises(st.DescriptionError, match=r"slider\.mass"):
+        st.Study.from_toml("study.toml")
+    assert not (folder / "ran").exists()
+
+
+def test_its_file_lies_in_the_folder_of_the_study_or_is_trusted(folder):
+    (folder / "inner").mkdir()
+    (folder / "study.toml").rename(folder / "inner" / "study.toml")
+    text = (folder / "inner" / "study.toml").read_text().replace("mine.py", "../mine.py")
+    (folder / "inner" / "study.toml").write_text(text)
+    with pytest.raises(st.DescriptionError, match="lies outside the folder"):
+        st.Study.from_toml("inner/study.toml")
+    assert not (folder / "ran").exists()
+    assert str(st.Study.from_toml("inner/study.toml", trust=True).measures[1]) == "stuck"
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("mine.py:stick", "unknown function 'stick'"),
+        ("mine.py:Path", "unknown function 'Path'"),
+        ("mine.py:", "must name a file and a function"),
+        ("nobody.py:stuck", "no file 'nobody.py'"),
+        ("broken.py:stuck", "SyntaxError"),
+        ("raising.py:stuck", "ZeroDivisionError"),
+    ],
+)
+def test_a_file_s_faults_are_told(folder, name, said):
+    (folder / "broken.py").write_text("def stuck(run:\n")
+    (folder / "raising.py").write_text("1/0\n")
+    text = (folder / "study.toml").read_text().replace("mine.py:stuck", name)
+    (folder / "study.toml").write_text(text)
+    with pytest.raises(st.DescriptionError) as caught:
+        st.Study.from_toml("study.toml")
+    (fault,) = caught.value.faults
+    assert fault.path == "study.measures"
+    assert said in fault.message
+
+
+def local_function():
+    def inner(run): ...
+
+    return inner
+
+
+@pytest.mark.parametrize(
+    ("measure", "said"),
+    [
+        (lambda run: 1.0, "has no name that a store could keep"),
+        (local_function(), "has no name that a store could keep"),
+        (len, "neither a measure's name nor a function"),
+        (None, "neither a measure's name nor a function"),
+        (of_two, "must take one argument"),
+        (angle_in_wrong_unit, "the unit of angle_in_wrong_unit: 'degg' is not a known unit"),
+        (period, "period has a meaning in every store"),
+        (phi, "phi is the name of an axis, too"),
+    ],
+)
+def test_what_is_no_measure_is_refused(measure, said):
+    with pytest.raises(st.DescriptionError) as caught:
+        of(measure)
+    assert caught.value.faults[0].path == "Study.measures"
+    assert said in str(caught.value)
+
+
+def test_all_faults_are_told_at_once():
+    with pytest.raises(st.DescriptionError) as caught:
+        of("nothing", of_two, axes={"phi": st.Grid("1 deg", "3 deg", 3), "colour": st.Values([1])})
+    assert "unknown measure 'nothing'" in str(caught.value)
+    assert "must take one argument" in str(caught.value)
+
+
+def test_a_study_in_another_process_has_it(tmp_path):
+    study = of(longest)
+    (tmp_path / "study").write_bytes(pickle.dumps(study))
+    code = (
+        "import pickle, pathlib, stiction as st\n"
+        "study = pickle.loads(pathlib.Path('study').read_bytes())\n"
+        "print(st.sweep(study, 'there.zarr').failed)"
+    )
+    assert python(code, tmp_path) == "{}"
+    st.sweep(study, tmp_path / "here.zarr", engine=Cores(1))
+    with (
+        st.open_study(tmp_path / "here.zarr") as here,
+        st.open_study(tmp_path / "there.zarr") as there,
+    ):
+        np.testing.assert_array_equal(here["longest"], there["longest"])
+
+
+NOTEBOOK = """
+import linecache
+cell = '''{cell}'''
+linecache.cache["cell-1"] = (len(cell), None, cell.splitlines(True), "cell-1")
+factor = 2.0
+exec(compile(cell, "cell-1", "exec"))
+import stiction as st
+base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="20 ms"))
+try:
+    study = st.Study(base=base, axes={{"phi": st.Values(["1 deg"])}}, measures=[sticks])
+    done = st.sweep(study, "a.zarr")
+    print(float(st.open_study("a.zarr")["sticks"][0]))
+except st.DescriptionError as error:
+    print(error)
+"""
+
+
+def test_a_cell_of_a_notebook_defines_it(tmp_path):
+    whole = "def count(run): return run.statistics.stick_count\ndef sticks(run): return count(run)"
+    assert float(python(NOTEBOOK.format(cell=whole), tmp_path)) > 0
+    part = "def sticks(run): return factor * run.statistics.stick_count"
+    said = python(NOTEBOOK.format(cell=part), tmp_path)
+    assert "sticks uses factor of another cell" in said
+
+
+def test_names_that_a_text_lacks():
+    text = """
+import numpy as np
+from math import pi as circle
+def f(x, *rest, key=1, **more):
+    try:
+        total = sum(y for y in rest)
+    except ValueError as error:
+        print(error)
+    with open(x) as file, other() as (a, b):
+        pass
+    for i, (j, k) in enumerate(more):
+        del j
+    match x:
+        case [first, *remaining] | {"k": first, **remaining} if (n := first):
+            pass
+    return [np.mean(z) + circle + a + b + i + k + n + total for z in rest], key, file, lost, g
+def g(): return __file__, lambda q: q
+"""
+    assert missing_names(text) == ["lost", "other"]
+
+
+def python(code: str, folder: Path) -> str:
+    """Return what a program prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", code],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[3])},  # with the tests
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+    )
+    assert not done.returncode, done.stderr
+    return done.stdout.strip()
+
+
+def test_the_store_s_description_holds_its_text(folder):
+    st.sweep(st.Study.from_toml("study.toml"), "a.zarr", engine=Threads(1))
+    with st.open_study("a.zarr") as data:
+        kept = json.loads(data.attrs["description"])["study"]["measures"]
+    assert kept == ["time_stuck", {"function": "mine.py:stuck", "source": TEXT}]
