@@ -219,7 +219,7 @@ def test_workers_client_and_scheduler_killed(nursery, study, undisturbed, tmp_pa
         until(lambda: found.exists() and found.read_text())
         address = json.loads(found.read_text())["address"]
         preload = ("--preload", GATE.format(str(gate)))
-        with dask("worker", address, *work, *preload):
+        with dask("worker", address, *work, *preload) as pool:
             with Client(address) as watch:
                 for _ in range(2):  # the client dies
                     child = nursery.begin(path, address)
@@ -234,7 +234,7 @@ def test_workers_client_and_scheduler_killed(nursery, study, undisturbed, tmp_pa
                 for _ in range(2):  # workers die, and are started anew
                     some_done()
                     time.sleep(chance.uniform(0.0, 0.1))
-                    os.kill(chance.choice(workers(watch)), signal.SIGKILL)
+                    os.kill(chance.choice(workers(pool.pid)), signal.SIGKILL)
                 some_done()
             scheduler.kill()
             assert nursery.end().startswith("told dask's scheduler is lost")
@@ -279,13 +279,22 @@ def at_rest(watch) -> bool:
     return waiting == 0 and not any(busy.values())
 
 
-def workers(watch) -> list[int]:
-    """Return the processes of the workers that answer, one at least."""
+def workers(pool: int) -> list[int]:
+    """Return the processes that a pool has started, one at least.
+
+    Asked through the scheduler, a worker that has just died may never answer.
+    """
+    import psutil
+
     found: list[int] = []
-    while not found:
-        watch.wait_for_workers(1, timeout=PATIENCE)
-        answers = watch.run(os.getpid, on_error="return")
-        found = [answer for answer in answers.values() if isinstance(answer, int)]
+
+    def begun() -> bool:
+        for each in psutil.Process(pool).children():
+            with contextlib.suppress(psutil.Error):  # it may have ended since
+                found.extend([each.pid] if "spawn_main" in " ".join(each.cmdline()) else [])
+        return bool(found)
+
+    until(begun)
     return found
 
 
