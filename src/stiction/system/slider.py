@@ -38,7 +38,7 @@ from stiction.system.tensors import ROUND, solver_axes, unit_vector
 from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_slider, toml_text
-from stiction.text.units import Angle, Damping, Force, Mass, Stiffness
+from stiction.text.units import Angle, Damping, Force, Mass, Radians, Stiffness
 from stiction.text.validation import Described, faulty, in_si
 
 
@@ -158,7 +158,7 @@ class Apparatus(Described):
         """From the axis x of the springs to the drive direction X, rad: `phi`, unless springs in
         series have axes of their own."""
         angle = self.phi - self.turn
-        return 0.0 if self.springs and abs(angle) < ROUND else angle
+        return Radians(0.0 if self.springs and abs(angle) < ROUND else angle)
 
     @cached_property
     def aligned(self) -> bool:
@@ -186,7 +186,8 @@ class Slider(Apparatus):
     k_x, k_y : float or str
         Principal stiffnesses, N/m.
     phi : str
-        Misalignment angle between x and X, within 90 degrees of zero; ``slider.phi`` is in rad.
+        Misalignment angle between x and X, within 90 degrees of zero; ``slider.phi`` is in rad,
+        and another slider takes it as it is.
     normal_load : float or str
         Normal load W, N; the initial value of a load program.
     friction : FrictionLaw

@@ -337,7 +337,31 @@ def _not_below_one(value: float) -> float:
     return value
 
 
-Angle = Annotated[Read[float], reader("an angle", "rad", "1 deg"), PlainSerializer(angle_text)]
+class Radians(float):
+    """An angle, which carries its unit as a quantity of pint does: bare numbers are refused.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> slider = st.presets.nakano_popov_2020()
+    >>> slider.replace(mass="1 kg").replace(phi=slider.phi).phi == slider.phi
+    True
+    """
+
+    units = "rad"
+
+    @property
+    def magnitude(self) -> float:
+        """The number."""
+        return float(self)
+
+
+Angle = Annotated[
+    Read[float],
+    reader("an angle", "rad", "1 deg"),
+    AfterValidator(Radians),
+    PlainSerializer(angle_text),
+]
 Coefficient = Annotated[Read[float], reader("a number", "", "0.20"), Field(ge=0)]
 Number = Annotated[Read[float], reader("a number", "", "1e-6")]
 Exponent = Annotated[

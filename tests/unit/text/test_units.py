@@ -1,10 +1,15 @@
 """Units as people write them: accepted and refused spellings."""
 
+import copy
+import json
+import pickle
+
 import numpy as np
 import pint
 import pytest
 import xarray as xr
 
+import stiction as st
 from stiction.text.quantity_text import percent, quantity_text
 from stiction.text.unit_text import COMMON, LONGEST_UNIT, UnitError, factor, short
 from stiction.text.units import (
@@ -286,3 +291,34 @@ def test_a_number_that_its_unit_makes_too_large_is_refused(text):
 @pytest.mark.parametrize("text", ["um/s", "µm/s", "μm/s", "micrometer/s"])
 def test_micro_is_the_sign_whichever_pint_writes(text):
     assert short(text) == "\N{MICRO SIGN}m/s"
+
+
+@pytest.mark.parametrize("name", ["phi", "mass_angle", "damping_angle", "cell_angle"])
+def test_an_angle_of_one_slider_is_that_of_another(name):
+    slider = st.presets.nakano_popov_2020()
+    for angle in np.random.default_rng(5).uniform(-1.57, 1.57, 200).tolist():
+        given = getattr(slider.replace(**{name: f"{angle!r} rad"}), name)
+        assert given == angle
+        assert getattr(slider.replace(**{name: given}), name) == angle
+        assert getattr(slider.replace(**{name: copy.deepcopy(given)}), name) == angle
+        assert getattr(slider.replace(**{name: pickle.loads(pickle.dumps(given))}), name) == angle
+
+
+def test_an_angle_keeps_its_unit_where_a_number_would_be_refused():
+    slider = st.presets.nakano_popov_2020()
+    assert st.Values([slider.phi, "2 deg"]).values == ("0.017453292519943295 rad", "2 deg")
+    with pytest.raises(st.DescriptionError, match="is in rad, not a unit of a mass"):
+        slider.replace(mass=slider.phi)
+    with pytest.raises(st.DescriptionError, match="degree or radian"):
+        slider.replace(phi=2 * slider.phi)
+
+
+def test_an_angle_is_a_number_everywhere_else():
+    phi = st.presets.nakano_popov_2020().phi
+    plain = float(phi)
+    assert json.loads(json.dumps({"phi": phi})) == {"phi": plain}
+    assert np.array([phi]).dtype == float
+    assert np.sin(phi) == np.sin(plain)
+    assert repr(phi) == repr(plain)
+    found = [st.theory.creep_velocity(0.5, 1e-3, each, 1e-3) for each in (phi, plain)]
+    assert found[0] == found[1]

@@ -21,7 +21,7 @@ from stiction.analysis.signals.correlated_noise import error_of_few
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.text.quantity_text import percent
-from stiction.text.units import times
+from stiction.text.units import Radians, times
 
 GRID = 400  # angles at which the closed form is tabled
 MODEL = 1e-4  # of the drop: least error of Eq. (7) with the terms below
@@ -109,7 +109,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     over = excess * float(np.hypot(covariance[1, 1] ** 0.5, EXCESS))
     F_0_error = peak * float(np.hypot(over, PEAK + 0.5 * change))
     stiffness = (record.stiffness or 0.0) / (1.0 + off)
-    return Misalignment(phi, error, F_0, F_0_error, stiffness)
+    return Misalignment(Radians(phi), error, F_0, F_0_error, stiffness)
 
 
 def crept_force(

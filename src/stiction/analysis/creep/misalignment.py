@@ -15,6 +15,7 @@ from stiction.analysis.creep.presliding import fit_presliding
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
+from stiction.text.units import Radians
 
 # Starts of fits: phi, rad, and excess over the peak
 STARTS: tuple[tuple[float, float], ...] = (0.02, 0.02), (0.05, 0.005), (0.01, 0.1)
@@ -244,7 +245,7 @@ def _over_weakenings(
     off = np.abs(used.velocity - best.velocity)
     size = np.maximum(np.maximum(np.abs(used.velocity), np.abs(best.velocity)), TINY)
     middle_of_all = Misalignment(
-        float(phi),
+        Radians(phi),
         float(phi_error),
         float(F_0) * peak,
         float(F_0_error) * peak,
