@@ -96,10 +96,30 @@ def test_contributing_names_the_rooms_from_the_bottom_up():
     rooms = {path.parent.name for path in (ROOT / TREES[0]).glob("*/__init__.py")} - {"units"}
     named = re.findall(r"`(\w+)`", text.partition("`arrays`")[0])
     assert sorted(named) == sorted(rooms)
+    assert named == sorted(named, key=floors().__getitem__)
+
+
+def test_ways_up_that_the_contract_does_not_see_are_these():
+    """Public names in stubs, and modules that are named in a text."""
+    room, floor, up = ROOT / TREES[0], floors(), set()
+    for path in [*room.rglob("*.py"), *room.glob("*/**/*.pyi")]:
+        own = path.relative_to(room).with_suffix("").parts
+        opening = r"from " if path.suffix == ".pyi" else r'import_module\(f?"'
+        for other in re.findall(opening + r"stiction\.(\w+)", path.read_text("utf-8")):
+            if floor.get(other, 0) > floor.get(own[0], 0):
+                up.add((".".join(own), other))
+    assert up == {
+        ("names", "plotting"),  # results draw themselves
+        ("plotting.__init__", "study"),  # the figure of a study
+        ("drive.protocols", "study"),  # a friction test that is a study stands beside the others
+    }
+
+
+def floors():
+    """Return the height of each room in the contract on imports."""
     project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))
     layers = project["tool"]["importlinter"]["contracts"][0]["layers"]
-    floor = {name: -i for i, layer in enumerate(layers) for name in re.findall(r"\.(\w+)", layer)}
-    assert named == sorted(named, key=floor.__getitem__)
+    return {name: -i for i, layer in enumerate(layers) for name in re.findall(r"\.(\w+)", layer)}
 
 
 def test_each_part_of_the_benchmark_is_there():
