@@ -12,16 +12,17 @@ import ast
 import builtins
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set, Sized
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set, Sized
 from contextlib import AbstractContextManager, nullcontext
-from functools import wraps
+from contextvars import ContextVar
+from functools import partial, wraps
 from inspect import Signature, isclass, signature, unwrap
 from numbers import Integral, Real
 from os import PathLike
 from pkgutil import resolve_name
 from typing import Any, TypeVar, cast, get_args
 
-from stiction.errors import DescriptionError, Fault, StictionError, echo
+from stiction.errors import DescriptionError, Fault, Faults, StictionError, echo
 
 F = TypeVar("F", bound=Callable[..., Any])
 ANYTHING = {"Any", "object", "Unpack", "Literal"}  # values of a Literal have messages of their own
@@ -44,6 +45,36 @@ IN_WORDS = {
 
 
 _doors: dict[Callable[..., Any], Callable[..., Any]] = {}  # one of a function with two names
+_patient: set[Callable[..., Any]] = set()  # functions that call `end_reading`
+_waiting: ContextVar[tuple[Fault, ...]] = ContextVar("_waiting", default=())
+
+
+def read_together(function: F) -> F:
+    """Decorate a public function that calls `end_reading` before it begins to work.
+
+    So its whole numbers hide no fault of its other arguments.
+    """
+    _patient.add(function)
+    return function
+
+
+def refuse_last(wrong: Sequence[Fault], call: Callable[[], Any] | None) -> None:
+    """Refuse whole numbers after what the call of a function that reads them together refuses."""
+    found, token = Faults(), _waiting.set(tuple(wrong))
+    try:
+        with found.of_part():
+            if call is not None:
+                call()
+    finally:
+        _waiting.reset(token)
+    with found.of_part():
+        refuse(wrong)
+    found.refuse()
+
+
+def end_reading() -> None:
+    """Raise the faults of whole numbers, as all other arguments are read now."""
+    refuse(_waiting.get())
 
 
 def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[..., Any]:
@@ -76,9 +107,13 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
 
     @wraps(function)
     def public(*args: Any, **values: Any) -> Any:
+        wrong: list[Fault] = []
         if counts:
-            args = *map(read, order, args), *args[len(order) :]
-            values = {each: read(each, value) for each, value in values.items()}
+            read_args = (read(*each, wrong) for each in zip(order, args, strict=False))
+            args = *read_args, *args[len(order) :]
+            values = {name: read(name, value, wrong) for name, value in values.items()}
+        if wrong:
+            refuse_last(wrong, partial(public, *args, **values) if function in _patient else None)
         if paths and any(isinstance(each, NO_PATH) for each in (*args, *values.values())):
             refuse(each for each in faults(public, args, values, NO_PATH) if each.path in paths)
         try:
@@ -90,11 +125,12 @@ def doorway(function: Callable[..., Any], room: str, name: str) -> Callable[...,
             refuse(faults(public, args, values))
             raise
 
-    def read(name: str, value: Any) -> Any:
+    def read(name: str, value: Any, wrong: list[Fault]) -> Any:
         try:
             return read_whole(name, value) if name in counts else value
         except ValueError as error:
-            raise DescriptionError.of(name, f"{error}{remedy(public)}") from None
+            wrong.append(Fault(name, f"{error}{remedy(public)}"))
+            return signature(function).parameters[name].default
 
     public.__module__, public.__qualname__ = room, name
     return _doors.setdefault(function, public)

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from stiction.analysis.slip import Outcome, cell_symbol, outcome
+from stiction.arguments import read_together
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import LAWS, Anisotropic, Law, has_state, name_of, parameters, read_law
 from stiction.friction.equivalent import Traits, like, traits
@@ -107,6 +108,7 @@ def add_sample_rate(description: Description) -> Description:
     return description._replace(run=type(description.run)(**(settings | {"sample_rate": rate})))
 
 
+@read_together
 def compare(
     description: Description | str | Path,
     laws: Sequence[Law | Mapping[str, Any] | str | Path],

@@ -217,7 +217,7 @@ class Faults:
         """Raise all errors as one, if there are any."""
         described = [error for error in self.found if isinstance(error, DescriptionError)]
         if described and len(described) == len(self.found):
-            raise DescriptionError([fault for error in described for fault in error.faults])
+            raise DescriptionError([*dict.fromkeys(x for error in described for x in error.faults)])
         lines = [*dict.fromkeys(line for each in self.found for line in str(each).splitlines())]
         if len(lines) > LISTED:
             lines = [*lines[:LISTED], f"and {len(lines) - LISTED} more faults"]

@@ -11,9 +11,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.drive.procedures import end
-from stiction.errors import STATUSES, DescriptionError, Fault, Status, echo
+from stiction.errors import STATUSES, DescriptionError, Fault, Faults, Status, echo
 from stiction.friction import has_state, states
 from stiction.result.file import SHORTEST
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
@@ -31,9 +32,11 @@ from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()
 MOST_STEPS = 100_000_000
+STAND_IN = 1.0  # s, for a duration that is not known beside other faults
 ROUNDING = 1e-12  # of a duration: a time that is nearer to the end is the end
 
 
+@read_together
 def simulate(
     slider: Slider,
     duration: Quantity | None = None,
@@ -117,19 +120,16 @@ def simulate(
     >>> run.samples["time"]
     array([0.   , 0.003, 0.02 ])
     """
-    if not isinstance(slider, Slider):
-        remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
-        if isinstance(slider, Description):
-            remedy = "st.run(description) simulates a whole description, duration and all"
-        raise DescriptionError.of("slider", f"{echo(slider)} is not a Slider; {remedy}")
-    if not isinstance(initial, Initial | None):
-        remedy = "write for example st.Initial(u_x='1 mm')"
-        raise DescriptionError.of("initial", f"{echo(initial)} is not an Initial; {remedy}")
-    if times is not None and sample_rate is not None:
-        raise DescriptionError.of("times", "take the place of sample_rate; give one of the two")
+    faults = Faults()
+    with faults.of_part():
+        refuse_strangers(slider, initial)
+    with faults.of_part():
+        if times is not None and sample_rate is not None:
+            raise DescriptionError.of("times", "take the place of sample_rate; give one of the two")
     start = initial or PAPERS
-    if duration is None:
-        duration = time_to_end(slider, start) if times is None else time_to_last(times, start)
+    with faults.of_part():
+        if duration is None and not faults.found:
+            duration = time_to_end(slider, start) if times is None else time_to_last(times, start)
     given: dict[str, Any] = {
         "duration": duration,
         "sample_rate": sample_rate,
@@ -138,9 +138,28 @@ def simulate(
         "multiscale": multiscale,
     }
     stated = {name: value for name, value in given.items() if value is not None}
-    settings = read_arguments(Settings, **stated)
+    if faults.found:
+        stated = {"duration": STAND_IN, **stated}
+    with faults.of_part():
+        settings = read_arguments(Settings, **stated)
+    faults.refuse()
     description = Description(slider, start, settings)
     return run(description, times=times, max_steps=max_steps, progress=progress)
+
+
+def refuse_strangers(slider: object, initial: object) -> None:
+    """Refuse what is not a slider, and what is not an initial state."""
+    found = []
+    if not isinstance(slider, Slider):
+        remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
+        if isinstance(slider, Description):
+            remedy = "st.run(description) simulates a whole description, duration and all"
+        found.append(Fault("slider", f"{echo(slider)} is not a Slider; {remedy}"))
+    if not isinstance(initial, Initial | None):
+        remedy = "write for example st.Initial(u_x='1 mm')"
+        found.append(Fault("initial", f"{echo(initial)} is not an Initial; {remedy}"))
+    if found:
+        raise DescriptionError(found)
 
 
 def time_to_end(slider: Slider, initial: Initial) -> float:
@@ -158,6 +177,7 @@ def time_to_end(slider: Slider, initial: Initial) -> float:
     return until - initial.time
 
 
+@read_together
 def run(
     description: Description | str | Path,
     *,
@@ -191,6 +211,7 @@ def run(
     True
     """
     description = description_of(description)
+    end_reading()
     at = times_of(description) if times is None else own_times(description, times)
     return trajectory_of(
         description, solve(description, at, max_steps=max_steps, progress=progress)

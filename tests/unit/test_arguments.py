@@ -16,7 +16,7 @@ import pytest
 from tests.docs.test_reference import public_objects
 
 import stiction as st
-from stiction.arguments import FROM_ZERO, address, doorway, is_list
+from stiction.arguments import FROM_ZERO, _patient, address, doorway, is_list
 from stiction.errors import echo
 
 mpl.use("Agg")
@@ -201,3 +201,49 @@ def test_a_session_that_raises_an_error_at_underflow_is_no_obstacle():
         for found in (st.analyse(st.measure(run, st.Sensor(noise="0.1 mN"))), st.audit(slider)):
             assert str(found)
         assert {*np.geterr().values()} == {"raise"}  # as it was
+
+
+RUN = st.simulate(PAPER, "20 s", sample_rate="1 kHz")
+RIG = st.Rig(PAPER, {"phi": "1 +- 0.5 deg"})
+TOGETHER = {  # a call with a whole number, and an argument that is refused
+    "simulate": lambda count, **wrong: st.simulate(PAPER, "1 s", max_steps=count, **wrong),
+    "run": lambda count, description=RUN.description: st.run(description, max_steps=count),
+    "compare": lambda count, laws="coulomb": st.compare(RUN.description, laws, max_steps=count),
+    "measure": lambda count, **wrong: st.measure(RUN, st.Sensor(), seed=count, **wrong),
+    "fit": lambda count, rig=RIG: st.fit(RUN, rig, simulations=count),
+    "mechanism": lambda count, rig=RIG: st.mechanism(RUN, rig, simulations=count),
+    "design": lambda count, **wrong: st.design(RIG, simulations=count, **wrong),
+    "audit": lambda count, slider=RIG: st.audit(slider, simulations=count),
+}
+REFUSED = {
+    "simulate": ({"rtol": 5.0}, "rtol"),
+    "run": ({"description": "x.toml"}, ""),
+    "compare": ({"laws": "bogus"}, "law bogus"),
+    "measure": ({"sample_rate": "1 kg"}, "sample_rate"),
+    "fit": ({"rig": PAPER}, "slider"),
+    "mechanism": ({"rig": PAPER}, "slider"),
+    "design": ({"noise": "1 kg"}, "noise"),
+    "audit": ({"slider": "x.toml"}, ""),
+}
+
+
+@pytest.mark.parametrize("name", TOGETHER)
+def test_a_wrong_whole_number_hides_no_fault_of_another_argument(name):
+    wrong, path = REFUSED[name]
+    with pytest.raises(st.DescriptionError) as error:
+        TOGETHER[name](1.5, **wrong)
+    first, second = error.value.faults
+    assert first.path.endswith(path)
+    assert "must be a whole number, is 1.5" in second.message
+
+
+@pytest.mark.parametrize("name", TOGETHER)
+def test_a_wrong_whole_number_alone_is_refused_before_the_work(name, monkeypatch):
+    """A long run would begin; each function that waits says when it has read its arguments."""
+    monkeypatch.setattr("stiction.simulation.integrate", lambda *_, **__: pytest.fail("it works"))
+    with pytest.raises(st.DescriptionError, match=r"must be a whole number, is 1.5; see help\(st"):
+        TOGETHER[name](1.5)
+
+
+def test_every_function_that_reads_its_arguments_together_is_tried():
+    assert {each.__name__ for each in _patient} == set(TOGETHER)

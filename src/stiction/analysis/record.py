@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import pi, sqrt
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
@@ -173,6 +173,8 @@ class Record(Described):
     >>> f"{record.duration:.3f} s at {record.sample_rate:.0f} Hz"
     '9.999 s at 1000 Hz'
     """
+
+    _independent: ClassVar[bool] = True
 
     time: Samples
     force: Samples

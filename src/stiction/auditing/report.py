@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.record import Record
+from stiction.arguments import end_reading, read_together
 from stiction.arrays import same_values
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
@@ -175,6 +176,7 @@ class Audit(NamedTuple):
         return write(self, path, name)
 
 
+@read_together
 def audit(
     slider: Slider | Description | Rig | str | Path,
     progress: Callable[[float], None] | None = None,
@@ -227,10 +229,12 @@ def audit(
         from stiction.inference.observation import record_from
 
         seen = record_from(record, load_of_records(rig))
+        end_reading()
         measured = compare(
             seen, rig, simulations=simulations, library=library,
             progress=lambda fraction: inform(before * fraction),
         )  # fmt: skip
+    end_reading()
     return _examine(rig, measured, lambda fraction: inform(before + (1.0 - before) * fraction))
 
 

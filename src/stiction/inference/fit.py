@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from stiction.arguments import end_reading, read_together
 from stiction.drive import ConstantVelocity
 from stiction.errors import DescriptionError, Fault
 from stiction.friction import Anisotropic, has_state
@@ -44,6 +45,7 @@ VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
 
+@read_together
 def fit(
     records: Source | Sequence[Source],
     rig: Rig | str | Path,
@@ -98,6 +100,7 @@ def fit(
     check(known, simulations)
     place = library_folder(library)
     seen = observe_all(records, known.slider, load_of_records(known))
+    end_reading()
     plan_of = plan_for(known, [each.conditions for each in seen])
     folder = None if place is None else place / f"{plan_of.key}-{seed}"
     whole = progress or silent

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from functools import lru_cache
 from importlib import import_module
 from math import ceil, hypot, inf, log2
-from typing import Annotated, Any, NamedTuple, Self
+from typing import Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -90,6 +90,8 @@ class Sensor(Described):
     >>> st.Sensor(zero="3 mN", zero_drift="0 +- 6 mN/min")
     st.Sensor(zero=0.003, zero_drift_uncertainty=0.0001)
     """
+
+    _independent: ClassVar[bool] = True
 
     gain: Number = 1.0
     gain_uncertainty: AtLeastZero = 0.0
@@ -236,6 +238,7 @@ def _split(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
         both = split_uncertain(read.get(name))
         if both is None:
             continue
+        del read[name]
         if name + OF in read:
             wrong.append(
                 Fault(name, f"has an uncertainty, and {name + OF} is another; leave out one")

@@ -58,6 +58,7 @@ else:
 T = TypeVar("T")
 LEAST, MOST = 3, 6  # letters that begin a name; names that are listed
 MISSPELT = 0.8  # likeness of two names, from which on one is the other with an error in it
+MISSING = "missing; it has no default"
 READS = "reads_parameters"  # marks constructors made by `validate`
 
 
@@ -75,6 +76,8 @@ class Described(BaseModel, metaclass=_Presented):
     model_config: ClassVar[ConfigDict] = ConfigDict(
         frozen=True, extra="forbid", arbitrary_types_allowed=True
     )
+    # whether a field can be judged without the others: then a faulty one hides no fault of theirs
+    _independent: ClassVar[bool] = False
 
     @classmethod
     def __pydantic_init_subclass__(cls, **_: Any) -> None:
@@ -99,7 +102,7 @@ class Described(BaseModel, metaclass=_Presented):
             remedy = f"write {name}({next(iter(known))}=...)"
             told = f"its values have names, {echo(unnamed[0])} has none; {remedy}"
             raise DescriptionError.of(name, told)
-        collect(name, super().__init__, known, values)
+        collect(name, super().__init__, known, values, independent=self._independent)
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse to change a field: what was derived from it would remain."""
@@ -244,15 +247,25 @@ def faulty(found: Sequence[Fault]) -> PydanticCustomError:
 
 
 def collect(
-    path: str, build: Callable[..., T], known: Iterable[str], values: Mapping[str, Any]
+    path: str,
+    build: Callable[..., T],
+    known: Iterable[str],
+    values: Mapping[str, Any],
+    *,
+    independent: bool = False,
 ) -> T:
-    """Call ``build(**values)``, turning a `ValidationError` into a `DescriptionError`."""
+    """Call ``build(**values)``, turning a `ValidationError` into a `DescriptionError`.
+
+    If fields are `independent`, those that are right are compared beside those that are not.
+    """
     try:
         return build(**values)
     except ValidationError as error:
         found = faults(error, path, known)
-    again = partial(collect, path, build, known)
-    raise DescriptionError(with_faults_of_known(found, again, known, values))
+    again = partial(collect, path, build, known, independent=independent)
+    wrong = {fault.path.removeprefix(f"{path}.").partition(".")[0] for fault in found}
+    comparable = values.keys() - wrong if independent else known
+    raise DescriptionError(with_faults_of_known(found, again, comparable, values))
 
 
 def with_faults_of_known(
@@ -263,15 +276,20 @@ def with_faults_of_known(
 ) -> list[Fault]:
     """Return the faults of values, and those of the known ones against each other.
 
-    Beside an unknown one they were not compared.
+    Beside the others they were not compared.
     """
     names = set(known)
     rest = {name: value for name, value in values.items() if name in names}
+
+    def told(fault: Fault) -> bool:
+        lacks = fault.message == MISSING and fault.path.partition(".")[2] in values
+        return lacks or fault in found
+
     if len(rest) < len(values):
         try:
             build(rest)
         except DescriptionError as error:
-            return [*found, *(each for each in error.faults if each not in found)]
+            return [*found, *(each for each in error.faults if not told(each))]
     return [*found]
 
 
@@ -305,7 +323,7 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
     limit = detail.get("ctx", {})
     match detail["type"]:
         case "missing":
-            return "missing; it has no default"
+            return MISSING
         case "extra_forbidden":
             return unknown_name("key", str(detail["loc"][-1]), known)
         case "unexpected_keyword_argument":

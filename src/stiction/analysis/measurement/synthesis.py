@@ -9,6 +9,7 @@ import numpy as np
 
 from stiction.analysis.record import Record, record_of
 from stiction.analysis.signals.spectrum import even_rate
+from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.recording.sensor import Sensor
@@ -24,6 +25,7 @@ class Sampling(Described):
     sample_rate: SampleRate = 0.0
 
 
+@read_together
 def measure(
     run: Trajectory,
     sensor: Sensor | Mapping[str, Sensor],
@@ -82,6 +84,7 @@ def measure(
     if unknown or "force" not in sensors:
         what = f"{echo(unknown[0])} is not a channel" if unknown else "the force has no sensor"
         raise ResultError(f"{what}; channels of a run: {', '.join(values)}")
+    end_reading()
     count = int(np.floor(plain.duration * rate * (1.0 + 1e-12))) + 1
     time = plain.time[0] + np.arange(count) / rate
     streams = np.random.SeedSequence(seed).spawn(len(values))

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.columns import bend_features
@@ -38,6 +39,7 @@ CLAIMED = ROTATION, STATIC, RATE_AND_STATE, LUGRE
 SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
 
 
+@read_together
 def mechanism(
     records: Source | Sequence[Source],
     rig: Rig | str | Path,
@@ -94,6 +96,7 @@ def mechanism(
         raise DescriptionError.of("phi", message)
     place = library_folder(library)
     seen = observe_all(records, known.slider, load_of_records(known))
+    end_reading()
     rivals = mechanisms(known, [each.conditions for each in seen])
     whole = progress or silent
     simulating = part(whole, 0, 10, of=8)

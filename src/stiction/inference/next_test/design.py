@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError
 from stiction.inference.columns import features_from
@@ -66,6 +67,7 @@ NOT_COMPARED = "Whether the record is like those of the rig as described is not 
 OTHER_NOISE = "the simulated tests have another noise, as given; leave it out to compare them."
 
 
+@read_together
 def design(
     rig: Rig | str | Path,
     record: Source | None = None,
@@ -139,6 +141,7 @@ def design(
         rig, read_record, of, faults, channels=channels, angles=angles, velocities=velocities,
         loads=loads, noise=noise, position_noise=position_noise, simulations=simulations,
     )  # fmt: skip
+    end_reading()
     return answer(question, place, seed, progress)
 
 

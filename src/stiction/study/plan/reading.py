@@ -4,13 +4,15 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from functools import partial
 from typing import Any
+
+from pydantic import ValidationInfo
 
 from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.names import by_new_names
 from stiction.study.plan.axes import Axis, read_axis
-from stiction.study.plan.coordinates import TAKEN
+from stiction.study.plan.coordinates import TAKEN, coordinate_faults, unit
 from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES
 from stiction.study.variables.own import FindMeasure, OwnMeasure, own_measure
 from stiction.system.description import Description
@@ -28,28 +30,27 @@ def is_description(value: Any) -> Any:
     return value
 
 
-def axes_of(value: Any) -> dict[str, Axis]:
-    """Return axes by their paths; report all of their faults at once."""
+def axes_of(value: Any, info: ValidationInfo) -> dict[str, Axis]:
+    """Return axes by their paths; report all of their faults, also with the base, at once."""
     if not isinstance(value, Mapping) or not value:
         raise ValueError("give at least one axis: the path of a parameter, and its values")
-    axes, found = {}, []
-    for path, each in value.items():
-        try:
-            axes[canonical_path(str(path))] = read_axis(each, str(path))
-        except DescriptionError as error:
-            found += [*error.at().faults]
+    axes, found = read_axes(value)
+    if "base" in info.data:  # a faulty one is not there
+        found += coordinate_faults(partial(unit, info.data["base"]), axes, seed=0)
     if found:
         raise faulty(found)
     return axes
 
 
-def readable_axes(value: Any) -> dict[str, Axis]:
-    """Return the axes without a fault of their own, by their paths."""
-    axes = {}
+def read_axes(value: Any) -> tuple[dict[str, Axis], list[Fault]]:
+    """Return the axes without a fault of their own, by their paths, and the faults of others."""
+    axes, found = dict[str, Axis](), list[Fault]()
     for path, each in value.items() if isinstance(value, Mapping) else ():
-        with suppress(DescriptionError):
+        try:
             axes[canonical_path(str(path))] = read_axis(each, str(path))
-    return axes
+        except DescriptionError as error:
+            found += error.at().faults
+    return axes, found
 
 
 def unknown_axes(tables: Mapping[str, Any], value: Any) -> Iterator[Fault]:

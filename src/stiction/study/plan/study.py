@@ -15,7 +15,7 @@ from stiction.drive.recorded.reading import Locate, locate_nothing, locator
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.names import old_method
-from stiction.study.plan.axes import Axis, axis_table
+from stiction.study.plan.axes import axis_table
 from stiction.study.plan.coordinates import (
     Coordinate,
     coordinate_faults,
@@ -31,7 +31,7 @@ from stiction.study.plan.reading import (
     axes_of,
     is_description,
     measures_of,
-    readable_axes,
+    read_axes,
     references_of,
     traces_of,
     unknown_axes,
@@ -93,6 +93,8 @@ class Study(Described):
     20
     """
 
+    _independent: ClassVar[bool] = True
+
     base: Annotated[Any, AfterValidator(is_description)]
     axes: Annotated[Any, BeforeValidator(axes_of)]
     measures: Annotated[Read[tuple[Any, ...]], BeforeValidator(measures_of)] = DEFAULT
@@ -102,11 +104,7 @@ class Study(Described):
 
     @model_validator(mode="after")
     def _can_be_laid_out(self) -> Self:
-        found = _faults_of_axes(partial(unit, self.base), self.axes, self.seed)
-        found += self._taken_names()
-        found += [] if found else self._too_large()
-        found += [] if found else self._check_endpoints()
-        if found:
+        if found := self._taken_names() or self._too_large() or self._check_endpoints():
             raise faulty(found)
         return self
 
@@ -275,11 +273,11 @@ class Study(Described):
         try:
             base = Description.from_dict(rest, find=find, locate=locate, known=waits)
         except DescriptionError as error:
-            also = _faults_of_axes(partial(stated_unit, rest), readable_axes(axes))
+            also = _faults_of_axes(partial(stated_unit, rest), axes)
             told = dict.fromkeys([*found, *error.faults, *lost, *also])
             raise DescriptionError([*told]) from None
         if found:
-            also = _faults_of_axes(partial(unit, base), readable_axes(axes))
+            also = _faults_of_axes(partial(unit, base), axes)
             raise DescriptionError([*found, *also])
         find_measure = find_measure or measures_in_folder(Path())
         measures = with_functions(own.get("measures", DEFAULT), find_measure)
@@ -345,10 +343,9 @@ class Study(Described):
         return _from_text, (self.to_json(),)
 
 
-def _faults_of_axes(
-    unit_at: Callable[[str], str | None], axes: Mapping[str, Axis], seed: int = 0
-) -> list[Fault]:
-    found = coordinate_faults(unit_at, axes, seed)
+def _faults_of_axes(unit_at: Callable[[str], str | None], axes: Any) -> list[Fault]:
+    """Return the faults of those axes that are readable."""
+    found = coordinate_faults(unit_at, read_axes(axes)[0], seed=0)
     return [Fault(f"axes.{fault.path}", fault.message) for fault in found]
 
 
