@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from stiction.errors import ResultError, argument
+from stiction.errors import Instruction, ResultError
 from stiction.recording.stored import read_stored, root_attributes
 from stiction.result.attributes import SEAL, TIMES, intact_description, intact_times
 from stiction.result.file import (
@@ -18,6 +18,7 @@ from stiction.result.file import (
     LayoutError,
     is_netcdf,
     read_tables,
+    repair_of,
 )
 from stiction.result.fit_file import refuse_damaged_fit
 from stiction.simulation import run
@@ -86,7 +87,7 @@ class Check(NamedTuple):
         if self.repaired:
             lines.append("It was computed again.")
         elif self.damaged:
-            lines.append(f"Compute it again with: stiction check {argument(self.path)} --repair")
+            lines.append(f"Compute it again with: {repair_of(self.path)}")
         elif not self.checked:
             lines.append("There are no checksums: only what is missing or cut off would show.")
         if self.pending:
@@ -137,7 +138,8 @@ def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Che
 
 def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     if path.suffix.lower() in (".toml", ".csv", ".parquet", ".mat") and os.path.isfile(path):
-        use = use_of(path, RESULT) or "check reads what stiction run or stiction sweep wrote"
+        writers = Instruction("stiction run or stiction sweep", "run.save(path) or st.sweep")
+        use = use_of(path, RESULT) or f"check reads what {writers} wrote"
         raise ResultError(f"{path}: a {path.suffix} file is not a result; {use}")
     attributes = root_attributes(path) if os.path.isfile(path) else None
     if attributes is not None and RECORD_KIND in attributes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from contextvars import ContextVar
 from enum import Enum
 from pathlib import Path
 from reprlib import Repr
@@ -79,6 +80,47 @@ def without_middle(text: str, most: int) -> str:
     """Return a text of at most so many characters, without its middle."""
     half = (most - 3) // 2
     return text if len(text) <= most else f"{text[:half]}...{text[-half:]}"
+
+
+_terminal: ContextVar[bool] = ContextVar("_terminal", default=False)
+
+
+@contextmanager
+def in_terminal() -> Iterator[None]:
+    """Write commands in messages, for who types commands; others read Python."""
+    token = _terminal.set(True)
+    try:
+        yield
+    finally:
+        _terminal.reset(token)
+
+
+class Instruction(NamedTuple):
+    """What a message tells its reader to do: put it into an f-string.
+
+    Parameters
+    ----------
+    command : str
+        In a terminal.
+    call : str
+        In Python.
+
+    Examples
+    --------
+    >>> make = Instruction("write one with 'stiction run'", "run.save(path) writes one")
+    >>> print(make)
+    run.save(path) writes one
+    >>> with in_terminal():
+    ...     print(make)
+    write one with 'stiction run'
+    """
+
+    command: str
+    call: str
+
+    def __str__(self) -> str:
+        """Return what this reader types."""
+        return self.command if _terminal.get() else self.call
 
 
 class StictionError(Exception):

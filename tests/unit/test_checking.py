@@ -159,7 +159,7 @@ def test_what_is_taken_away_is_made_again(store, tmp_path, gone):
     path = shutil.copytree(store, tmp_path / "a.zarr")
     shutil.rmtree(path / gone) if (path / gone).is_dir() else (path / gone).unlink()
     for door in (st.open_study, st.map, lambda path: st.sweep(STUDY, path)):
-        with pytest.raises(st.ResultError, match=r"is damaged: .*stiction check"):
+        with pytest.raises(st.ResultError, match=r"is damaged: .*st\.check\(.*, repair=True\)"):
             door(path)
     found = st.check(path)
     assert not found.ok
@@ -181,7 +181,7 @@ def test_metadata_that_no_array_can_have_are_told_and_made_again(
     about = json.loads((path / array / "zarr.json").read_text())
     (path / array / "zarr.json").write_text(json.dumps({**about, key: value}))
     for door in (st.open_study, st.map, lambda path: st.sweep(STUDY, path)):
-        with pytest.raises(st.ResultError, match=r"is damaged: .*stiction check"):
+        with pytest.raises(st.ResultError, match=r"is damaged: .*st\.check\(.*, repair=True\)"):
             door(path)
     assert st.check(path, repair=True).repaired
     assert st.open_study(path).load().identical(xr.open_zarr(store).load())
@@ -210,7 +210,8 @@ def test_a_flipped_bit_among_values_is_told_when_they_are_read(store, tmp_path, 
         name = chunk.relative_to(store).as_posix()
         path = shutil.copytree(store, tmp_path / name.replace("/", "-"))
         flip(path / name)
-        with pytest.raises(st.ResultError, match=rf": {name}; .*check {path} --repair$") as told:
+        again = rf"st\.check\({str(path)!r}, repair=True\)$"
+        with pytest.raises(st.ResultError, match=rf": {name}; .*{again}") as told:
             pickle.loads(pickle.dumps(st.open_study(path))).load()  # as another process reads it
         assert len(str(told.value).splitlines()) == 1
         with pytest.raises(SystemExit) as end:
@@ -361,8 +362,8 @@ def test_what_cannot_be_checked_is_said_without_the_words_of_a_library(tmp_path)
     (tmp_path / "text.nc").write_text("time,force")
     (tmp_path / "folder").mkdir()
     for name, what in (
-        ("text.nc", "not a NetCDF file; write one with 'stiction run'"),
-        ("folder", "is not the store of a study; make one with 'stiction sweep'$"),
+        ("text.nc", r"not a NetCDF file; run.save\(path\) writes one"),
+        ("folder", r"is not the store of a study; st.sweep\(study, path\) makes one$"),
     ):
         with pytest.raises(st.ResultError, match=what):
             st.check(tmp_path / name)
@@ -400,5 +401,5 @@ def test_a_stored_record_is_no_damaged_run(tmp_path, capsys):
 def test_somebody_else_s_netcdf_is_no_damaged_run(tmp_path):
     path = tmp_path / "weather.nc"
     xr.Dataset({"t2m": ("time", np.zeros(4))}).to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(st.ResultError, match="not a result of 'stiction run'"):
+    with pytest.raises(st.ResultError, match="not the result of a run"):
         st.check(path)

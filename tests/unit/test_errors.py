@@ -150,3 +150,29 @@ def test_an_argument_that_a_message_suggests_is_no_option_to_everybody():
         if option.search(text) and not re.search("stiction (fit|run|sweep)|uv run|^ --", text)
     ]
     assert wrong == []
+
+
+COMMAND = re.compile(r"\bstiction (run|sweep|init|map|plot|analyse|audit|fit|check|design)\b")
+REPORTS = ("auditing", "linear_stability", "explorer")  # are read on paper and on a page, too
+
+
+def commands_in(tree: ast.AST) -> list[str]:
+    """Return the texts of a module that name a command to everybody."""
+    calls = [x for x in ast.walk(tree) if isinstance(x, ast.Call)]
+    made = [x for x in calls if getattr(x.func, "id", "") == "Instruction"]
+    for_typists = {id(each) for call in made for each in ast.walk(call.args[0])}
+    texts = [x for x in ast.walk(tree) if isinstance(x, ast.Constant) and id(x) not in for_typists]
+    own = {*texts_of(tree)}
+    return [x.value for x in texts if x.value in own and COMMAND.search(x.value)]
+
+
+def test_a_message_names_a_command_only_to_those_who_type_commands():
+    """In Python, a missing file was to be written "with 'stiction run'"."""
+    source = Path(st.__file__).parent
+    files = (
+        x for x in source.rglob("*.py") if not {*x.relative_to(source).parts} & {"cli", *REPORTS}
+    )
+    found = {text for x in files for text in commands_in(ast.parse(x.read_text(encoding="utf-8")))}
+    # these name the function of Python beside the command; ready studies have none
+    both = re.compile(r"st\.Rig|export\(\.\.\.\)|in a terminal")
+    assert [text for text in found if not both.search(text)] == []

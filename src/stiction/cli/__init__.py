@@ -18,6 +18,7 @@ from stiction.errors import (
     LONGEST_MESSAGE,
     LONGEST_PATH,
     StictionError,
+    in_terminal,
     visible,
     without_middle,
 )
@@ -99,7 +100,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     errors = Console(stderr=True, soft_wrap=True, emoji=False)
     words = join_negative_values(sys.argv[1:] if arguments is None else arguments)
     try:
-        with suggest(as_option):
+        with suggest(as_option), in_terminal():
             code = app(words, result_action="return_value", print_error=False, exit_on_error=False)
         if sys.stdout is not None:
             sys.stdout.flush()

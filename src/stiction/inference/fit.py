@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.arguments import end_reading, read_together
 from stiction.drive import ConstantVelocity
-from stiction.errors import DescriptionError, Fault
+from stiction.errors import DescriptionError, Fault, Instruction
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
@@ -37,6 +37,7 @@ from stiction.inference.simulated.library import (
 )
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
+from stiction.inference.suitability import ANALYSE
 from stiction.recording.part import begin_and_end
 from stiction.system.slider import Slider
 
@@ -149,8 +150,9 @@ def law_faults(law: Any) -> Iterator[Fault]:
     lack, why = f"it has no coefficient {VARIED}", ""
     if has_state(inner):
         lack = "it has internal states"
+        odds = Instruction("stiction fit --mechanism", "st.mechanism")
         why = (
-            ". With such a law the odds of mechanisms (`stiction fit --mechanism`) say "
+            f". With such a law the odds of mechanisms (`{odds}`) say "
             "whether the record is like rate and state or LuGre"
         )
     yield Fault(
@@ -208,7 +210,7 @@ def compare(
         "simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS,
         f" no longer than {LONGEST_CYCLE:g} times the record's",
         "the priors, and stiffness and velocity, which decide how long a cycle lasts, and whether "
-        "the record is stick-slip at all: `stiction analyse` tells",
+        f"the record is stick-slip at all: `{ANALYSE}` tells",
     )  # fmt: skip
     observed = np.concatenate([each.features for each in seen])
     count = 1 + len(seen)

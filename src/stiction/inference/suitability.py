@@ -20,7 +20,7 @@ from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK, UNDETERMINED
 from stiction.analysis.record import Record
 from stiction.arrays import Floats
-from stiction.errors import ResultError
+from stiction.errors import Instruction, ResultError
 from stiction.inference.cycles import LEAST_CYCLES, Cycles
 from stiction.recording.part import begin_and_end
 from stiction.recording.strokes import by_strokes
@@ -28,6 +28,7 @@ from stiction.system.slider import Slider
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
+ANALYSE = Instruction("stiction analyse", "st.analyse")
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 IN_NOISE = {"hidden", "quick_falls"}  # evidence of swings that noise hides
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
@@ -59,12 +60,12 @@ def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
     if regime.kind in NO_CYCLES:
         raise ResultError(
             f"{name} shows no stick-slip, of which a fit needs {LEAST_CYCLES} cycles: it is "
-            f"{regime.kind}; `stiction analyse` tells what that says of friction"
+            f"{regime.kind}; `{ANALYSE}` tells what that says of friction"
         )
     if regime.kind == UNDETERMINED and IN_NOISE & regime.evidence.keys():
         raise ResultError(
             f"noise hides the cycles of {name}, of which a fit needs {LEAST_CYCLES}: measure with "
-            "less noise; `stiction analyse` tells what is seen of them"
+            f"less noise; `{ANALYSE}` tells what is seen of them"
         )
 
 

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.errors import ResultError, argument, echo
+from stiction.errors import Instruction, ResultError, argument, echo
 from stiction.machine import shortage
 from stiction.result.attributes import DESCRIPTION, SEAL
 from stiction.result.table import STICKS, VARIABLES, Column, ColumnTable
@@ -41,11 +41,20 @@ RESULT_KIND = "stiction_result"  # attribute of the file of a run; its value: th
 RECORD_KIND = "stiction_record"  # the same of a stored record
 FIT_KIND = "stiction_fit"  # and of the file of a fit
 LAYOUT = 1  # of the file of a run; up to version 0.4 it states none
+MAKE = Instruction("write one with 'stiction run'", "run.save(path) writes one")
 OTHER_KINDS = {
-    RECORD_KIND: "is a record, not the result of a run; stiction analyse {path} and "
-    "st.read_record read it, whose export(...) writes a table",
-    FIT_KIND: "is the file of a fit; xarray.open_dataset reads it, whose to_dataframe() is a "
-    "table, and stiction check {path} looks for damage",
+    RECORD_KIND: Instruction(
+        "is a record, not the result of a run; stiction analyse {path} and "
+        "st.read_record read it, whose export(...) writes a table",
+        "is a record, not the result of a run; st.analyse({text}) and st.read_record({text}) read "
+        "it, whose export(...) writes a table",
+    ),
+    FIT_KIND: Instruction(
+        "is the file of a fit; xarray.open_dataset reads it, whose to_dataframe() is a table, and "
+        "stiction check {path} looks for damage",
+        "is the file of a fit; xarray.open_dataset reads it, whose to_dataframe() is a table, and "
+        "st.check({text}) looks for damage",
+    ),
 }
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
@@ -95,13 +104,20 @@ def size_of(*tables: ColumnTable) -> int:
     return sum(column.values.nbytes for each in tables for column in each.columns.values())
 
 
+def repair_of(path: str | Path) -> Instruction:
+    """Return what computes damaged parts of a file or a store again."""
+    return Instruction(
+        f"stiction check {argument(path)} --repair", f"st.check({str(path)!r}, repair=True)"
+    )
+
+
 class DamageError(ResultError):
     """A result has changed since it was written; `lost` tells where."""
 
     def __init__(self, path: str | Path, lost: Sequence[str]) -> None:
         """Name the first places, and what computes the result again."""
         self.lost = ", ".join(lost[:3])
-        again = f"compute it again with: stiction check {argument(path)} --repair"
+        again = f"compute it again with: {repair_of(path)}"
         super().__init__(f"{path}: is damaged, or was changed: {self.lost}; {again}")
         self._made_of = path, lost
 
@@ -127,7 +143,7 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
         use = use_of(path, RESULT) or study
         raise ResultError(f"{path}: is a folder, not the file of one run; {use}")
     if not os.path.isfile(path):
-        use = use_of(path) or "write one with 'stiction run'"
+        use = use_of(path) or str(MAKE)
         raise ResultError(f"{path}: no such file; {use}")
     with opening(path, UNREADABLE):
         _refuse_what_is_no_netcdf(path)
@@ -154,19 +170,19 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
         what = f"it lacks {', '.join(lacking)}"
         if lacking == [*ENDS]:
             what += ", as what run.data.to_netcdf(...) writes; run.save(...) writes a whole result"
-        raise ResultError(f"{path}: not a result of 'stiction run'; {what}{age(about)}")
+        raise ResultError(f"{path}: not the result of a run; {what}{age(about)}")
     wrong = [*_wrong(data, "time", ["time", *VARIABLES]), *_wrong(sticks, "stick", STICKS)]
     wrong += [f"{name} is not text" for name in TEXTS if not isinstance(about.get(name), str)]
     if wrong:
-        raise ResultError(f"{path}: not a result of 'stiction run'; {'; '.join(wrong)}{age(about)}")
+        raise ResultError(f"{path}: not the result of a run; {'; '.join(wrong)}{age(about)}")
     return data, sticks
 
 
 def _refuse_what_is_no_netcdf(path: str | Path) -> None:
     """Refuse a file that is not NetCDF, such as a measured record."""
     if not is_netcdf(path):
-        record = "a measured record is read by 'stiction analyse' and st.read_record"
-        use = use_of(path, RESULT) or f"write one with 'stiction run'; {record}"
+        reader = Instruction("'stiction analyse'", "st.read_record")
+        use = use_of(path, RESULT) or f"{MAKE}; a measured record is read by {reader}"
         raise ResultError(f"{path}: not a NetCDF file; {use}")
 
 
@@ -180,7 +196,8 @@ def refuse_kinds(path: str | Path, attributes: Iterable[str], kinds: Iterable[st
     """Refuse a file with such attributes (their names suffice) that is of one of these kinds."""
     for kind in kinds:
         if kind in attributes:
-            raise ResultError(f"{path}: {OTHER_KINDS[kind].format(path=argument(path))}")
+            said = str(OTHER_KINDS[kind]).format(path=argument(path), text=repr(str(path)))
+            raise ResultError(f"{path}: {said}")
 
 
 def refuse_layout(path: str | Path, attributes: Mapping[str, Any], kind: str, layout: int) -> None:

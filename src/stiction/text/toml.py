@@ -12,7 +12,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, Fault, Instruction, echo
 from stiction.storage.kinds import DESCRIPTION, STUDY, use_of
 from stiction.text.paths import keys_of, with_changes
 from stiction.text.validation import unknown_name
@@ -22,7 +22,9 @@ LARGEST = 2**24  # bytes of a description: a table of a million values
 DEEPEST = 16  # tables and lists inside one another; descriptions have five
 TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; descriptions are not"
 BITS = 64  # of an integer, as TOML has it
-WRITE = "write a description with 'stiction init'"
+WRITE = Instruction(
+    "write a description with 'stiction init'", "st.init(path) writes a description"
+)
 AT_LINE = re.compile(r"\(at line (\d+), ")
 MISWRITTEN = {  # a number of other programs or languages, and how TOML has it
     re.compile(r"=\s*[-+]?\d+,\d"): "the decimal sign is a point: 0.4",
@@ -95,7 +97,7 @@ def _encoding(content: bytes) -> str:
     """Return what to do with a file that is not UTF-8."""
     if content.startswith(UTF_16) or 0 in content[:2]:
         return "it is UTF-16, as Windows programs write it: save it in UTF-8"
-    return WRITE if 0 in content else "if a text editor shows it, save it in UTF-8"
+    return str(WRITE) if 0 in content else "if a text editor shows it, save it in UTF-8"
 
 
 def _remedy(error: ValueError, text: str) -> str:
@@ -219,7 +221,8 @@ def read_slider(
 def _strange(name: str, readers: Mapping[str, Reader]) -> str:
     """Return what is wrong with a table that has no reader."""
     if name in OF_STUDIES:
-        return "is a table of a study, which 'stiction sweep' runs; take it out for a single run"
+        reader = Instruction("'stiction sweep' runs", "st.Study.from_toml reads")
+        return f"is a table of a study, which {reader}; take it out for a single run"
     return unknown_name("table", name, readers)
 
 

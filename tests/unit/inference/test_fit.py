@@ -634,7 +634,7 @@ def test_other_laws_are_refused_with_the_reason(rig, law, lacks):
         check(rig._replace(slider=rig.slider.replace(friction=law)))
     assert f"{type(law).__name__} is not fitted, as {lacks}" in str(error.value)
     assert "power-law-weakening, stribeck, two-exponentials, or one of your own" in str(error.value)
-    remedy = "`stiction fit --mechanism`) say whether the record is like rate and state or LuGre"
+    remedy = "`st.mechanism`) say whether the record is like rate and state or LuGre"
     assert (remedy in str(error.value)) is (lacks == "it has internal states")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
-from stiction.errors import Faults, ResultError
+from stiction.errors import Faults, Instruction, ResultError
 from stiction.inference.columns import features_from
 from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for
 from stiction.inference.learning import calibration
@@ -185,7 +185,7 @@ def must_slip(present: Conditions | None) -> Conditions:
     if present is None:
         raise ResultError(
             "in the middle of its priors this rig does not stick and slip; a design needs cycles. "
-            "Drive it more slowly, or see `stiction audit`"
+            f"Drive it more slowly, or see `{Instruction('stiction audit', 'st.audit')}`"
         )
     return present
 

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import ResultError, argument
+from stiction.errors import ResultError
+from stiction.result.file import repair_of
 from stiction.storage import checksums
 
 ROOT, SEAL, DESCRIPTION = "zarr.json", "checksums", "description"
@@ -48,7 +49,7 @@ def broken_files(folder: Path) -> list[str]:
 def damage(path: str | Path, files: Sequence[object]) -> ResultError:
     """Return the error for a damaged store."""
     names = ", ".join(map(str, files[:3])) + (f" and {len(files) - 3} more" * (len(files) > 3))
-    again = f"compute it again with: stiction check {argument(path)} --repair"
+    again = f"compute it again with: {repair_of(path)}"
     lost = {ROOT, DESCRIPTION} <= {*map(str, files)}
     return ResultError(f"{path}: is damaged: {names}; {ANEW if lost else again}")
 

@@ -20,7 +20,7 @@ import numpy as np
 
 from stiction import errors
 from stiction.arrays import xr
-from stiction.errors import ResultError
+from stiction.errors import Instruction, ResultError
 from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
 from stiction.storage.files import place, reason, workshop
 from stiction.storage.foreign import opening, refuse_links, refuse_size
@@ -37,6 +37,7 @@ if TYPE_CHECKING:
 
 FORMATS = (1, 2)  # of readable stores
 CHECKED = 2  # the format that is written, the first with checksums
+MAKE = Instruction("make one with 'stiction sweep'", "st.sweep(study, path) makes one")
 PENDING = -1
 MOST_TASKS = 256 * MANY_TASKS  # that a store may claim: each block is visited
 # ends of a run in a study: those of any run, refused before it began, or an error of the program
@@ -302,13 +303,13 @@ def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
 
     if not os.path.isdir(path):
         what = "a file, not the store of a study" if os.path.isfile(path) else "no such store"
-        use = use_of(path, STORE) or "make one with 'stiction sweep'"
+        use = use_of(path, STORE) or MAKE
         raise ResultError(f"{path}: {what}; {use}")
     refuse_links(path)
     was = (Path(path) / STATUS / seal.ROOT).is_file()
     what = f"is damaged: {seal.ROOT}; {seal.ANEW}" if was else "is not the store of a study"
     if not was and not (Path(path) / seal.ROOT).is_file():
-        raise ResultError(f"{path}: {what}; make one with 'stiction sweep'")
+        raise ResultError(f"{path}: {what}; {MAKE}")
     with opening(path, what):  # zarr's format 2 may contain pickles
         group = zarr.open_group(Path(path), mode=mode, zarr_format=3, use_consolidated=False)
         known = group.attrs.get("format")
