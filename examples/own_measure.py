@@ -6,7 +6,7 @@ import stiction as st
 
 slider = st.presets.nakano_popov_2020()
 study = st.Study(
-    base=st.Description(slider, st.Initial(), st.Settings(duration="2 s")),
+    base=st.Description.of(slider, "2 s"),
     axes={"phi": st.Grid("1 deg", "3 deg", 3)},
     measures=["peak_force", friction_heat, longest_stick],
 )

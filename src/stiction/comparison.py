@@ -49,7 +49,7 @@ class Comparison(Report, dict[str, Trajectory]):
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> base = st.Description.of(slider, "20 ms")
     >>> found = st.compare(base, ["coulomb"])
     >>> found.ok, found["coulomb"].slider.law.mu_0
     (True, 0.15)
@@ -148,7 +148,7 @@ def compare(
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> base = st.Description.of(slider, "20 ms")
     >>> list(st.compare(base, ["coulomb", "lugre"]))
     ['exponential-weakening', 'coulomb', 'lugre']
     """

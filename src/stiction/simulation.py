@@ -13,8 +13,7 @@ from numpy.typing import ArrayLike
 
 from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
-from stiction.drive.procedures import end
-from stiction.errors import STATUSES, DescriptionError, Fault, Faults, Status, echo
+from stiction.errors import STATUSES, DescriptionError, Fault, Faults, Status
 from stiction.friction import has_state, states
 from stiction.result.file import SHORTEST
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
@@ -22,17 +21,15 @@ from stiction.solver.accuracy import tolerance
 from stiction.solver.compilation.refusal import REFUSED, reasons
 from stiction.solver.integrate import Room, Solution, integrate
 from stiction.storage.version import own_version
-from stiction.system.description import Description, Settings, description_of
+from stiction.system.description import STAND_IN, Description, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.text.samples import as_numbers, samples_to_si
 from stiction.text.units import TIME, Quantity, in_words, unit_on
-from stiction.text.validation import read_arguments
 from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()
 MOST_STEPS = 100_000_000
-STAND_IN = 1.0  # s, for a duration that is not known beside other faults
 ROUNDING = 1e-12  # of a duration: a time that is nearer to the end is the end
 
 
@@ -122,59 +119,23 @@ def simulate(
     """
     faults = Faults()
     with faults.of_part():
-        refuse_strangers(slider, initial)
-    with faults.of_part():
         if times is not None and sample_rate is not None:
             raise DescriptionError.of("times", "take the place of sample_rate; give one of the two")
-    start = initial or PAPERS
     with faults.of_part():
-        if duration is None and not faults.found:
-            duration = time_to_end(slider, start) if times is None else time_to_last(times, start)
+        if duration is None and times is not None:
+            duration = STAND_IN  # beside a fault of the times
+            duration = time_to_last(times, initial if isinstance(initial, Initial) else PAPERS)
     given: dict[str, Any] = {
-        "duration": duration,
         "sample_rate": sample_rate,
         "rtol": rtol,
         "regularisation": regularisation,
         "multiscale": multiscale,
     }
     stated = {name: value for name, value in given.items() if value is not None}
-    if faults.found:
-        stated = {"duration": STAND_IN, **stated}
     with faults.of_part():
-        settings = read_arguments(Settings, **stated)
+        description = Description.of(slider, duration, initial=initial, **stated)
     faults.refuse()
-    description = Description(slider, start, settings)
     return run(description, times=times, max_steps=max_steps, progress=progress)
-
-
-def refuse_strangers(slider: object, initial: object) -> None:
-    """Refuse what is not a slider, and what is not an initial state."""
-    found = []
-    if not isinstance(slider, Slider):
-        remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
-        if isinstance(slider, Description):
-            remedy = "st.run(description) simulates a whole description, duration and all"
-        found.append(Fault("slider", f"{echo(slider)} is not a Slider; {remedy}"))
-    if not isinstance(initial, Initial | None):
-        remedy = "write for example st.Initial(u_x='1 mm')"
-        found.append(Fault("initial", f"{echo(initial)} is not an Initial; {remedy}"))
-    if found:
-        raise DescriptionError(found)
-
-
-def time_to_end(slider: Slider, initial: Initial) -> float:
-    """Return how long the programs of drive and load go on from the start of a run, s."""
-    until = end(slider.motion, slider.load)
-    if until is None:
-        message = (
-            "missing; write for example st.simulate(slider, '5 s'); only a program of drive or "
-            "load whose last piece ends has one by itself"
-        )
-        raise DescriptionError.of("duration", message)
-    if not until > initial.time:
-        message = f"missing; the programs end at {until:g} s, where the run starts"
-        raise DescriptionError.of("duration", message)
-    return until - initial.time
 
 
 @read_together

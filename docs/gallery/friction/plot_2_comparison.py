@@ -8,8 +8,6 @@ friction. The rows at the bottom are the share of time at true rest.
 
 import stiction as st
 
-base = st.Description(
-    st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="5 s", sample_rate="20 kHz")
-)
+base = st.Description.of(st.presets.nakano_popov_2020(), "5 s", sample_rate="20 kHz")
 laws = ["coulomb", "lugre", "rate-and-state-ageing"]
 st.compare(base, laws).plot()

@@ -11,9 +11,7 @@ import matplotlib.pyplot as plt
 import stiction as st
 from stiction.friction import LAWS, has_state
 
-base = st.Description(
-    st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="5 s", sample_rate="500 Hz")
-)
+base = st.Description.of(st.presets.nakano_popov_2020(), "5 s", sample_rate="500 Hz")
 runs = st.compare(base, [name for name in LAWS if name != "exponential-weakening"])
 grain = st.laws.Anisotropic(law=base.slider.law, ratio=1.5)
 runs["with a grain"] = st.run(base._replace(slider=base.slider.replace(friction=grain)))

@@ -10,7 +10,7 @@ from tempfile import mkdtemp
 
 import stiction as st
 
-base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="6 s"))
+base = st.Description.of(st.presets.nakano_popov_2020(), "6 s")
 study = st.Study(
     base=base,
     axes={

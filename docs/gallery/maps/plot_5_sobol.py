@@ -15,7 +15,7 @@ from scipy.stats import spearmanr
 
 import stiction as st
 
-base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 s"))
+base = st.Description.of(st.presets.nakano_popov_2020(), "10 s")
 study = st.Study(
     base=base,
     axes={

@@ -10,7 +10,7 @@ from tempfile import mkdtemp
 
 import stiction as st
 
-base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 s"))
+base = st.Description.of(st.presets.nakano_popov_2020(), "10 s")
 study = st.protocols.yaw_sweep(base, [f"{phi} deg" for phi in (0.5, 1, 2, 3, 4, 6, 8, 10, 12)])
 store = mkdtemp() + "/yaw.zarr"
 st.sweep(study, store)

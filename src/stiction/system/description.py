@@ -15,7 +15,7 @@ from stiction.drive import read_drive, read_load
 from stiction.drive.procedures import end
 from stiction.drive.program import refuse_idle_base
 from stiction.drive.recorded.reading import Locate, locate_nothing, locator, with_rows
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, Fault, Faults, echo
 from stiction.friction import law_table, read_law
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.machine import shortage
@@ -26,9 +26,10 @@ from stiction.system.writing import describe, parameter_table, slider_tables
 from stiction.text.paths import canonical
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_changed, read_json, toml_text
-from stiction.text.units import Duration, Number, SampleRate, Velocity
-from stiction.text.validation import Described, validate
+from stiction.text.units import Duration, Number, Quantity, SampleRate, Velocity
+from stiction.text.validation import Described, read_arguments, validate
 
+STAND_IN = 1.0  # s, for a duration that is not known beside other faults
 SAMPLE = 300.0  # bytes of memory per sample, for all columns and intermediate arrays
 Smoothing = Annotated[Velocity, Field(ge=1e-11)]  # below, steps resolve a thin layer
 
@@ -107,7 +108,7 @@ class Description(NamedTuple):
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> description = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> description = st.Description(slider, st.Initial(u_x="1 mm"), st.Settings(duration="20 ms"))
     >>> st.run(description).status.ok
     True
     """
@@ -115,6 +116,53 @@ class Description(NamedTuple):
     slider: Slider
     initial: Initial
     run: Settings
+
+    @classmethod
+    def of(
+        cls,
+        slider: Slider,
+        duration: Quantity | None = None,
+        *,
+        initial: Initial | None = None,
+        **settings: Any,
+    ) -> Self:
+        """Return the description of a run, as `stiction.simulate` takes it.
+
+        Parameters
+        ----------
+        slider : Slider
+            The system.
+        duration : float or str, optional
+            How long the run lasts, s; until the programs of drive and load end, if they do.
+        initial : Initial, optional
+            The state to start from; by default the paper's.
+        **settings
+            Further ones of `Settings`: sample_rate, rtol, multiscale, regularisation, smoothing.
+
+        Raises
+        ------
+        DescriptionError
+            With every fault at once.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> st.Description.of(st.presets.nakano_popov_2020(), "20 ms", rtol=1e-4).run.rtol
+        0.0001
+        """
+        faults = Faults()
+        with faults.of_part():
+            refuse_strangers(slider, initial)
+        start = initial or Initial()
+        with faults.of_part():
+            if duration is None and not faults.found:
+                duration = time_to_end(slider, start)
+        if faults.found and duration is None:
+            duration = STAND_IN
+        with faults.of_part():
+            read = read_arguments(Settings, duration=duration, **settings)
+        faults.refuse()
+        return cls(slider, start, read)
 
     def _repr_html_(self) -> str:
         table = as_html([Section("Description", [], parameter_table(self._tables()))])
@@ -217,6 +265,36 @@ class Description(NamedTuple):
         return json.dumps(self.to_dict())
 
 
+def refuse_strangers(slider: object, initial: object) -> None:
+    """Refuse what is not a slider, and what is not an initial state."""
+    found = []
+    if not isinstance(slider, Slider):
+        remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
+        if isinstance(slider, Description):
+            remedy = "st.run(description) simulates a whole description, duration and all"
+        found.append(Fault("slider", f"{echo(slider)} is not a Slider; {remedy}"))
+    if not isinstance(initial, Initial | None):
+        remedy = "write for example st.Initial(u_x='1 mm')"
+        found.append(Fault("initial", f"{echo(initial)} is not an Initial; {remedy}"))
+    if found:
+        raise DescriptionError(found)
+
+
+def time_to_end(slider: Slider, initial: Initial) -> float:
+    """Return how long the programs of drive and load go on from the start of a run, s."""
+    until = end(slider.motion, slider.load)
+    if until is None:
+        message = (
+            "missing; write for example '5 s'; only a program of drive or load whose last piece "
+            "ends has one by itself"
+        )
+        raise DescriptionError.of("duration", message)
+    if not until > initial.time:
+        message = f"missing; the programs end at {until:g} s, where the run starts"
+        raise DescriptionError.of("duration", message)
+    return until - initial.time
+
+
 def mechanical_table(slider: Slider) -> dict[str, Any]:
     """Return the table [slider] of a description, with SI numbers."""
     names = {*slider.own_fields()} - {
@@ -257,7 +335,7 @@ def description_of(source: Description | str | Path) -> Description:
         If it is neither.
     """
     if isinstance(source, Slider):
-        remedy = "make it one: st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
+        remedy = "make it one: st.Description.of(slider, '5 s')"
         raise DescriptionError.of("description", f"a Slider has no duration; {remedy}")
     return source if isinstance(source, Description) else Description.from_toml(source)
 

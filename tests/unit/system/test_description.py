@@ -258,3 +258,31 @@ def test_a_duration_is_missing_only_where_no_program_tells_it(drive, load, paths
     with pytest.raises(st.DescriptionError) as found:
         st.Description.from_toml(text + more)
     assert [fault.path for fault in found.value.faults] == paths
+
+
+def test_a_slider_becomes_the_description_that_simulate_runs():
+    slider = st.presets.nakano_popov_2020()
+    start = st.Initial(u_x="1 mm")
+    made = st.Description.of(slider, "20 ms", initial=start, rtol=1e-4, sample_rate="1 kHz")
+    settings = st.Settings(duration=0.02, rtol=1e-4, sample_rate=1e3)
+    assert made == st.Description(slider, start, settings)
+    run = st.simulate(slider, "20 ms", initial=start, rtol=1e-4, sample_rate="1 kHz")
+    assert run.description == made
+    assert st.run(made) == run
+
+
+def test_without_a_duration_it_ends_with_its_program():
+    p = st.protocols
+    pieces = [p.Constant(duration="1 s"), p.Hold("2 s")]
+    drive = p.DriveProgram(velocity="1 mm/s", program=pieces)
+    slider = st.presets.nakano_popov_2020().replace(drive=drive)
+    assert st.Description.of(slider, initial=st.Initial(time="0.5 s")).run.duration == 2.5
+    with pytest.raises(st.DescriptionError, match=r"^duration: missing; write for example '5 s'"):
+        st.Description.of(st.presets.nakano_popov_2020())
+
+
+def test_all_faults_of_its_arguments_are_told_at_once():
+    with pytest.raises(st.DescriptionError) as caught:
+        st.Description.of("slider.toml", initial=5, rtol=2.0, sampl_rate="1 kHz")
+    told = [fault.path for fault in caught.value.faults]
+    assert told == ["slider", "initial", "rtol", "sampl_rate"]

@@ -113,7 +113,7 @@ def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="6 s"))
+    >>> base = st.Description.of(slider, "6 s")
     >>> done = st.sweep(st.protocols.yaw_sweep(base, ["1 deg", "12 deg"]), "angles.zarr")
     >>> found = st.analysis.apparent_friction(st.open_study("angles.zarr"), base.slider)
     >>> found.peak.round(3).tolist()

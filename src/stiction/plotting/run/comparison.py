@@ -90,7 +90,7 @@ def plot_comparison(
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> base = st.Description.of(slider, "20 ms")
     >>> axes = st.plotting.plot_comparison(st.compare(base, ["coulomb"]))
     """
     if not runs:

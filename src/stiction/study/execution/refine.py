@@ -152,7 +152,7 @@ def refine(
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="3 s"))
+    >>> base = st.Description.of(slider, "3 s")
     >>> axes = {"phi": st.Grid("8 deg", "12 deg", 3)}
     >>> study = st.Study(base=base, axes=axes, measures=["regime"])
     >>> found = st.refine(study, "yaw.zarr", along="phi", to="1 deg")

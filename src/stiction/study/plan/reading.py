@@ -25,7 +25,7 @@ def is_description(value: Any) -> Any:
     if not isinstance(value, Description):
         raise ValueError(
             f"{echo(value)} is not a description; write for example "
-            "st.Description(slider, st.Initial(), st.Settings(duration='5 s'))"
+            "st.Description.of(slider, '5 s')"
         )
     return value
 

@@ -86,7 +86,7 @@ class Study(Described):
     Examples
     --------
     >>> import stiction as st
-    >>> base = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration=5))
+    >>> base = st.Description.of(st.presets.nakano_popov_2020(), 5)
     >>> study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "10 deg", 10),
     ...                                   "drive.velocity": st.Values(["1 mm/s", "2 mm/s"])})
     >>> study.layout.runs
@@ -183,8 +183,8 @@ class Study(Described):
         Examples
         --------
         >>> import stiction as st
-        >>> slider, settings = st.presets.nakano_popov_2020(), st.Settings(duration=5)
-        >>> base = st.Description(slider, st.Initial(), settings)
+        >>> slider = st.presets.nakano_popov_2020()
+        >>> base = st.Description.of(slider, "5 s")
         >>> study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "10 deg", 10)})
         >>> study.description({"phi": "3 deg"}).slider == slider.replace(phi="3 deg")
         True

@@ -336,7 +336,7 @@ def open_study(path: str | Path) -> xr.Dataset:
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> base = st.Description.of(slider, "20 ms")
     >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
     >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
     >>> done = st.sweep(study, "phi.zarr")

@@ -57,7 +57,7 @@ class Map(NamedTuple):
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> base = st.Description.of(slider, "20 ms")
     >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
     >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
     >>> done = st.sweep(study, "phi.zarr")
@@ -128,7 +128,7 @@ def map(
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> base = st.Description.of(slider, "20 ms")
     >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
     >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
     >>> done = st.sweep(study, "phi.zarr")
@@ -163,7 +163,7 @@ def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
     --------
     >>> import stiction as st
     >>> slider = st.presets.nakano_popov_2020()
-    >>> base = st.Description(slider, st.Initial(), st.Settings(duration="20 ms"))
+    >>> base = st.Description.of(slider, "20 ms")
     >>> axes = {"phi": st.Grid("1 deg", "3 deg", 3)}
     >>> study = st.Study(base=base, axes=axes, measures=["stick_count"])
     >>> done = st.sweep(study, "phi.zarr")
