@@ -68,7 +68,9 @@ def test_what_is_unambiguous_is_taken_and_else_the_remedy_is_named(tmp_path):
     with pytest.raises(st.DescriptionError, match="drive"):  # it is read, and then refused
         st.audit(description._replace(slider=shaken))
     for verb in (st.run, lambda slider: st.compare(slider, ["coulomb"])):
-        with pytest.raises(st.DescriptionError, match=r"no duration; .*st\.Description\.of\(slider"):
+        with pytest.raises(
+            st.DescriptionError, match=r"no duration; .*st\.Description\.of\(slider"
+        ):
             verb(PAPER)
     with pytest.raises(st.DescriptionError, match=r"st\.run\(description\) simulates a whole"):
         st.simulate(description, "20 ms")

@@ -55,9 +55,9 @@ class Constant(NamedTuple):
     value: Level | None = None
     duration: Duration | None = None
 
-    def shape(piece, base: float, present: float, still: float) -> Shape:
+    def shape(self, base: float, present: float, still: float) -> Shape:
         """Return the constant."""
-        return Shape(base if piece.value is None else piece.value)
+        return Shape(base if self.value is None else self.value)
 
 
 @validate
@@ -87,14 +87,14 @@ class Step(NamedTuple):
     duration: Duration | None = None
     to: Level | None = None
 
-    def faults(piece) -> Iterator[tuple[str, str]]:
+    def faults(self) -> Iterator[tuple[str, str]]:
         """Check that the jump is given once."""
-        if (piece.by is None) == (piece.to is None):
+        if (self.by is None) == (self.to is None):
             yield "by", "give either by or to: the change, or the value after it"
 
-    def shape(piece, base: float, present: float, still: float) -> Shape:
+    def shape(self, base: float, present: float, still: float) -> Shape:
         """Return the value after the jump."""
-        to: Any = piece.to if piece.by is None else present + piece.by
+        to: Any = self.to if self.by is None else present + self.by
         return Shape(to)
 
 
@@ -121,9 +121,9 @@ class Ramp(NamedTuple):
     to: Level
     duration: Duration
 
-    def shape(piece, base: float, present: float, still: float) -> Shape:
+    def shape(self, base: float, present: float, still: float) -> Shape:
         """Return the line."""
-        return Shape(present, (piece.to - present) / piece.duration)
+        return Shape(present, (self.to - present) / self.duration)
 
 
 @validate
@@ -147,7 +147,7 @@ class Hold(NamedTuple):
 
     duration: Duration | None = None
 
-    def shape(piece, base: float, present: float, still: float) -> Shape:
+    def shape(self, base: float, present: float, still: float) -> Shape:
         """Return the value of a hold."""
         return Shape(still)
 
@@ -168,7 +168,7 @@ class Free(NamedTuple):
 
     duration: None = None
 
-    def shape(piece, base: float, present: float, still: float) -> Shape:
+    def shape(self, base: float, present: float, still: float) -> Shape:
         """Return zero."""
         return Shape(0.0)
 
@@ -194,7 +194,7 @@ class Reversal(NamedTuple):
 
     duration: Duration | None = None
 
-    def shape(piece, base: float, present: float, still: float) -> Shape:
+    def shape(self, base: float, present: float, still: float) -> Shape:
         """Return minus the present value."""
         return Shape(-present)
 
@@ -229,9 +229,9 @@ class Harmonic(NamedTuple):
     phase: Phase = 0.0
     duration: Duration | None = None
 
-    def shape(piece, base: float, present: float, still: float) -> Shape:
+    def shape(self, base: float, present: float, still: float) -> Shape:
         """Return the harmonic."""
-        return Shape(present, 0.0, piece.amplitude, 2 * pi * piece.frequency, piece.phase)
+        return Shape(present, 0.0, self.amplitude, 2 * pi * self.frequency, self.phase)
 
 
 @validate

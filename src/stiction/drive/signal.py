@@ -53,69 +53,74 @@ class Signal(NamedTuple):
     omega_2: float = 0.0
     phase_2: float = 0.0
 
-    def value_at(s, t: float) -> float:
+    def value_at(self, t: float) -> float:
         """Return the value at time `t`."""
-        y = s.value + s.slope * (t - s.start)
-        if s.amplitude != 0.0:
-            y += s.amplitude * np.sin(s.omega * t + s.phase)
-        if s.amplitude_2 != 0.0:
-            y += s.amplitude_2 * np.sin(s.omega_2 * t + s.phase_2)
+        y = self.value + self.slope * (t - self.start)
+        if self.amplitude != 0.0:
+            y += self.amplitude * np.sin(self.omega * t + self.phase)
+        if self.amplitude_2 != 0.0:
+            y += self.amplitude_2 * np.sin(self.omega_2 * t + self.phase_2)
         return y
 
-    def change_at(s, t: float) -> float:
+    def change_at(self, t: float) -> float:
         """Return the derivative at time `t`."""
-        y = s.slope
-        if s.amplitude != 0.0:
-            y += s.amplitude * s.omega * np.cos(s.omega * t + s.phase)
-        if s.amplitude_2 != 0.0:
-            y += s.amplitude_2 * s.omega_2 * np.cos(s.omega_2 * t + s.phase_2)
+        y = self.slope
+        if self.amplitude != 0.0:
+            y += self.amplitude * self.omega * np.cos(self.omega * t + self.phase)
+        if self.amplitude_2 != 0.0:
+            y += self.amplitude_2 * self.omega_2 * np.cos(self.omega_2 * t + self.phase_2)
         return y
 
-    def curve_at(s, t: float) -> float:
+    def curve_at(self, t: float) -> float:
         """Return the second derivative at time `t`."""
         y = 0.0
-        if s.amplitude != 0.0:
-            y -= s.amplitude * s.omega * s.omega * np.sin(s.omega * t + s.phase)
-        if s.amplitude_2 != 0.0:
-            y -= s.amplitude_2 * s.omega_2 * s.omega_2 * np.sin(s.omega_2 * t + s.phase_2)
+        if self.amplitude != 0.0:
+            y -= self.amplitude * self.omega * self.omega * np.sin(self.omega * t + self.phase)
+        if self.amplitude_2 != 0.0:
+            y -= (
+                self.amplitude_2
+                * self.omega_2
+                * self.omega_2
+                * np.sin(self.omega_2 * t + self.phase_2)
+            )
         return y
 
-    def sum_over(s, t: float, dt: float) -> float:
+    def sum_over(self, t: float, dt: float) -> float:
         """Return the integral from `t` to `t + dt`, without cancellation for short `dt`."""
         middle = t + 0.5 * dt
-        y = (s.value + s.slope * (middle - s.start)) * dt
-        if s.amplitude != 0.0:
+        y = (self.value + self.slope * (middle - self.start)) * dt
+        if self.amplitude != 0.0:
             y += (
                 2.0
-                * s.amplitude
-                / s.omega
-                * np.sin(s.omega * middle + s.phase)
-                * np.sin(0.5 * s.omega * dt)
+                * self.amplitude
+                / self.omega
+                * np.sin(self.omega * middle + self.phase)
+                * np.sin(0.5 * self.omega * dt)
             )
-        if s.amplitude_2 != 0.0:
+        if self.amplitude_2 != 0.0:
             y += (
                 2.0
-                * s.amplitude_2
-                / s.omega_2
-                * np.sin(s.omega_2 * middle + s.phase_2)
-                * np.sin(0.5 * s.omega_2 * dt)
+                * self.amplitude_2
+                / self.omega_2
+                * np.sin(self.omega_2 * middle + self.phase_2)
+                * np.sin(0.5 * self.omega_2 * dt)
             )
         return y
 
-    def bounds_between(s, start: float, end: float) -> tuple[float, float, float, float]:
+    def bounds_between(self, start: float, end: float) -> tuple[float, float, float, float]:
         """Return bounds of the magnitudes of the value and its first three derivatives."""
-        line = max(abs(s.value + s.slope * (t - s.start)) for t in (start, end))
-        bounds = [line, abs(s.slope), 0.0, 0.0]
-        for amplitude, omega in ((s.amplitude, s.omega), (s.amplitude_2, s.omega_2)):
+        line = max(abs(self.value + self.slope * (t - self.start)) for t in (start, end))
+        bounds = [line, abs(self.slope), 0.0, 0.0]
+        for amplitude, omega in ((self.amplitude, self.omega), (self.amplitude_2, self.omega_2)):
             for n in range(4):
                 bounds[n] += abs(amplitude) * abs(omega) ** n
         return bounds[0], bounds[1], bounds[2], bounds[3]
 
-    def fastest(s) -> float:
+    def fastest(self) -> float:
         """Return the largest angular frequency, rad/s; 0 without harmonics."""
-        waves = ((s.amplitude, s.omega), (s.amplitude_2, s.omega_2))
+        waves = ((self.amplitude, self.omega), (self.amplitude_2, self.omega_2))
         return max((abs(omega) for amplitude, omega in waves if amplitude != 0.0), default=0.0)
 
-    def may_vanish(s, start: float, end: float) -> Iterator[tuple[float, float]]:
+    def may_vanish(self, start: float, end: float) -> Iterator[tuple[float, float]]:
         """Yield the intervals (s) in which the value may reach zero: all."""
         yield start, end

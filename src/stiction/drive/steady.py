@@ -33,23 +33,23 @@ class ConstantVelocity(NamedTuple):
 
     velocity: Velocity
 
-    def travel(drive, t: float, dt: Any) -> tuple[Any, Any]:
+    def travel(self, t: float, dt: Any) -> tuple[Any, Any]:
         """Return V dt along X."""
-        return drive.velocity * dt, 0.0
+        return self.velocity * dt, 0.0
 
-    def rate(drive, t: Any) -> tuple[Any, Any]:
+    def rate(self, t: Any) -> tuple[Any, Any]:
         """Return V along X."""
-        return drive.velocity, 0.0
+        return self.velocity, 0.0
 
-    def rate_change(drive, t: float) -> tuple[float, float]:
+    def rate_change(self, t: float) -> tuple[float, float]:
         """Return zero."""
         return 0.0, 0.0
 
-    def rate_curve(drive, t: float) -> tuple[float, float]:
+    def rate_curve(self, t: float) -> tuple[float, float]:
         """Return zero."""
         return 0.0, 0.0
 
-    def steady(drive) -> bool:
+    def steady(self) -> bool:
         """Return True."""
         return True
 
@@ -66,15 +66,15 @@ class ConstantLoad(NamedTuple):
 
     force: Force
 
-    def at(load, t: float) -> float:
+    def at(self, t: float) -> float:
         """Return W."""
-        return load.force
+        return self.force
 
-    def drift(load, t: float) -> float:
+    def drift(self, t: float) -> float:
         """Return zero."""
         return 0.0
 
-    def constant(load) -> bool:
+    def constant(self) -> bool:
         """Return True."""
         return True
 
@@ -85,23 +85,23 @@ class VaryingVelocity(NamedTuple):
     along: Signal | Recording
     across: Signal
 
-    def travel(drive, t: Any, dt: Any) -> tuple[Any, Any]:
+    def travel(self, t: Any, dt: Any) -> tuple[Any, Any]:
         """Return the displacement from time `t` to `t + dt`, in m."""
-        return sum_over(drive.along, t, dt), sum_over(drive.across, t, dt)
+        return sum_over(self.along, t, dt), sum_over(self.across, t, dt)
 
-    def rate(drive, t: Any) -> tuple[Any, Any]:
+    def rate(self, t: Any) -> tuple[Any, Any]:
         """Return the velocity at time `t`, in m/s."""
-        return value_at(drive.along, t), value_at(drive.across, t)
+        return value_at(self.along, t), value_at(self.across, t)
 
-    def rate_change(drive, t: Any) -> tuple[Any, Any]:
+    def rate_change(self, t: Any) -> tuple[Any, Any]:
         """Return the acceleration at time `t`, in m/s^2."""
-        return change_at(drive.along, t), change_at(drive.across, t)
+        return change_at(self.along, t), change_at(self.across, t)
 
-    def rate_curve(drive, t: Any) -> tuple[Any, Any]:
+    def rate_curve(self, t: Any) -> tuple[Any, Any]:
         """Return the rate of change of the acceleration at time `t`, in m/s^3."""
-        return curve_at(drive.along, t), curve_at(drive.across, t)
+        return curve_at(self.along, t), curve_at(self.across, t)
 
-    def steady(drive) -> bool:
+    def steady(self) -> bool:
         """Return whether the velocity is constant; the compiler knows the answer."""
         return False
 
@@ -111,14 +111,14 @@ class VaryingLoad(NamedTuple):
 
     force: Signal | Recording
 
-    def at(load, t: Any) -> Any:
+    def at(self, t: Any) -> Any:
         """Return the normal load at time `t`, in N."""
-        return value_at(load.force, t)
+        return value_at(self.force, t)
 
-    def drift(load, t: Any) -> Any:
+    def drift(self, t: Any) -> Any:
         """Return the rate of change of the load, in N/s."""
-        return change_at(load.force, t)
+        return change_at(self.force, t)
 
-    def constant(load) -> bool:
+    def constant(self) -> bool:
         """Return whether the load is constant; the compiler knows the answer."""
         return False

@@ -43,7 +43,7 @@ class FrictionLaw(Protocol):
         """Return the derivative of the coefficient with respect to `v`, in s/m."""
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+    def like(cls, static: float, kinetic: float, speed: float) -> Self:
         """Return a law of this kind that has the traits of another.
 
         `static` and `kinetic` are the friction coefficients at rest and in fast slip; `speed`
@@ -92,7 +92,7 @@ class StateLaw(Protocol):
         """Return the friction force (N) at slip velocity `slip` (m/s) and normal load (N)."""
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+    def like(cls, static: float, kinetic: float, speed: float) -> Self:
         """Return a comparable law of this kind; see `FrictionLaw.like`."""
 
     def change(law, slip: Vector, load: float, state: tuple[float, ...]) -> tuple[float, ...]:

@@ -42,9 +42,9 @@ class Role(NamedTuple):
     kind: str
     example: str
 
-    def fault(role, message: str) -> DescriptionError:
+    def fault(self, message: str) -> DescriptionError:
         """Return the error for a fault in what names the code."""
-        return DescriptionError.of(role.path, message)
+        return DescriptionError.of(self.path, message)
 
 
 def split(name: str, role: Role) -> tuple[str, str]:

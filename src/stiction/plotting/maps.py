@@ -39,16 +39,16 @@ class Side(NamedTuple):
     log: bool
 
     @property
-    def edges(side) -> Floats:
+    def edges(self) -> Floats:
         """Borders of the cells around the values."""
-        at = np.log(side.values) if side.log else side.values
+        at = np.log(self.values) if self.log else self.values
         if len(at) == 1:
-            half = np.array([-0.5, 0.5]) * (1.0 if side.log or at[0] == 0.0 else abs(at[0]))
+            half = np.array([-0.5, 0.5]) * (1.0 if self.log or at[0] == 0.0 else abs(at[0]))
             found = at[0] + half
         else:
             middle = 0.5 * (at[1:] + at[:-1])
             found = np.concatenate([at[:1], middle, at[-1:]])
-        return np.asarray(np.exp(found) if side.log else found)
+        return np.asarray(np.exp(found) if self.log else found)
 
 
 def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list[Patch]:

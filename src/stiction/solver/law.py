@@ -31,14 +31,14 @@ class PointedLaw(NamedTuple):
     fields: np.ndarray
     mu_static: float
 
-    def coefficient_and_slope(law, v: float) -> tuple[float, float]:
+    def coefficient_and_slope(self, v: float) -> tuple[float, float]:
         """Return the friction coefficient and its derivative (s/m) at slip speed `v` (m/s)."""
-        found: tuple[float, float] = call(law.code, law.fields, (v,))
+        found: tuple[float, float] = call(self.code, self.fields, (v,))
         return found
 
-    def coefficient(law, v: float) -> float:
+    def coefficient(self, v: float) -> float:
         """Return the friction coefficient at slip speed `v` (m/s)."""
-        return float(call(law.code, law.fields, (v,))[0])
+        return float(call(self.code, self.fields, (v,))[0])
 
 
 def point_to(law: Any) -> PointedLaw:

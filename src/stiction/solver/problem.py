@@ -51,7 +51,7 @@ class Isotropic(NamedTuple):
     xy: float = 0.0
     yy: float = 1.0
 
-    def isotropic(surface) -> bool:
+    def isotropic(self) -> bool:
         """Return True: friction is along the slip."""
         return True
 
@@ -63,7 +63,7 @@ class Elliptic(NamedTuple):
     xy: float
     yy: float
 
-    def isotropic(surface) -> bool:
+    def isotropic(self) -> bool:
         """Return False: friction is not along the slip."""
         return False
 
@@ -76,13 +76,13 @@ class Bend(NamedTuple):
 
     value: float
 
-    def smooth_until(bend, t: float, stop: float) -> float:
+    def smooth_until(self, t: float, stop: float) -> float:
         """Return until when drive and load are smooth, at most `stop` (s)."""
         return stop
 
-    def bend_after(bend, t: float) -> float:
+    def bend_after(self, t: float) -> float:
         """Return the bound that holds from time `t` until then."""
-        return bend.value
+        return self.value
 
 
 class Bends(NamedTuple):
@@ -94,15 +94,15 @@ class Bends(NamedTuple):
     rows: Any
     values: Any
 
-    def smooth_until(bend, t: float, stop: float) -> float:
+    def smooth_until(self, t: float, stop: float) -> float:
         """Return until when drive and load are smooth, at most `stop` (s)."""
-        i = int(np.searchsorted(bend.rows, t, side="right"))
-        return min(stop, bend.rows[i]) if i < len(bend.rows) else stop
+        i = int(np.searchsorted(self.rows, t, side="right"))
+        return min(stop, self.rows[i]) if i < len(self.rows) else stop
 
-    def bend_after(bend, t: float) -> float:
+    def bend_after(self, t: float) -> float:
         """Return the bound that holds from time `t` until then."""
-        i = int(np.searchsorted(bend.rows, t, side="right"))
-        return float(bend.values[min(max(i, 1), len(bend.values)) - 1])
+        i = int(np.searchsorted(self.rows, t, side="right"))
+        return float(self.values[min(max(i, 1), len(self.values)) - 1])
 
 
 class Problem(NamedTuple):

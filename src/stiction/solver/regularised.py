@@ -35,19 +35,19 @@ class Smoothed(NamedTuple):
     surface: Isotropic | Elliptic
     delta: float
 
-    def slip_factor(law, square: float) -> tuple[float, float]:
+    def slip_factor(self, square: float) -> tuple[float, float]:
         """Return h = 1/sqrt(q^2 + delta^2) and -h'/(q h), for q^2 = s.N s."""
-        h = 1.0 / sqrt(square + law.delta * law.delta)
+        h = 1.0 / sqrt(square + self.delta * self.delta)
         return h, h * h
 
-    def force(law, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
+    def force(self, slip: Vector, load: float, state: tuple[float, ...]) -> Vector:
         """Return the friction force (N)."""
-        f = friction_and_gradient(law, slip, load)
+        f = friction_and_gradient(self, slip, load)
         return f[0], f[1]
 
-    def grain(law, state: tuple[float, ...]) -> float:
+    def grain(self, state: tuple[float, ...]) -> float:
         """Return delta: friction is proportional, or nearly so, to the slip velocity below."""
-        return law.delta
+        return self.delta
 
 
 class SmoothedByArctan(Smoothed):
@@ -59,14 +59,14 @@ class SmoothedByArctan(Smoothed):
 
     __slots__ = ()
 
-    def slip_factor(law, square: float) -> tuple[float, float]:
+    def slip_factor(self, square: float) -> tuple[float, float]:
         """Return h = (2/pi) atan(q/delta)/q and -h'/(q h), for q^2; a series where q is small."""
-        x = sqrt(square) / law.delta
+        x = sqrt(square) / self.delta
         if x < SERIES:
-            h = 2.0 / (pi * law.delta) * (1.0 - x * x / 3.0)
-            return h, (2.0 / 3.0 - (4.0 / 5.0 - 2.0 / 9.0) * x * x) / (law.delta * law.delta)
+            h = 2.0 / (pi * self.delta) * (1.0 - x * x / 3.0)
+            return h, (2.0 / 3.0 - (4.0 / 5.0 - 2.0 / 9.0) * x * x) / (self.delta * self.delta)
         share = atan(x) / x
-        h = 2.0 / (pi * law.delta) * share
+        h = 2.0 / (pi * self.delta) * share
         return h, (share - 1.0 / (1.0 + x * x)) / (share * square)
 
 

@@ -20,28 +20,28 @@ class Aligned(NamedTuple):
 
     one: float = 1.0  # compiled code needs a field
 
-    def is_aligned(rig) -> bool:
+    def is_aligned(self) -> bool:
         """Return True: the solver's axes are x and y."""
         return True
 
-    def outward(rig, r: Vector) -> Vector:
+    def outward(self, r: Vector) -> Vector:
         """Return a slip, or an elongation, in the axes x and y."""
         return r
 
-    def inward(rig, force: Vector) -> Vector:
+    def inward(self, force: Vector) -> Vector:
         """Return a force in the solver's axes."""
         return force
 
-    def metric(rig) -> tuple[float, float, float]:
+    def metric(self) -> tuple[float, float, float]:
         """Return G (xx, xy, yy), by which |s|^2 = r.G r."""
         return 1.0, 0.0, 1.0
 
-    def into_axes(rig, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
+    def into_axes(self, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
         """Return a laboratory vector (X, Y) in the axes x and y."""
         X, Y = vector
         return X * cos_phi - Y * sin_phi, X * sin_phi + Y * cos_phi
 
-    def cross_damping(rig) -> float:
+    def cross_damping(self) -> float:
         """Return c_xy, N s/m."""
         return 0.0
 
@@ -59,35 +59,35 @@ class General(NamedTuple):
     Y_x: float
     Y_y: float
 
-    def is_aligned(rig) -> bool:
+    def is_aligned(self) -> bool:
         """Return False: the solver's axes are not x and y."""
         return False
 
-    def outward(rig, r: Vector) -> Vector:
+    def outward(self, r: Vector) -> Vector:
         """Return a slip, or an elongation, in the axes x and y: T r."""
-        return rig.t_xx * r[0] + rig.t_xy * r[1], rig.t_yx * r[0] + rig.t_yy * r[1]
+        return self.t_xx * r[0] + self.t_xy * r[1], self.t_yx * r[0] + self.t_yy * r[1]
 
-    def inward(rig, force: Vector) -> Vector:
+    def inward(self, force: Vector) -> Vector:
         """Return a force in the solver's axes, T^T F."""
         x, y = force
-        return rig.t_xx * x + rig.t_yx * y, rig.t_xy * x + rig.t_yy * y
+        return self.t_xx * x + self.t_yx * y, self.t_xy * x + self.t_yy * y
 
-    def metric(rig) -> tuple[float, float, float]:
+    def metric(self) -> tuple[float, float, float]:
         """Return G = T^T T (xx, xy, yy), by which |s|^2 = r.G r."""
         return (
-            rig.t_xx * rig.t_xx + rig.t_yx * rig.t_yx,
-            rig.t_xx * rig.t_xy + rig.t_yx * rig.t_yy,
-            rig.t_xy * rig.t_xy + rig.t_yy * rig.t_yy,
+            self.t_xx * self.t_xx + self.t_yx * self.t_yx,
+            self.t_xx * self.t_xy + self.t_yx * self.t_yy,
+            self.t_xy * self.t_xy + self.t_yy * self.t_yy,
         )
 
-    def into_axes(rig, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
+    def into_axes(self, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
         """Return a laboratory vector (X, Y) in the solver's axes."""
         X, Y = vector
-        return X * rig.X_x + Y * rig.Y_x, X * rig.X_y + Y * rig.Y_y
+        return X * self.X_x + Y * self.Y_x, X * self.X_y + Y * self.Y_y
 
-    def cross_damping(rig) -> float:
+    def cross_damping(self) -> float:
         """Return c_xy, N s/m."""
-        return rig.c_xy
+        return self.c_xy
 
 
 def as_general(cos_phi: float, sin_phi: float) -> General:

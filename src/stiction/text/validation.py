@@ -66,8 +66,8 @@ READS = "reads_parameters"  # marks constructors made by `validate`
 class _Presented(ModelMetaclass):
     """Hides inherited library members of a class from `dir` and `help`."""
 
-    def __dir__(cls) -> list[str]:
-        return _own_names(cls, super().__dir__())
+    def __dir__(self) -> list[str]:
+        return _own_names(self, super().__dir__())
 
 
 class Described(BaseModel, metaclass=_Presented):

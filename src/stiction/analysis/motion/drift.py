@@ -50,9 +50,9 @@ class Drift(NamedTuple):
     end: float = np.nan
 
     @property
-    def possible(drift) -> float:
+    def possible(self) -> float:
         """The rate for which errors must allow, N/s: a sure one or a likely one, or 0."""
-        return abs(drift.rate) if drift.sure else abs(drift.likely)
+        return abs(self.rate) if self.sure else abs(self.likely)
 
 
 def find_drift(record: Record, cycles: CycleTable) -> Drift:

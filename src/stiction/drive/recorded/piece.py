@@ -183,27 +183,27 @@ class Recorded(NamedTuple):
     scale: Number = 1.0
     file: str | None = None
 
-    def faults(piece) -> Iterator[tuple[str, str]]:
+    def faults(self) -> Iterator[tuple[str, str]]:
         """Check the rows."""
-        if (piece.velocity is None) == (piece.position is None):
+        if (self.velocity is None) == (self.position is None):
             yield "velocity", "give either velocity or position"
         else:
-            yield from row_faults(_table(piece))
+            yield from row_faults(_table(self))
 
     @property
-    def duration(piece) -> float:
+    def duration(self) -> float:
         """How long the record is, s."""
-        return length(piece.time)
+        return length(self.time)
 
     @property
-    def frequency(piece) -> float:
+    def frequency(self) -> float:
         """A frequency that the rows show well, Hz."""
-        return highest_frequency(piece.time)
+        return highest_frequency(self.time)
 
-    def recording(piece, start: float) -> Recording:
+    def recording(self, start: float) -> Recording:
         """Return the velocity from `start` (s) on."""
-        values = piece.position if piece.velocity is None else piece.velocity
-        return recording(spline(piece.time, values, piece.velocity is None, piece.scale), start)
+        values = self.position if self.velocity is None else self.velocity
+        return recording(spline(self.time, values, self.velocity is None, self.scale), start)
 
 
 @validate
@@ -235,23 +235,23 @@ class RecordedLoad(NamedTuple):
     scale: Number = 1.0
     file: str | None = None
 
-    def faults(piece) -> Iterator[tuple[str, str]]:
+    def faults(self) -> Iterator[tuple[str, str]]:
         """Check the rows."""
-        yield from row_faults(_table(piece))
+        yield from row_faults(_table(self))
 
     @property
-    def duration(piece) -> float:
+    def duration(self) -> float:
         """How long the record is, s."""
-        return length(piece.time)
+        return length(self.time)
 
     @property
-    def frequency(piece) -> float:
+    def frequency(self) -> float:
         """A frequency that the rows show well, Hz."""
-        return highest_frequency(piece.time)
+        return highest_frequency(self.time)
 
-    def recording(piece, start: float) -> Recording:
+    def recording(self, start: float) -> Recording:
         """Return the load from `start` (s) on."""
-        return recording(spline(piece.time, piece.load, False, piece.scale), start)
+        return recording(spline(self.time, self.load, False, self.scale), start)
 
 
 RECORDS = (Recorded, RecordedLoad)

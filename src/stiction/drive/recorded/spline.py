@@ -51,59 +51,59 @@ class Recording(NamedTuple):
     bounds: Any
     wave: Signal
 
-    def value_at(r, t: Any) -> Any:
+    def value_at(self, t: Any) -> Any:
         """Return the value at time `t`."""
-        i = piece_at(r, t)
-        c, x = r.cubics, t - r.rows[i]
+        i = piece_at(self, t)
+        c, x = self.cubics, t - self.rows[i]
         found = c[i, 0] + x * (c[i, 1] + x * (c[i, 2] + x * c[i, 3]))
-        return found + value_at(r.wave, t)
+        return found + value_at(self.wave, t)
 
-    def change_at(r, t: Any) -> Any:
+    def change_at(self, t: Any) -> Any:
         """Return the derivative at time `t`."""
-        i = piece_at(r, t)
-        c, x = r.cubics, t - r.rows[i]
+        i = piece_at(self, t)
+        c, x = self.cubics, t - self.rows[i]
         found = c[i, 1] + x * (2.0 * c[i, 2] + x * (3.0 * c[i, 3]))
-        return found + change_at(r.wave, t)
+        return found + change_at(self.wave, t)
 
-    def curve_at(r, t: Any) -> Any:
+    def curve_at(self, t: Any) -> Any:
         """Return the second derivative at time `t`."""
-        i = piece_at(r, t)
-        c = r.cubics
-        return 2.0 * c[i, 2] + (t - r.rows[i]) * (6.0 * c[i, 3]) + curve_at(r.wave, t)
+        i = piece_at(self, t)
+        c = self.cubics
+        return 2.0 * c[i, 2] + (t - self.rows[i]) * (6.0 * c[i, 3]) + curve_at(self.wave, t)
 
-    def sum_over(r, t: Any, dt: Any) -> Any:
+    def sum_over(self, t: Any, dt: Any) -> Any:
         """Return the integral from `t` to `t + dt`, without cancellation for short `dt`."""
         end = t + dt
-        i, j = piece_at(r, t), piece_at(r, end)
-        begun = cubic_sum(r, i, t - r.rows[i], np.minimum(dt, r.rows[i + 1] - t))
-        rest = r.sums[j] - r.sums[i + 1] + cubic_sum(r, j, 0.0, end - r.rows[j])
-        return begun + (j > i) * rest + sum_over(r.wave, t, dt)
+        i, j = piece_at(self, t), piece_at(self, end)
+        begun = cubic_sum(self, i, t - self.rows[i], np.minimum(dt, self.rows[i + 1] - t))
+        rest = self.sums[j] - self.sums[i + 1] + cubic_sum(self, j, 0.0, end - self.rows[j])
+        return begun + (j > i) * rest + sum_over(self.wave, t, dt)
 
-    def bounds_between(r, start: float, end: float) -> tuple[float, float, float, float]:
+    def bounds_between(self, start: float, end: float) -> tuple[float, float, float, float]:
         """Return bounds of the magnitudes of the value and its first three derivatives."""
-        found = r.bounds[int(piece_at(r, start)) : int(piece_at(r, end)) + 1]
+        found = self.bounds[int(piece_at(self, start)) : int(piece_at(self, end)) + 1]
         most = np.column_stack([np.abs(found[:, :2]).max(axis=1), found[:, 2:]]).max(axis=0)
-        wave = r.wave.bounds_between(start, end)
+        wave = self.wave.bounds_between(start, end)
         return tuple(float(a) + b for a, b in zip(most, wave, strict=True))  # type: ignore[return-value]
 
-    def bounds_at(r, rows: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def bounds_at(self, rows: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return such bounds between successive times, which include the recording's rows."""
-        found = r.bounds[piece_at(r, rows[:-1])]
-        wave = r.wave.bounds_between(float(rows[0]), float(rows[-1]))
+        found = self.bounds[piece_at(self, rows[:-1])]
+        wave = self.wave.bounds_between(float(rows[0]), float(rows[-1]))
         value = np.abs(found[:, :2]).max(axis=1) + wave[0]
         return value, found[:, 2] + wave[1], found[:, 3] + wave[2], found[:, 4] + wave[3]
 
-    def fastest(r) -> float:
+    def fastest(self) -> float:
         """Return the largest angular frequency, rad/s: curvature over slope, as of a harmonic."""
-        _, _, change, curve, _ = np.abs(r.bounds).max(axis=0)
-        return max(r.wave.fastest(), float(curve / change) if change > 0.0 else 0.0)
+        _, _, change, curve, _ = np.abs(self.bounds).max(axis=0)
+        return max(self.wave.fastest(), float(curve / change) if change > 0.0 else 0.0)
 
-    def may_vanish(r, start: float, end: float) -> Iterator[tuple[float, float]]:
+    def may_vanish(self, start: float, end: float) -> Iterator[tuple[float, float]]:
         """Yield the intervals (s) in which the value may reach zero: some of the pieces."""
-        least = r.bounds[:, 0] - r.wave.bounds_between(start, end)[0]
-        first, last = int(piece_at(r, start)), int(piece_at(r, end))
+        least = self.bounds[:, 0] - self.wave.bounds_between(start, end)[0]
+        first, last = int(piece_at(self, start)), int(piece_at(self, end))
         for i in (np.flatnonzero(least[first : last + 1] <= 0.0) + first).tolist():
-            yield max(start, float(r.rows[i])), min(end, float(r.rows[i + 1]))
+            yield max(start, float(self.rows[i])), min(end, float(self.rows[i + 1]))
 
 
 def piece_at(r: Recording, t: Any) -> Any:

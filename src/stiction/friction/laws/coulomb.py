@@ -34,9 +34,9 @@ class Coulomb(NamedTuple):
     mu_static: Coefficient = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Coulomb:
+    def like(cls, static: float, kinetic: float, speed: float) -> Coulomb:
         """Return constant friction with a separate static coefficient."""
-        return kind(min(static, kinetic), static)
+        return cls(min(static, kinetic), static)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

@@ -44,9 +44,9 @@ class ExponentialWeakening(NamedTuple):
     mu_static: Coefficient = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> ExponentialWeakening:
+    def like(cls, static: float, kinetic: float, speed: float) -> ExponentialWeakening:
         """Return the law with these coefficients and this speed."""
-        return kind(static, kinetic, speed)
+        return cls(static, kinetic, speed)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

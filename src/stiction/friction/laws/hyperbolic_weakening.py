@@ -46,10 +46,10 @@ class HyperbolicWeakening(NamedTuple):
     mu_inf: Coefficient = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> HyperbolicWeakening:
+    def like(cls, static: float, kinetic: float, speed: float) -> HyperbolicWeakening:
         """Return the law that falls from `static` to `kinetic`, by 1 - 1/e of that at `speed`."""
         refuse_strengthening("HyperbolicWeakening", static, kinetic)
-        return kind(static, speed / (e - 1.0), mu_inf=kinetic)
+        return cls(static, speed / (e - 1.0), mu_inf=kinetic)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

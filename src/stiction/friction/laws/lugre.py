@@ -54,9 +54,9 @@ class LuGre(NamedTuple):
     sigma_2: Damping = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+    def like(cls, static: float, kinetic: float, speed: float) -> Self:
         """Return the law with these coefficients and this speed, and the paper's bristles."""
-        return kind(kinetic, static, speed, 1e5, 1e5**0.5)
+        return cls(kinetic, static, speed, 1e5, 1e5**0.5)
 
     @staticmethod
     def states() -> tuple[Internal, ...]:

@@ -52,13 +52,13 @@ class LuGreHyperbolic(NamedTuple):
     sigma_2: Damping = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+    def like(cls, static: float, kinetic: float, speed: float) -> Self:
         """Return the law with the coefficient `static`, a comparable slope, LuGre's bristles.
 
         A law that does not weaken is given weakening over speeds far beyond.
         """
         lost = max(static - kinetic, 1e-9 * static)
-        return kind(static, speed * static / lost, 1e5, 1e5**0.5)
+        return cls(static, speed * static / lost, 1e5, 1e5**0.5)
 
     @staticmethod
     def states() -> tuple[Internal, ...]:

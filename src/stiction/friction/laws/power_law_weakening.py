@@ -46,13 +46,13 @@ class PowerLawWeakening(NamedTuple):
     mu_static: Coefficient = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> PowerLawWeakening:
+    def like(cls, static: float, kinetic: float, speed: float) -> PowerLawWeakening:
         """Return the law with n = 1/2, the coefficient `static`, and a comparable slope at rest.
 
         The slope is -(static - kinetic)/speed, because this law has no plateau to fall to.
         """
         refuse_strengthening("PowerLawWeakening", static, kinetic)
-        return kind(static, 0.5 * speed * static / (static - kinetic), 0.5)
+        return cls(static, 0.5 * speed * static / (static - kinetic), 0.5)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

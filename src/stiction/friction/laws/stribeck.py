@@ -56,9 +56,9 @@ class Stribeck(NamedTuple):
     mu_static: Coefficient = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Stribeck:
+    def like(cls, static: float, kinetic: float, speed: float) -> Stribeck:
         """Return the law with these coefficients and this speed, without viscous friction."""
-        return kind(static, kinetic, speed)
+        return cls(static, kinetic, speed)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

@@ -47,11 +47,11 @@ class Table(NamedTuple):
     mu_static: Coefficient = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Table:
+    def like(cls, static: float, kinetic: float, speed: float) -> Table:
         """Return points of exponential weakening with these coefficients and this speed."""
         fall = [exp(-0.5 * i) for i in range(16)]
         mu = (*(kinetic + (static - kinetic) * x for x in fall), kinetic)
-        return kind(tuple(0.5 * speed * i for i in range(17)), mu)
+        return cls(tuple(0.5 * speed * i for i in range(17)), mu)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

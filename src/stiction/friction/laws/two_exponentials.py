@@ -48,10 +48,10 @@ class TwoExponentials(NamedTuple):
     mu_static: Coefficient = 0.0
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> TwoExponentials:
+    def like(cls, static: float, kinetic: float, speed: float) -> TwoExponentials:
         """Return the law that loses half of what another does at half its speed, half at twice."""
         lost = 0.5 * (static - kinetic)
-        return kind(kinetic, lost, 0.5 * speed, lost, 2.0 * speed)
+        return cls(kinetic, lost, 0.5 * speed, lost, 2.0 * speed)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

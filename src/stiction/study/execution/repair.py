@@ -35,9 +35,9 @@ class Damage(NamedTuple):
     pending: int
 
     @property
-    def files(damage) -> list[str]:
+    def files(self) -> list[str]:
         """All damaged files."""
-        return [*damage.head, *(file for files in damage.blocks.values() for file in files)]
+        return [*self.head, *(file for files in self.blocks.values() for file in files)]
 
 
 def damage_of(path: Path) -> Damage:

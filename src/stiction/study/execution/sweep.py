@@ -172,17 +172,17 @@ class Tally(NamedTuple):
     pause: float = float("inf")
 
     @property
-    def rate(tally) -> float:
+    def rate(self) -> float:
         """Runs per second, of late."""
-        runs, seconds = tally.now - tally.since[0], tally.seconds - tally.since[1]
+        runs, seconds = self.now - self.since[0], self.seconds - self.since[1]
         return runs / seconds if seconds > 0.0 else 0.0
 
     @property
-    def left(tally) -> float:
+    def left(self) -> float:
         """Seconds left at this rate; infinite as long as that cannot be known."""
-        return tally.left_after(0.0)
+        return self.left_after(0.0)
 
-    def left_after(tally, waited: float) -> float:
+    def left_after(self, waited: float) -> float:
         """Return the seconds left where no run has come for some time since, s.
 
         Runs of one study may differ by orders of magnitude. The time left is known only if it is
@@ -195,14 +195,14 @@ class Tally(NamedTuple):
         >>> tally.left, tally.left_after(3.0), tally.left_after(30.0)
         (100.0, 97.0, inf)
         """
-        missing = tally.runs - tally.before - tally.now
+        missing = self.runs - self.before - self.now
         if not missing:
             return 0.0
-        if not tally.rate > 0.0 or waited > LONGER * tally.pause:
+        if not self.rate > 0.0 or waited > LONGER * self.pause:
             return float("inf")
-        longer = growth(tally.trend, 2.0 * missing / tally.now)
+        longer = growth(self.trend, 2.0 * missing / self.now)
         known = 1.0 / ALIKE <= longer <= ALIKE
-        return max(missing / tally.rate - waited, 0.0) if known else float("inf")
+        return max(missing / self.rate - waited, 0.0) if known else float("inf")
 
 
 def growth(trend: float, halves: float) -> float:

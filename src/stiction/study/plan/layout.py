@@ -40,27 +40,27 @@ class Layout(NamedTuple):
     block: Index
 
     @property
-    def runs(layout) -> int:
+    def runs(self) -> int:
         """Number of runs."""
-        return prod(layout.shape)
+        return prod(self.shape)
 
     @property
-    def tasks(layout) -> int:
+    def tasks(self) -> int:
         """Number of blocks."""
-        return prod(layout.blocks)
+        return prod(self.blocks)
 
     @property
-    def blocks(layout) -> Index:
+    def blocks(self) -> Index:
         """Number of blocks along each dimension."""
-        return tuple(ceil(n / b) for n, b in zip(layout.shape, layout.block, strict=True))
+        return tuple(ceil(n / b) for n, b in zip(self.shape, self.block, strict=True))
 
-    def region(layout, task: int) -> Region:
+    def region(self, task: int) -> Region:
         """Return the part of the grid in block number `task`."""
         places = []
-        for count in reversed(layout.blocks):
+        for count in reversed(self.blocks):
             task, place = divmod(task, count)
             places.append(place)
-        ends = zip(reversed(places), layout.block, layout.shape, strict=True)
+        ends = zip(reversed(places), self.block, self.shape, strict=True)
         return tuple(slice(at * b, min((at + 1) * b, n)) for at, b, n in ends)
 
 

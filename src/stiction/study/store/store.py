@@ -75,108 +75,108 @@ class Store(NamedTuple):
     chunks: Mapping[str, Index]
 
     @property
-    def checked(store) -> bool:
+    def checked(self) -> bool:
         """Whether chunks have checksums."""
-        return bool(store.group.attrs["format"] == CHECKED)
+        return bool(self.group.attrs["format"] == CHECKED)
 
-    def status(store) -> np.ndarray:
+    def status(self) -> np.ndarray:
         """Return the status of every run."""
-        return np.asarray(store._array(STATUS)[...])
+        return np.asarray(self._array(STATUS)[...])
 
-    def has(store, region: Region) -> bool:
+    def has(self, region: Region) -> bool:
         """Return whether a block is marked as done, with no file missing or truncated."""
-        return store.mark(region).is_file() and not store.damaged_files(region)
+        return self.mark(region).is_file() and not self.damaged_files(region)
 
-    def mark(store, region: Region) -> Path:
+    def mark(self, region: Region) -> Path:
         """Return the status file of a block, which marks it as done."""
-        return store._file(STATUS, region)
+        return self._file(STATUS, region)
 
-    def damaged_files(store, region: Region, *, read: bool = False) -> list[Path]:
+    def damaged_files(self, region: Region, *, read: bool = False) -> list[Path]:
         """Return the damaged files of a block that is marked as done.
 
         They are missing or have a wrong length, or, if `read`, a wrong checksum.
         """
-        mark = store.mark(region)
+        mark = self.mark(region)
         if not mark.exists():
             return []
-        status = store._content(mark, store._size(STATUS))
+        status = self._content(mark, self._size(STATUS))
         if status is None:
             return [mark]
-        sizes = {store._file(name, region): store._size(name) for name in store.chunks}
-        found = [file for file, size in sizes.items() if not store._sound(file, size, read)]
+        sizes = {self._file(name, region): self._size(name) for name in self.chunks}
+        found = [file for file, size in sizes.items() if not self._sound(file, size, read)]
         if (np.frombuffer(status, np.int8) > COMPLETED).any():  # failed runs have a message
-            file = store._file(MESSAGE, region)
-            found += [file] if store._content(file) is None else []
+            file = self._file(MESSAGE, region)
+            found += [file] if self._content(file) is None else []
         return found
 
-    def _size(store, name: str) -> int:
+    def _size(self, name: str) -> int:
         """Return the size of a chunk on disk, in bytes."""
-        numbers = prod(store.chunks[name]) * store._array(name).dtype.itemsize
-        return int(numbers) + (LENGTH if store.checked else 0)
+        numbers = prod(self.chunks[name]) * self._array(name).dtype.itemsize
+        return int(numbers) + (LENGTH if self.checked else 0)
 
-    def _sound(store, file: Path, size: int, read: bool) -> bool:
+    def _sound(self, file: Path, size: int, read: bool) -> bool:
         if read:
-            return store._content(file, size) is not None
+            return self._content(file, size) is not None
         return file.is_file() and file.stat().st_size == size
 
-    def _content(store, file: Path, size: int | None = None) -> bytes | None:
+    def _content(self, file: Path, size: int | None = None) -> bytes | None:
         """Return the content of a chunk without its checksum; None if it is damaged."""
         if not file.is_file():
             return None
         content = file.read_bytes()
         if size not in (None, len(content)) or not content:
             return None
-        return without_checksum(content) if store.checked else content
+        return without_checksum(content) if self.checked else content
 
-    def message(store, index: Index) -> str:
+    def message(self, index: Index) -> str:
         """Return why a run failed."""
-        return str(store._array(MESSAGE)[index])
+        return str(self._array(MESSAGE)[index])
 
-    def write(store, region: Region, block: BlockResults) -> None:
+    def write(self, region: Region, block: BlockResults) -> None:
         """Write a block to the disk, then the mark that it is done."""
         files = {
-            store._file(each.name, region): store._whole(values, each.unknown).tobytes()
+            self._file(each.name, region): self._whole(values, each.unknown).tobytes()
             for each, values in block.values
         }
         if block.message.any():
-            files[store._file(MESSAGE, region)] = encode_texts(store._whole(block.message, ""))
-        with errors_as_message(store.path):
-            store._place(files)
-            store._place({store.mark(region): store._whole(block.status, PENDING).tobytes()})
+            files[self._file(MESSAGE, region)] = encode_texts(self._whole(block.message, ""))
+        with errors_as_message(self.path):
+            self._place(files)
+            self._place({self.mark(region): self._whole(block.status, PENDING).tobytes()})
 
-    def _place(store, files: Mapping[Path, bytes]) -> None:
+    def _place(self, files: Mapping[Path, bytes]) -> None:
         """Write chunks by zarr's specification: each as a file of bytes.
 
         Writing through zarr takes eight times as long, as much as a sixth of a run.
         """
-        with workshop(store.path / STATUS) as room:
+        with workshop(self.path / STATUS) as room:
             made = {}
             for number, (file, content) in enumerate(files.items()):
                 part = room / str(number)
-                part.write_bytes(with_checksum(content) if store.checked else content)
+                part.write_bytes(with_checksum(content) if self.checked else content)
                 made[part] = file
             place(made)
 
-    def _whole(store, values: np.ndarray, fill: Any) -> np.ndarray:
+    def _whole(self, values: np.ndarray, fill: Any) -> np.ndarray:
         """Return a block's values as a full chunk, padded beyond the edges of the grid."""
-        own = values.shape[len(store.layout.block) :]
-        chunk = np.full((*store.layout.block, *own), fill, values.dtype.newbyteorder("<"))
+        own = values.shape[len(self.layout.block) :]
+        chunk = np.full((*self.layout.block, *own), fill, values.dtype.newbyteorder("<"))
         chunk[tuple(slice(0, n) for n in values.shape)] = values
         return chunk
 
-    def _file(store, name: str, region: Region) -> Path:
+    def _file(self, name: str, region: Region) -> Path:
         """Return the file of a region's chunk; only dimensions of the grid are divided."""
-        pairs = zip(region, store.layout.block, strict=True)
+        pairs = zip(region, self.layout.block, strict=True)
         places = (str(part.start // b) for part, b in pairs)
-        own = len(store.chunks.get(name, region)) - len(region)
-        return store.path.joinpath(name, "c", *places, *["0"] * own)
+        own = len(self.chunks.get(name, region)) - len(region)
+        return self.path.joinpath(name, "c", *places, *["0"] * own)
 
-    def _array(store, name: str) -> Any:
-        return store.group[name]
+    def _array(self, name: str) -> Any:
+        return self.group[name]
 
-    def __reduce__(store) -> tuple[Any, ...]:
+    def __reduce__(self) -> tuple[Any, ...]:
         """Pickle the path: another process opens the store itself."""
-        return _reopen, (str(store.path.absolute()),)
+        return _reopen, (str(self.path.absolute()),)
 
 
 def encode_texts(texts: np.ndarray) -> bytes:

@@ -37,9 +37,9 @@ class OneState(NamedTuple):
     V_star: PositiveSpeed
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+    def like(cls, static: float, kinetic: float, speed: float) -> Self:
         """Return a comparable law; see `stiction.friction.laws.rate_and_state`."""
-        return kind(*comparable(static, kinetic, speed))
+        return cls(*comparable(static, kinetic, speed))
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""

@@ -38,10 +38,10 @@ class TwoStates(NamedTuple):
     V_star: PositiveSpeed
 
     @classmethod
-    def like(kind, static: float, kinetic: float, speed: float) -> Self:
+    def like(cls, static: float, kinetic: float, speed: float) -> Self:
         """Return a comparable law: as with one state, with b/2 over D and b/2 over 10 D."""
         a, b, D, mu_star, V_star = comparable(static, kinetic, speed)
-        return kind(a, b / 2, D, b / 2, 10 * D, mu_star, V_star)
+        return cls(a, b / 2, D, b / 2, 10 * D, mu_star, V_star)
 
     def faults(law) -> Iterator[tuple[str, str]]:
         """Yield contradictions between the parameters."""
