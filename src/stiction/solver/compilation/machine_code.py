@@ -9,6 +9,7 @@ checksum is right and nobody else can have written it. In all other cases the co
 from __future__ import annotations
 
 import atexit
+import builtins
 import hashlib
 import logging
 import os
@@ -22,6 +23,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import suppress
 from functools import cache
 from inspect import getfile
+from multiprocessing import parent_process
 from pathlib import Path
 from typing import Any, cast
 
@@ -85,7 +87,7 @@ class Shelf:
         code = _read_code(path)
         if code is None:
             if solver := _in_words(signature):  # other functions take less than a second
-                log.info("compiling %s, once", solver)
+                _inform(f"compiling {solver}, once")
             take_turn(path)
             code = _read_code(path)
         if code is None:
@@ -131,6 +133,19 @@ def _read_code(path: Path) -> bytes | None:
         return code
     path.unlink(missing_ok=True)
     return None
+
+
+def _inform(text: str) -> None:
+    """Log a text, and print it for a user who waits for the first run, and has set no level.
+
+    That is a user at a terminal or in a notebook; scripts that run by themselves stay silent.
+    """
+    log.info(text)
+    levels = (logging.getLogger(name).level for name in ("stiction", log.name))
+    if log.isEnabledFor(logging.INFO) or any(levels) or parent_process() is not None:
+        return
+    if hasattr(builtins, "__IPYTHON__") or (sys.stderr is not None and sys.stderr.isatty()):
+        print(f"stiction: {text}", file=sys.stderr, flush=True)
 
 
 def _in_words(signature: Any) -> str:

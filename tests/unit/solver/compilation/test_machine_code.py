@@ -1,8 +1,10 @@
 """Machine code on disk: named after what it follows from, and never trusted blindly."""
 
+import builtins
 import logging
 import os
 import shutil
+import sys
 from pathlib import Path
 
 import pytest
@@ -208,6 +210,19 @@ def test_compiling_a_solver_is_said_once(root, caplog):
             jit._entry(speed, Shelf(speed))(drive)
     said = [each.getMessage() for each in caplog.records]
     assert said == ["compiling the solver for ConstantVelocity, once"]
+
+
+@pytest.mark.parametrize("place", ["terminal", "notebook", "script", "quiet"])
+def test_who_waits_for_the_first_run_is_told_why(root, monkeypatch, caplog, capsys, place):
+    """The first run took ten seconds without a word; a script nobody watches prints nothing."""
+    caplog.set_level(logging.WARNING if place == "quiet" else logging.NOTSET, logger="stiction")
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: place in ("terminal", "quiet"), raising=False)
+    if place == "notebook":
+        monkeypatch.setattr(builtins, "__IPYTHON__", True, raising=False)
+    for _ in range(2):
+        jit._entry(speed, Shelf(speed))(st.ConstantVelocity(1.0))
+    said = "stiction: compiling the solver for ConstantVelocity, once\n"
+    assert capsys.readouterr().err == (said if place in ("terminal", "notebook") else "")
 
 
 def test_the_command_line_says_it_on_standard_error(capsys):
