@@ -37,6 +37,9 @@ from stiction.recording.sensor import Sensor as Sensor
 from stiction.reproduction.reproduce import paper as paper
 from stiction.simulation import run as run
 from stiction.simulation import simulate as simulate
+from stiction.study.execution.engines import Processes as Processes
+from stiction.study.execution.engines import Scheduler as Scheduler
+from stiction.study.execution.engines import Threads as Threads
 from stiction.study.execution.refine import refine as refine
 from stiction.study.execution.sweep import sweep as sweep
 from stiction.study.plan.axes import Grid as Grid

@@ -20,6 +20,7 @@ ROOMS = [
 SESSION = {
     *("Slider", "Description", "Settings", "Initial", "ConstantVelocity", "Coulomb"),
     *("ExponentialWeakening", "Trajectory", "Record", "Study", "Grid", "Random", "Sobol"),
+    *("Threads", "Processes", "Scheduler"),
     *("Values", "Status", "StictionError", "DescriptionError", "ResultError"),
     *("simulate", "run", "load", "export", "init", "analyse", "analyze", "audit", "stability"),
     *("compare", "check", "sweep", "refine", "open_study", "map", "plot", "paper"),

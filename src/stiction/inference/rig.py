@@ -75,8 +75,9 @@ class Rig(_Parts):
         return super().__new__(cls, *with_priors(slider_of(slider), tables))
 
     def __repr__(self) -> str:
-        """Return the call that makes an equal rig."""
-        return f"st.Rig({self.slider!r}, {self.priors!r})"
+        """Return the call that makes an equal rig, with its priors as a description states them."""
+        stated = in_the_middle(self.slider, self.priors) == self.slider
+        return f"st.Rig({self.slider!r}, {self._prior_tables() if stated else self.priors!r})"
 
     @classmethod
     def from_toml(
@@ -147,11 +148,14 @@ class Rig(_Parts):
 
     def _tables(self) -> dict[str, Any]:
         """Return the tables of the description."""
-        stated = {
+        tables, _ = with_changes(slider_tables(self.slider), self._prior_tables())
+        return tables
+
+    def _prior_tables(self) -> dict[str, dict[str, Any]]:
+        """Return the table that states each prior."""
+        return {
             path: prior_table(prior, unit(self.slider, path)) for path, prior in self.priors.items()
         }
-        tables, _ = with_changes(slider_tables(self.slider), stated)
-        return tables
 
 
 def with_priors(slider: Slider, stated: Mapping[str, Any]) -> tuple[Slider, dict[str, Prior]]:

@@ -345,6 +345,10 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
             kind = str(limit.get("class_name") or limit.get("class"))
             remedy = f"; make one with st.{kind}(...)" if kind in public_names("stiction") else ""
             return f"{echo(value)} is not {with_article(kind)}{remedy}"
+        case "bool_type":
+            return f"must be True or False, is {echo(value)}"
+        case "string_type":
+            return f"must be text, is {echo(value)}"
         case "dict_type":
             return f"must be a dict, is {echo(value)}"
         case "literal_error":

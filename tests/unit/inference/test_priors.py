@@ -5,6 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
+from tests.drawn import inside
 
 import stiction as st
 from stiction.errors import DescriptionError
@@ -215,7 +216,15 @@ def test_what_a_rig_in_python_cannot_be_is_told_at_once() -> None:
     assert "phi: '2 deg' is not uncertain; write as in" in str(error.value)
     with pytest.raises(DescriptionError, match=r"priors: \['phi'\] is not a dict; write"):
         st.Rig(st.presets.nakano_popov_2020(), ["phi"])
-    with pytest.raises(DescriptionError, match="5: No such file or directory; write a description"):
+    with pytest.raises(DescriptionError, match=r"5: No such file or directory; st\.init"):
         st.Rig("5")
     with pytest.raises(DescriptionError, match="int is not a description"):
         st.Rig(5, {"phi": Normal(0.1, 0.01)})
+
+
+@pytest.mark.parametrize(("mean", "error"), inside(20, (0.5, 3.0), (0.1, 1.0)))
+def test_a_rig_prints_the_call_that_makes_it(mean, error):
+    """It printed `Normal(mean=...)`, which a session lacks, and radians."""
+    priors = {"phi": f"{mean:.3g} +- {error:.2g} deg", "mass": {"low": "0.2 kg", "high": "0.3 kg"}}
+    rig = st.Rig(st.presets.nakano_popov_2020(), priors)
+    assert eval(repr(rig), {"st": st}) == rig

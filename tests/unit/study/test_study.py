@@ -448,9 +448,9 @@ def test_the_example_s_file():
 
 
 def test_what_is_no_study_is_not_swept(tmp_path):
-    with pytest.raises(st.DescriptionError, match=r"study: 5 is not a Study; make one with"):
+    with pytest.raises(st.DescriptionError, match="study: must be a Study or text or a path, is 5"):
         st.sweep(5, tmp_path / "a.zarr")
-    with pytest.raises(st.DescriptionError, match=r"study: None is not a Study; make one with"):
+    with pytest.raises(st.DescriptionError, match="study: None is not a Study; make one"):
         st.refine(None, tmp_path / "a.zarr", along="phi", to="1 deg")
     assert not (tmp_path / "a.zarr").exists()
 
@@ -464,3 +464,22 @@ def test_a_measure_that_a_map_of_samples_does_not_draw_is_refused(tmp_path):
     st.sweep(study, tmp_path / "samples.zarr")
     with pytest.raises(st.DescriptionError, match="drawn by their kind of motion alone"):
         st.map(tmp_path / "samples.zarr", of="peak_force")
+
+
+def test_a_study_is_swept_and_refined_from_its_file(tmp_path):
+    """`run`, `audit` and `compare` took a file, `sweep` a study alone."""
+    file = tmp_path / "study.toml"
+    file.write_text(
+        BASE._replace(run=st.Settings(duration="0.1 s")).to_toml()
+        + '[study]\nmeasures = ["regime"]\n[axes.phi]\nfrom = "1 deg"\nto = "2 deg"\ncount = 2\n'
+    )
+    assert st.sweep(file, tmp_path / "a.zarr", engine=st.Threads(1)).pending == 0
+    assert "point" in st.refine(str(file), tmp_path / "a.zarr", "phi", "0.5 deg").dims
+
+
+@pytest.mark.parametrize("engine", ["bogus", 4, st.Threads])
+def test_what_is_no_engine_leaves_no_store(tmp_path, engine):
+    study = st.Study(base=BASE, axes={"phi": st.Grid("1 deg", "2 deg", 2)})
+    with pytest.raises(st.DescriptionError, match=r"engine: .* is not an engine; write .*Threads"):
+        st.sweep(study, tmp_path / "a.zarr", engine=engine)
+    assert not (tmp_path / "a.zarr").exists()

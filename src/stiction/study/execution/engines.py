@@ -10,12 +10,16 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from itertools import islice
 from types import ModuleType
-from typing import Any, NamedTuple, Protocol, TypeVar
+from typing import Annotated, Any, NamedTuple, Protocol, TypeVar, runtime_checkable
 from uuid import uuid4
 
-from stiction.errors import StictionError
+from pydantic import Field
+
+from stiction.errors import DescriptionError, StictionError, echo
 from stiction.machine import CORES
 from stiction.study.plan.layout import AHEAD
+from stiction.text.units import Whole
+from stiction.text.validation import validate
 
 T = TypeVar("T")
 PATIENCE = 0.2  # s; on some systems a thread that waits for ever cannot be interrupted
@@ -30,6 +34,7 @@ ANSWERS = 60.0  # s: a scheduler that takes longer is lost
 DEATHS = 10  # of workers during one task, before the task is blamed
 
 
+@runtime_checkable
 class Engine(Protocol):
     """The interface of engines."""
 
@@ -40,16 +45,35 @@ class Engine(Protocol):
         """
 
 
+def refuse_other(engine: object) -> None:
+    """Refuse what is not an engine, before a store is made."""
+    if engine is not None and (isinstance(engine, type) or not isinstance(engine, Engine)):
+        message = f"{echo(engine)} is not an engine; write for example st.Threads(4)"
+        raise DescriptionError.of("engine", message)
+
+
+Workers = Annotated[Whole, Field(ge=1)]
+
+
+@validate
 class Threads(NamedTuple):
     """Threads of this process; the solver runs outside Python's lock.
 
     Parameters
     ----------
-    workers : int
-        Number of threads.
+    workers : int, optional
+        Number of threads; by default that of the cores.
+
+    Examples
+    --------
+    As `engine` of `stiction.sweep`:
+
+    >>> import stiction as st
+    >>> st.Threads(4)
+    st.Threads(workers=4)
     """
 
-    workers: int = CORES
+    workers: Workers = CORES
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield the outcome of each task."""
@@ -84,8 +108,11 @@ def in_threads(
             pool.shutdown(wait=True, cancel_futures=True)
 
 
+@validate
 class Processes(NamedTuple):
     """Processes of this machine, which start and end with the study.
+
+    They need the extra ``stiction[cluster]``.
 
     Anyone with access to a scheduler can run code on its workers. These processes accept
     connections only from this machine, with a certificate that is made for the study.
@@ -97,10 +124,18 @@ class Processes(NamedTuple):
     dashboard : bool, optional
         Whether to show dask's dashboard to every user of this machine, at
         http://localhost:8787 if that port is free.
+
+    Examples
+    --------
+    As `engine` of `stiction.sweep`:
+
+    >>> import stiction as st
+    >>> st.Processes(4)
+    st.Processes(workers=4)
     """
 
-    workers: int
-    dashboard: bool = False
+    workers: Workers
+    dashboard: Annotated[bool, Field(strict=True)] = False
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield what comes of each task."""
@@ -128,17 +163,26 @@ class Processes(NamedTuple):
                 yield from outcomes(client, work, tasks)
 
 
+@validate
 class Scheduler(NamedTuple):
-    """A running dask scheduler with its workers.
+    """A running dask scheduler with its workers, for which ``stiction[cluster]`` is needed.
 
     Parameters
     ----------
     address : str
         tcp://host:port, or tls://host:port with the certificates in dask's settings. It and its
         workers run code of this process, and this process trusts their answers.
+
+    Examples
+    --------
+    As `engine` of `stiction.sweep`:
+
+    >>> import stiction as st
+    >>> st.Scheduler("tcp://node-1:8786")
+    st.Scheduler(address='tcp://node-1:8786')
     """
 
-    address: str
+    address: Annotated[str, Field(strict=True)]
 
     def results(self, work: Work[T], tasks: Iterable[int]) -> Iterator[T]:
         """Yield what comes of each task."""

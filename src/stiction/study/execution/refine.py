@@ -22,7 +22,7 @@ from stiction.study.execution.engines import Engine
 from stiction.study.execution.sweep import Tally, sweep
 from stiction.study.plan.axes import Values
 from stiction.study.plan.coordinates import ascending, number
-from stiction.study.plan.study import Study, refuse_other
+from stiction.study.plan.study import Study, study_of
 from stiction.study.store.kept import UNKNOWN, flag_attributes
 from stiction.study.store.seal import seal
 from stiction.study.store.store import errors_as_message, group_at, open_study
@@ -107,7 +107,7 @@ def widest(found: Intervals, along: str) -> float:
 
 
 def refine(
-    study: Study,
+    study: Study | str | Path,
     path: str | Path,
     along: str,
     to: Quantity,
@@ -120,8 +120,9 @@ def refine(
 
     Parameters
     ----------
-    study : Study
-        Its grid along the axis must be fine enough to show each change; it keeps "regime".
+    study : Study, str or Path
+        The study, or its file. Its grid along the axis must be fine enough to show each change; it
+        keeps "regime".
     path : str or Path
         Its store; missing runs are done first.
     along : str
@@ -159,7 +160,7 @@ def refine(
     >>> found.sizes["point"] > 0
     True
     """
-    refuse_other(study)
+    study = study_of(study)
     along, width, apart = request(study, along, to, apart)
     sweep(study, path, engine=engine, progress=progress)
     found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs

@@ -10,7 +10,7 @@ from stiction.errors import ResultError
 from stiction.storage.files import place, workshop
 from stiction.storage.version import own_version
 from stiction.study.execution.sweep import do
-from stiction.study.plan.study import Study, refuse_other
+from stiction.study.plan.study import Study, study_of
 from stiction.study.store import seal
 from stiction.study.store.creation import lay_out
 from stiction.study.store.store import CHECKED, Store, group_at, store_at
@@ -81,8 +81,7 @@ def restore(path: Path, *, trust: bool = False) -> list[str]:
         raise ResultError(
             f"{path}: stiction {wrote} wrote it, this is {own_version()}; use that one"
         )
-    study = Study.from_json(str(group.attrs["description"]), trust=trust)
-    refuse_other(study)
+    study = study_of(Study.from_json(str(group.attrs["description"]), trust=trust))
     if found.head:
         _restore_head(study, path, found.head)
         files, found = [*found.head], damage_of(path)

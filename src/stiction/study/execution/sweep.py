@@ -17,9 +17,9 @@ from stiction.own_code.source import raised_in_law
 from stiction.solver.integrate import Room
 from stiction.storage.files import folder_lock
 from stiction.study.execution.cores import Cores
-from stiction.study.execution.engines import Engine
+from stiction.study.execution.engines import Engine, refuse_other
 from stiction.study.plan.layout import Index, Layout, places, runs_of, size_of
-from stiction.study.plan.study import Study, refuse_other
+from stiction.study.plan.study import Study, study_of
 from stiction.study.store.creation import create
 from stiction.study.store.kept import Kept, stored_variables
 from stiction.study.store.store import COMPLETED, ERROR, REFUSED, BlockResults, Store, open_store
@@ -280,7 +280,7 @@ class Pace:
 
 
 def sweep(
-    study: Study,
+    study: Study | str | Path,
     path: str | Path,
     *,
     engine: Engine | None = None,
@@ -293,13 +293,13 @@ def sweep(
 
     Parameters
     ----------
-    study : Study
-        The study.
+    study : Study, str or Path
+        The study, or its file.
     path : str or Path
         The store: a folder, made if it does not exist.
     engine : Engine, optional
-        The engine for the runs; by default all cores of this machine: threads, and processes
-        beside them if it takes longer than some seconds.
+        The engine for the runs, `Threads`, `Processes` or `Scheduler`; by default all cores of this
+        machine: threads, and processes beside them if it takes longer than some seconds.
     progress : callable, optional
         Called with a `Tally` after each task.
 
@@ -311,7 +311,7 @@ def sweep(
     Raises
     ------
     DescriptionError
-        If `study` is none.
+        If `study` cannot be read, or `engine` is none.
     ResultError
         If something else is there, or the store cannot be written.
 
@@ -326,7 +326,8 @@ def sweep(
     phi.zarr
       3 of 3 runs are done.
     """
-    refuse_other(study)
+    study = study_of(study)
+    refuse_other(engine)
     store = open_store(study, path) if Path(path).exists() else create(study, path)
     left = missing(store)
     with folder_lock(store.path, alone=True) as first:

@@ -360,11 +360,20 @@ def _in_file(fault: Fault) -> Fault:
     return Fault(path if path.startswith("axes") else f"study.{path}", fault.message)
 
 
-def refuse_other(study: object) -> None:
-    """Refuse what is not a study, or has measures that may not be run."""
-    if not isinstance(study, Study):
-        remedy = "make one with st.Study(...) or read one with st.Study.from_toml(path)"
-        raise DescriptionError.of("study", f"{echo(study)} is not a Study; {remedy}")
-    for each in study.measures:
+def study_of(source: Study | str | Path) -> Study:
+    """Return a study as it is, or read it from a file; its measures may be run.
+
+    Raises
+    ------
+    DescriptionError
+        If it is neither, or has measures that may not be run.
+    """
+    if isinstance(source, str | Path):
+        return Study.from_toml(source)
+    if not isinstance(source, Study):
+        remedy = "make one with st.Study(...), or give the path of its file"
+        raise DescriptionError.of("study", f"{echo(source)} is not a Study; {remedy}")
+    for each in source.measures:
         if isinstance(each, OwnMeasure) and each.function is None:
             raise refusal(each.reference)
+    return source
