@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from math import pi, sqrt
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -29,6 +29,9 @@ from stiction.text.toml import read_toml
 from stiction.text.units import Quantity, in_words
 from stiction.text.validation import unknown_name
 from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 HEADINGS = (
     "law", "sticks", "stuck", "largest {}/W", "fastest slip", "slowest slip while loading",
@@ -79,9 +82,12 @@ class Comparison(Report, dict[str, Trajectory]):
         headings = tuple(each.format(force) for each in HEADINGS)
         return [Section("Friction laws", early, Table(headings, rows))]
 
-    def plot(self, axes: Any = None, *, window: Sequence[Quantity] | None = None) -> Any:
+    def plot(
+        self, axes: Any = None, *, window: Sequence[Quantity] | None = None
+    ) -> dict[str, Axes]:
         """Draw the runs together; see `stiction.plotting.plot_comparison`."""
-        return draw("plot_comparison", self, axes, window=window)
+        drawn: dict[str, Axes] = draw("plot_comparison", self, axes, window=window)
+        return drawn
 
 
 def row(label: str, run: Trajectory, o: Outcome) -> tuple[str, ...]:

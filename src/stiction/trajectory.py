@@ -42,6 +42,7 @@ from stiction.text.validation import read_arguments
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True)
@@ -188,9 +189,12 @@ class Trajectory:
         """Write samples and sticks as CSV, Parquet or MATLAB; see `stiction.export`."""
         return export(self, path)
 
-    def plot(self, axes: Any = None, *, window: Sequence[Quantity] | None = None) -> Any:
+    def plot(
+        self, axes: Any = None, *, window: Sequence[Quantity] | None = None
+    ) -> dict[str, Axes]:
         """Draw the run; see `stiction.plotting.plot_run`."""
-        return draw("plot_run", self, axes, window=window)
+        drawn: dict[str, Axes] = draw("plot_run", self, axes, window=window)
+        return drawn
 
     def state(self, time: Quantity) -> Initial:
         """Return the state at the sample nearest to `time` (s), as the start of another run.

@@ -4,9 +4,10 @@ A quantity is text with its unit, a number in SI, or one of pint. What is read f
 float.
 """
 
-from typing import Any
+from typing import Any, assert_type
 
 import pytest
+from matplotlib.axes import Axes
 from pint import UnitRegistry
 
 import stiction as st
@@ -102,3 +103,16 @@ def test_a_misspelt_argument_is_marked_before_it_runs() -> None:
         st.Grid("1 deg", "3 deg", nubmer=3)  # type: ignore[call-arg]
     with pytest.raises(st.DescriptionError, match="v_g"):
         laws.ExponentialWeakening(0.3, 0.2, v_g="1 mm/s")  # type: ignore[call-arg]
+
+
+def test_a_checker_knows_what_a_drawing_returns() -> None:
+    """It was Any: an editor completed nothing, and found no misspelt panel."""
+    run = st.simulate(SLIDER, "20 ms")
+    assert_type(run.plot(), dict[str, Axes])
+    assert_type(SLIDER.plot(), Axes)
+    assert_type(st.compare(run.description, "coulomb").plot(), dict[str, Axes])
+
+
+def test_engines_have_types() -> None:
+    assert_type(st.Threads(4).workers, int)
+    assert_type(st.Scheduler("tcp://node-1:8786").address, str)

@@ -11,6 +11,7 @@ import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.record import Record
+from stiction.arguments import with_article
 from stiction.drive.recorded.reading import locate_nothing
 from stiction.errors import DescriptionError, ResultError, echo
 from stiction.explorer.motion import CURVES
@@ -136,7 +137,9 @@ def name_of(source: Any) -> str:
     """Return a source's name in the title of the page."""
     if isinstance(source, Record) and source.origin is not None:
         source = source.origin.file
-    return Path(source).name if isinstance(source, str | Path) else f"a {type(source).__name__}"
+    if isinstance(source, str | Path):
+        return Path(source).name
+    return with_article(type(source).__name__)
 
 
 def open_source(source: Any, trust: bool) -> dict[str, Any]:
@@ -163,7 +166,8 @@ def open_source(source: Any, trust: bool) -> dict[str, Any]:
         channels = {"spring_x": source.force, "X": source.position, "slip_speed": source.slip_speed}
         known = {name: values for name, values in channels.items() if values is not None}
         return {"measured": {"time": source.time, **known}, "origin": "measured"}
-    message = f"a {type(source).__name__} cannot be explored; give a file, a description or a run"
+    given = with_article(type(source).__name__)
+    message = f"{given} cannot be explored; give a file, a description or a run"
     raise ResultError(message)
 
 

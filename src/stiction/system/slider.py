@@ -41,6 +41,9 @@ from stiction.text.toml import Reader, folder_of, gather, read_slider, toml_text
 from stiction.text.units import Angle, Damping, Force, Mass, Radians, Stiffness
 from stiction.text.validation import Described, faulty, in_si
 
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
 
 def _within_a_right_angle(phi: float) -> float:
     if abs(phi) > pi / 2 * (1 + 1e-12):
@@ -388,9 +391,10 @@ class Slider(Apparatus):
         load = ahead(load_stretches(self.normal_load, self.load), t)
         return min(drive[0], load[0])
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> Axes:
         """Draw the slider from above; see `stiction.plotting.plot_slider`."""
-        return draw("plot_slider", self, axes)
+        drawn: Axes = draw("plot_slider", self, axes)
+        return drawn
 
     def replace(self, **changes: Any) -> Self:
         """Return the same slider with some parameters changed, e.g. ``phi="3 deg"``."""

@@ -7,9 +7,11 @@ import sys
 import pytest
 from tests.explored import an_opened, decode
 
+from stiction.errors import ResultError
 from stiction.explorer import answers, session
 from stiction.explorer.answers import tables_of
 from stiction.explorer.session import Session, Superseded
+from stiction.explorer.source import open_source
 from stiction.own_code.source import Text, module_of
 
 
@@ -199,3 +201,9 @@ def test_what_a_law_raises_is_told_with_its_place(monkeypatch, capsys):
 def test_there_are_two_lanes():
     assert session.LANES == 2
     assert len(replies(do="start", lane=1)) == 2
+
+
+def test_what_cannot_be_explored_is_named_with_its_article():
+    """It was "a int"."""
+    with pytest.raises(ResultError, match=r"^an int cannot be explored"):
+        open_source(3, False)

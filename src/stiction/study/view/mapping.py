@@ -86,7 +86,7 @@ class Map(NamedTuple):
         """The remaining dimensions."""
         return tuple(str(dim) for dim in self.data["status"].dims)
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> NDArray[np.object_]:
         """Draw it; see `stiction.study.view.mapping.plot_map`."""
         return plot_map(self, axes)
 
