@@ -8,7 +8,7 @@ import xarray as xr
 
 import stiction as st
 from stiction.study.execution.engines import Processes, Threads
-from stiction.study.plan.coordinates import unit, vary
+from stiction.study.plan.coordinates import unit, values, vary
 from stiction.study.plan.layout import Layout, layout_of, places
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
@@ -483,3 +483,28 @@ def test_what_is_no_engine_leaves_no_store(tmp_path, engine):
     with pytest.raises(st.DescriptionError, match=r"engine: .* is not an engine; write .*Threads"):
         st.sweep(study, tmp_path / "a.zarr", engine=engine)
     assert not (tmp_path / "a.zarr").exists()
+
+
+def test_a_grid_has_the_decimals_that_one_means():
+    """A store is asked for its run at 0.45, not at 0.44999999999999996."""
+    rng = np.random.default_rng(11)
+    for _ in range(300):
+        places, count = int(rng.integers(0, 5)), int(rng.integers(2, 300))
+        first, step = int(rng.integers(-200, 200)), int(rng.integers(1, 10 ** (places + 1)))
+        wanted = [float(f"{first + step * each}e-{places}") for each in range(count)]
+        grid = st.Grid(f"{wanted[0]!r} N", f"{wanted[-1]!r} N", count)
+        assert values(grid, "N", 0, 0).tolist() == wanted
+    for ends in (("1 um/s", "1 m/s", 7), ("0.1 mm/s", "100 mm/s", 4)):
+        decades = values(st.Grid(*ends, spacing="log"), "m/s", 0, 0).tolist()
+        assert decades == [float(f"1e{int(np.rint(np.log10(each)))}") for each in decades]
+
+
+def test_a_grid_of_other_numbers_is_as_even_as_floats_are():
+    rng = np.random.default_rng(12)
+    for _ in range(300):
+        low, high = np.sort(rng.normal(0.0, 10.0 ** rng.uniform(-9, 9), 2)).tolist()
+        count = int(rng.integers(2, 300))
+        made = values(st.Grid(f"{low!r} m", f"{high!r} m", count), "m", 0, 0)
+        off = 8.0 * np.finfo(float).eps * max(abs(low), abs(high))
+        np.testing.assert_allclose(made, np.linspace(low, high, count), rtol=0.0, atol=2.0 * off)
+        assert (made[0], made[-1]) == (low, high)

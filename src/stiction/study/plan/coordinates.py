@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from math import radians
+from math import log, radians
 from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic_core import PydanticCustomError
 
-from stiction.arrays import Floats, Indices
+from stiction.arrays import TINY, Floats, Indices
 from stiction.errors import DescriptionError, Fault, echo
-from stiction.study.plan.axes import Axis, Range
+from stiction.study.plan.axes import Axis, Grid, Range
 from stiction.study.variables.measures import MEASURES
 from stiction.system import parameter
 from stiction.system.description import Description
@@ -21,6 +21,8 @@ from stiction.text.units import Kind, bare, in_words, span, to_si
 from stiction.text.validation import unknown_name
 
 TAKEN = {"status", "message", "time", *MEASURES}  # reserved names in a store
+ROUNDING = 8.0 * np.finfo(float).eps  # relative: what a value on a grid may be off by
+DIGITS = 12  # of a value on a grid that somebody would write
 NAME = re.compile(r"\w[\w ,.-]*")
 
 
@@ -169,10 +171,27 @@ def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
         if not start * stop > 0.0:
             raise ValueError("logarithms need values of one sign, none zero; use spacing 'linear'")
         made: Floats = start * (stop / start) ** share
+        off = ROUNDING * (1.0 + abs(log(stop / start))) * np.abs(made)
     else:
         made = start + (stop - start) * share
+        off = np.full(len(made), ROUNDING * max(abs(start), abs(stop)))
+    if isinstance(axis, Grid):
+        made = decimals(made, off)
     made[share == 0.0], made[share == 1.0] = start, stop  # without rounding
     return made
+
+
+def decimals(values: Floats, off: Floats) -> Floats:
+    """Return values that are at most so far off, as the decimals of few digits that they may be.
+
+    Who asks a store for its value at 0.45 means that number, not the one below.
+
+    >>> decimals(np.array([0.45 - 1e-16, 1.0 / 3.0]), np.array([4e-16, 4e-16]))
+    array([0.45      , 0.33333333])
+    """
+    places = DIGITS - np.ceil(np.log10(np.maximum(np.abs(values), off / ROUNDING) + TINY))
+    near = np.array([*map(round, values.tolist(), places.astype(int).tolist())])
+    return np.where(np.abs(near - values) <= off, near, values)
 
 
 def coordinate_faults(
