@@ -240,7 +240,8 @@ def _oscillation(record: Record, run: Trajectory | None, cycles: xr.Dataset) -> 
     """Follow the transverse oscillation of a run, or the strongest line of a record."""
     if run is not None:
         return apart(transverse_oscillation(run), cycles)
-    return strongest_line(record, _above(record, cycles), cycles=cycles)
+    fastest = cycles["period"].values.min() if cycles.sizes["cycle"] else record.duration / 10.0
+    return strongest_line(record, HARMONICS / max(float(fastest), TINY), cycles=cycles)
 
 
 def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | None:
@@ -256,9 +257,3 @@ def _free_of_hum(oscillation: xr.Dataset | None, cycles: xr.Dataset) -> float | 
         return None
     width = 2.0 / float(np.nanmedian(seen))
     return width if width * BINS < float(np.median(rises)) else None
-
-
-def _above(record: Record, cycles: xr.Dataset) -> float:
-    """Return the frequency (Hz) above which an oscillation is sought."""
-    fastest = cycles["period"].values.min() if cycles.sizes["cycle"] else record.duration / 10.0
-    return HARMONICS / max(float(fastest), TINY)

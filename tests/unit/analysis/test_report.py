@@ -16,7 +16,6 @@ from stiction.analysis.creep.mean_curve import calibrate
 from stiction.analysis.export import write
 from stiction.analysis.motion.cycle_columns import mean_in_words
 from stiction.analysis.parts import creep
-from stiction.analysis.parts.motion import plainly
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
 from stiction.text.columns import SHOWN, rows_left_out
@@ -395,7 +394,7 @@ def test_the_motion_agrees_with_the_oscillation_in_noise(samples, period, noise,
     swings = np.sin(2.0 * np.pi * number / period) * (force == 10.0)
     scatter = noise * np.random.default_rng(1).standard_normal(len(number))
     found = st.analyse(st.Record(time=1e-3 * number, force=force + swings + scatter))
-    said = plainly(found)
+    said = found.parts["motion"]
     seen = found.oscillation["frequency"].values
     if np.isfinite(seen).mean() > 0.5 and abs(1e3 / period / 50.0 % 1.0) > 0.01:
         assert "swings" in said or "vibrates" in said or found.cycles.sizes["cycle"]

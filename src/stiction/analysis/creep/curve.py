@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.peak_refinement import Pieces
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
@@ -31,6 +32,7 @@ CURVES = {
     "end": ("s", "time to slip when the bin ends"),
 }
 GROWTH = 0.125  # least width of a bin as a share of the time to slip
+TOGETHER = 16  # stick phases that are averaged at once
 
 
 def creep_curves(
@@ -114,15 +116,17 @@ def curves_of(
     edges = bin_edges(least, float(length.max(initial=0.0)))
     grain = _grain(record, position)
     table = np.full((len(Bins._fields), len(phases), len(edges) - 1), np.nan)
-    for phase, (start, slip) in enumerate(phases):
-        times = slip - edges[edges <= slip - start]
-        if isinstance(source, Trajectory):
-            sticks = source.stick_intervals
-            found = between_rests(record, position, sticks, times, (start, slip))
-        else:
-            found = between_halves(record, position, times, slip)
-        rounding = grain / (found.begin - found.end)
-        table[:, phase, : len(times) - 1] = found._replace(error=np.fmax(found.error, rounding))
+    if isinstance(source, Trajectory):
+        for phase, (start, slip) in enumerate(phases):
+            times = slip - edges[edges <= slip - start]
+            found = between_rests(record, position, source.stick_intervals, times, (start, slip))
+            table[:, phase, : len(times) - 1] = found
+    else:
+        for first in range(0, len(phases), TOGETHER):
+            some = slice(first, first + TOGETHER)
+            table[:, some] = between_halves(record, position, edges, phases[some])
+    found = Bins(*table)
+    table[1] = np.fmax(found.error, grain / (found.begin - found.end))
     return xr.Dataset(
         {
             name: (("phase", "bin"), values, {"units": unit, "long_name": meaning})
@@ -285,20 +289,26 @@ def integral(time: Floats, values: Floats, at: Floats) -> Floats:
     return np.asarray(whole + part * (values[which] + 0.5 * slope * part))
 
 
-def between_halves(record: Record, position: Floats, times: Floats, slip: float) -> Bins:
-    """Average between `times` (s, descending) by the trimmed means of both halves of each bin."""
-    velocity, error, force = np.full((3, max(len(times) - 1, 0)), np.nan)
-    at = np.searchsorted(record.time, times)[::-1]
-    middle = (at[:-1] + at[1:]) // 2
-    seen = middle - at[:-1] >= 2
+def between_halves(record: Record, position: Floats, edges: Floats, phases: Floats) -> Bins:
+    """Average between edges (s to slip) by the trimmed means of both halves of each bin.
+
+    Of some stick phases from a start to an end (s), (n, 2), together: (n, bins).
+    """
+    velocity, error, force = np.full((3, len(phases), len(edges) - 1), np.nan)
+    start, slip = phases[:, :1], phases[:, 1:]
+    times = np.where(edges <= slip - start, slip - edges, np.nan)
+    at = np.searchsorted(record.time, times)
+    middle = (at[:, :-1] + at[:, 1:]) // 2
+    whole = np.isfinite(times[:, 1:])
+    seen = whole & (middle - at[:, 1:] >= 2)
     if seen.any():
-        samples = at[0] + np.flatnonzero(np.repeat(seen, np.diff(at)))
-        halves = np.column_stack([middle - at[:-1], at[1:] - middle])[seen].ravel()
-        starts = np.cumsum(halves) - halves
+        ends = np.column_stack([at[:, 1:][seen], middle[seen], at[:, :-1][seen]])
+        samples, piece, starts = Pieces.between(ends[:, :-1].ravel(), ends[:, 1:].ravel() - 1)
+        to_slip = record.time[samples] - np.broadcast_to(slip, seen.shape)[seen][piece // 2]
+        passed = np.diff(np.add.reduceat(to_slip, starts) / np.diff(ends).ravel())[::2]
         places, off = trimmed_means(position[samples], starts)
-        passed = np.diff(np.add.reduceat(record.time[samples] - slip, starts) / halves)[::2]
-        forward = seen[::-1]
-        velocity[forward] = (np.diff(places)[::2] / passed)[::-1]
-        error[forward] = (np.hypot(off[::2], off[1::2]) / passed)[::-1]
-        force[forward] = trimmed_means(record.force[samples], starts[::2])[0][::-1]
-    return Bins(velocity, error, force, slip - times[1:], slip - times[:-1])
+        velocity[seen] = np.diff(places)[::2] / passed
+        error[seen] = np.hypot(off[::2], off[1::2]) / passed
+        force[seen] = trimmed_means(record.force[samples], starts[::2])[0]
+    begin, end = (np.where(whole, slip - each, np.nan) for each in (times[:, 1:], times[:, :-1]))
+    return Bins(velocity, error, force, begin, end)

@@ -57,16 +57,8 @@ def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Float
     A slip goes on while the drive holds, and may begin there. It gains then on a drive that keeps
     its largest speed, as every slip does: a mass that relaxes in a hold is slower.
 
-    Parameters
-    ----------
-    slider : Slider
-        The system.
-    time : ndarray
-        (n,), s.
-    elongation : ndarray
-        (n,), elongation of the spring along X, u_x cos(phi) + u_y sin(phi), m.
-    drive : ndarray
-        (n,), velocity of the drive along X, m/s; (1,) if it is constant.
+    The elongation (n,), m, is that along X, u_x cos(phi) + u_y sin(phi), and the velocity of the
+    drive (n,), m/s, too; (1,) if it is constant.
     """
     from stiction.analysis.creep.slip_finder import find_slip
 
@@ -76,14 +68,9 @@ def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Float
 
 def slips_at_once(slider: Slider) -> bool:
     """Return whether the first stick ends with a slip along the drive, without creep before it."""
-    angle = force_off_drive(slider)
+    phi = abs(slider.misalignment)  # between drive and force of both springs, while it first rests
+    angle = abs(float(theory.first_force_angle(phi, slider.k_x, slider.k_y)) - phi)
     return angle < STRAIGHT or (angle < OBLIQUE and _runs_away(slider))
-
-
-def force_off_drive(slider: Slider) -> float:
-    """Return the angle between drive and force of both springs while the mass first rests, rad."""
-    phi = abs(slider.misalignment)
-    return abs(float(theory.first_force_angle(phi, slider.k_x, slider.k_y)) - phi)
 
 
 def _runs_away(slider: Slider) -> bool:

@@ -117,16 +117,9 @@ def crept_force(
 ) -> Floats:
     """Return k_x times the distance crept (N) up to each force, up to a constant, by Eq. (7).
 
-    Parameters
-    ----------
-    force : array
-        (n,), N, increasing and below `F_0`.
-    phi, F_0 : float
-        Misalignment (rad), friction at zero slip (N).
-    ratio : float
-        k_x/k_y, with which u_y = F sin(theta)/k_y turns the slip back.
-    weakening : float
-        -V F'(0)/F_0: friction is F_0/(1 + weakening |s|/V) with |s| = V sin(phi)/sin(theta).
+    Forces (n,), N, increase and are below `F_0`, the friction at zero slip. By `ratio`, k_x/k_y,
+    u_y = F sin(theta)/k_y turns the slip back; by `weakening`, -V F'(0)/F_0, friction is F_0/(1 +
+    weakening |s|/V) with |s| = V sin(phi)/sin(theta).
     """
     nearest, farthest = (float(np.arccos(min(each / F_0, 1.0))) for each in (force[-1], force[0]))
     theta = np.linspace(max(0.6 * nearest, 1.0001 * phi), min(1.05 * farthest, 0.999 * pi), GRID)

@@ -156,15 +156,8 @@ def fit_misalignment(
 def implied_velocity(found: Misalignment, force: Floats, ratio: float = 0.0) -> Floats:
     """Return the creep over the drive's velocity that a misalignment implies at some forces.
 
-    Parameters
-    ----------
-    found : Misalignment
-        From `fit_misalignment`.
-    force : ndarray
-        Along the drive, N, at the load to which its F_0 belongs; beyond the largest, at which the
-        mass slips, the result is NaN.
-    ratio : float, optional
-        k_x/k_y.
+    Forces are along the drive, N, at the load to which its F_0 belongs; beyond the largest, at
+    which the mass slips, the result is NaN. The `ratio` is k_x/k_y.
     """
     its = turning_creep(found.phi, float(np.nan_to_num(found.weakening)), ratio)
     return np.asarray(np.interp(force / found.F_0, its.force, its.velocity, right=np.nan))

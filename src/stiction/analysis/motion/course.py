@@ -42,12 +42,8 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     They may grow first, while the spring is loaded, if the quiet afterwards lasts longer than they
     did.
 
-    Parameters
-    ----------
-    drop, period : array
-        (n,) for each swing, in any unit, and in that of `rest`.
-    rest : float
-        Time from the last of them until the drive or the load changes, or the record ends.
+    The `rest` is the time from the last of them until the drive or the load changes, or the record
+    ends, in the unit of their periods.
     """
     size = np.asarray(drop, dtype=np.float64)
     quiet = is_over(np.asarray(period), rest)
@@ -64,12 +60,7 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
 def is_over(period: Floats, rest: float) -> bool:
     """Return whether it is quiet for long after some swings, so that without noise none follows.
 
-    Parameters
-    ----------
-    period : ndarray
-        (n,) of each swing, in the unit of `rest`.
-    rest : float
-        Time from the last of them until the drive or the load changes, or the record ends.
+    The `rest` is as for `dies_out`.
     """
     return len(period) > 0 and bool(rest > QUIET * period.max())
 

@@ -114,16 +114,8 @@ def table_of(cycles: xr.Dataset) -> CycleTable:
 def tabulate(record: Record, corners: Vertices, dips: Vertices, least: float) -> CycleTable:
     """Return a row for each cycle, with `COLUMNS`; a cycle that a gap hides has none.
 
-    Parameters
-    ----------
-    record : Record
-        What was measured.
-    corners : Vertices
-        Troughs and peaks in turn, a trough first and last (s, N).
-    dips : Vertices
-        Hesitations: time of the first point (s), and depth (N).
-    least : float
-        Depth of a hesitation that is seen, N.
+    Corners are troughs and peaks in turn, a trough first and last; dips are hesitations, the time
+    of the first point (s) and the depth (N), of which `least` is seen.
     """
     columns = dict.fromkeys(COLUMNS, np.zeros(0))
     if len(corners.time) >= 3:

@@ -187,14 +187,7 @@ def is_rounding(table: CycleTable, force: Floats) -> bool:
 def lasts_through_loading(line: Line, time: Floats, force: Floats) -> bool:
     """Return whether a line is as large while the spring is first loaded as it is afterwards.
 
-    Then it is a disturbance: a mass that sticks does not vibrate.
-
-    Parameters
-    ----------
-    line : Line
-        The line.
-    time, force : ndarray
-        (n,), s, and N, the line included.
+    Then it is a disturbance: a mass that sticks does not vibrate. The line is in the force.
     """
     loaded = _end_of_loading(time, force - line.values, line.height)
     if loaded is None:

@@ -106,7 +106,8 @@ def _likely_rate(cycles: CycleTable) -> float:
     """
     if len(cycles) < 2:
         return 0.0
-    away = [_away_from_middle(cycles[f"{end}_time"], cycles[end]) for end in ("peak", "trough")]
+    ends = [(cycles[f"{end}_time"], cycles[end]) for end in ("peak", "trough")]
+    away = [(at - at.mean(), force - force.mean()) for at, force in ends]
     rates = [_rate(*each, len(cycles) - 2) for each in away]
     (peaks, peak_error), (troughs, trough_error) = rates
     if abs(peaks - troughs) > LIKELY * np.hypot(peak_error, trough_error):
@@ -115,10 +116,6 @@ def _likely_rate(cycles: CycleTable) -> float:
     rates.append(_rate(at, force, 2 * len(cycles) - 3))
     likely = (rate for rate, error in rates if abs(rate) > LIKELY * error)
     return max(likely, key=abs, default=0.0)
-
-
-def _away_from_middle(at: Floats, force: Floats) -> tuple[Floats, Floats]:
-    return at - at.mean(), force - force.mean()
 
 
 def _rate(at: Floats, force: Floats, freedom: int) -> tuple[float, float]:

@@ -73,14 +73,8 @@ def cycle_corners(
 ) -> Hesitations:
     """Take the hesitations out of peaks and troughs, of which a trough stays first and last.
 
-    Parameters
-    ----------
-    value, time : ndarray
-        (n,) of alternating peaks and troughs, N and s.
-    ends : tuple of float
-        Extremes before and after them, as for `remove_hesitations`, N.
-    trough : bool
-        Whether the first is a trough.
+    The `ends` are extremes before and after them, as for `remove_hesitations`, N; `trough` says
+    whether the first is a trough.
     """
     values = np.concatenate([ends[:1], value, ends[1:]])
     found = remove_hesitations(level(values, time))
@@ -93,11 +87,8 @@ def cycle_corners(
 def remove_hesitations(values: Floats) -> Hesitations:
     """Remove the hesitations from a sequence of turning points.
 
-    Parameters
-    ----------
-    values : ndarray
-        (n,) alternating peaks and troughs. The first and last value are extremes before and after
-        them, lower bounds of the movements that the record cuts.
+    Peaks and troughs alternate. The first and last value are extremes before and after them, lower
+    bounds of the movements that the record cuts.
     """
     most = largest_leg(values)
     found = _below(values, HALF, most)
@@ -115,11 +106,6 @@ def largest_leg(values: Floats) -> float:
 
     There is one if a few falls, or rises, are far above all others, `FAR_ABOVE` times the largest
     of these, unless a loading leads to these falls.
-
-    Parameters
-    ----------
-    values : ndarray
-        (n,) alternating peaks and troughs, as for `remove_hesitations`.
     """
     change = np.diff(values[1:-1])
     few = len(change) // (2 * RARE)
@@ -137,10 +123,7 @@ def largest_leg(values: Floats) -> float:
 def _is_loaded(values: Floats, fall: Floats) -> bool:
     """Return whether a force rises most of the time by what it loses in a few falls.
 
-    Parameters
-    ----------
-    values, fall : ndarray
-        (n,) peaks and troughs in turn, and the height of such a fall from each of them, or 0.
+    Of each of some peaks and troughs in turn, `fall` is the height of such a fall from it, or 0.
     """
     passed = np.cumsum(fall) - fall
     peaks = (values + passed)[int(values[0] < values[1]) :: 2]

@@ -8,10 +8,15 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.motion.loading import are_flanks, late_line, loading_rate, rise_ends
+from stiction.analysis.motion.loading import (
+    are_flanks,
+    late_line,
+    loading_rate,
+    rise_ends,
+    tops_of_rises,
+)
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import fall_by_rounding
-from stiction.arrays import Floats
 from stiction.recording.noise import white_noise
 
 OFTEN = 0.5  # of the rises: if more ring, the load cell does
@@ -40,9 +45,7 @@ def swings_of_cell(record: Record, cycles: CycleTable) -> CellSwings | None:
     time, force = record.time, record.force
     start, peak_time = cycles["start"], cycles["peak_time"]
     first, last = rise_ends(time, start, peak_time)
-    tops = np.array(
-        [_top(time[i : j + 1], force[i : j + 1]) for i, j in zip(first, last, strict=True)]
-    )
+    tops = time[tops_of_rises(time, force, first, last)[0]]
     of_noise = 2.0 * np.sqrt(2.0 * np.log(last - first + 1.0))  # the usual range of so many
     hidden = of_noise * white_noise(force) + fall_by_rounding(force)
     rings = are_flanks(time, force, start, tops, peak_time, hidden)
@@ -54,8 +57,3 @@ def swings_of_cell(record: Record, cycles: CycleTable) -> CellSwings | None:
     over = np.maximum(force[last] - late.coefficients.sum(axis=1), slope * (tops - start) / pi)
     away = np.abs(loading_rate(time, force, start, peak_time) - slope)
     return CellSwings(*(float(np.median(each[rings])) for each in (lift, over, away)))
-
-
-def _top(time: Floats, force: Floats) -> float:
-    """Return when a rise is farthest above the line to its end."""
-    return float(time[np.argmax(force - np.interp(time, time[[0, -1]], force[[0, -1]]))])

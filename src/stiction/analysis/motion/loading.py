@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.signals.digitised import fall_by_rounding, resolution
-from stiction.analysis.signals.peak_refinement import Fits, fit_pieces
+from stiction.analysis.signals.peak_refinement import Fits, Pieces, fit_pieces
 from stiction.arrays import TINY, Floats, Indices
 from stiction.recording.noise import dither_remainder, white_noise
 
@@ -64,13 +64,10 @@ def loaded_until(
 
 def _deviation(fit: Fits, time: Floats, force: Floats, begin: Indices, end: Indices) -> Floats:
     """Return the root mean square deviation of a force from the line of each piece, N."""
-    counts = end - begin + 1
-    first = np.cumsum(counts) - counts
-    piece = np.repeat(np.arange(len(begin)), counts)
-    at = np.arange(len(piece)) - first[piece] + begin[piece]
+    at, piece, first = Pieces.between(begin, end)
     x = (time[at] - fit.middle[piece]) / fit.half[piece]
     away = force[at] - fit.coefficients[piece, 0] - fit.coefficients[piece, 1] * x
-    return np.asarray(np.sqrt(np.add.reduceat(away**2, first) / counts))
+    return np.asarray(np.sqrt(np.add.reduceat(away**2, first) / (end - begin + 1)))
 
 
 def are_flanks(
@@ -88,19 +85,26 @@ def are_flanks(
     first, last = rise_ends(time, start, peak_time)
     late = late_line(time, force, first, last, 0.5 * (until + peak_time))
     found = loading_rate(time, force, start, until) > FLANK * late.coefficients[:, 1] / late.half
-    hidden = np.broadcast_to(hidden, len(start))
-    for at in np.flatnonzero(found):
-        rise = slice(first[at], last[at] + 1)
-        lead, fall = _swing(time[rise], force[rise])
-        found[at] = fall > max(BACK * lead, hidden[at])
+    if found.any():
+        first, last = first[found], last[found]
+        tops, leads = tops_of_rises(time, force, first, last)
+        its = Pieces.between(tops, last)
+        falls = force[tops] - np.minimum.reduceat(force[its.at], its.begins)
+        least = np.broadcast_to(hidden, len(start))[found]
+        found[found] = falls > np.maximum(BACK * leads, least)
     return found
 
 
-def _swing(time: Floats, force: Floats) -> tuple[float, float]:
-    """Return how far a force comes above the line to its end, and how far it falls from there."""
-    lead = force - np.interp(time, time[[0, -1]], force[[0, -1]])
-    top = int(np.argmax(lead))
-    return float(lead[top]), float(force[top] - force[top:].min())
+def tops_of_rises(
+    time: Floats, force: Floats, first: Indices, last: Indices
+) -> tuple[Indices, Floats]:
+    """Return the sample at which each rise is farthest above the line to its end, and how far."""
+    at, piece, begins = its = Pieces.between(first, last)
+    slope = (force[last] - force[first]) / (time[last] - time[first])
+    line = slope[piece] * (time[at] - time[first][piece]) + force[first][piece]
+    lead = np.where(at == last[piece], 0.0, force[at] - line)
+    farthest = np.maximum.reduceat(lead, begins)
+    return its.first(lead == farthest[piece]), farthest
 
 
 def rise_ends(time: Floats, start: Floats, peak_time: Floats) -> tuple[Indices, Indices]:
@@ -135,13 +139,7 @@ def rounding_of_rates(force: Floats, rise: float) -> float:
 
     Each rise begins at a trough, which is rounded to the same steps as what follows it: the line
     through few of them is too steep, or not steep enough, in most rises. Noise breaks that up.
-
-    Parameters
-    ----------
-    force : ndarray
-        (n,), N.
-    rise : float
-        Usual height of a rise, N.
+    Rises are usually as high as `rise`, N.
     """
     step = resolution(force)
     if not step or rise <= 0.0:

@@ -56,14 +56,8 @@ def still_shares(
 ) -> Floats:
     """Return the share of each cycle for which the mass rests or creeps, in one piece.
 
-    That of the loading counts, from trough to peak: a mass also rests while its drive does.
-
-    Parameters
-    ----------
-    time, speed : ndarray
-        (n,), s, and slip speed over drive velocity.
-    start, peak_time, period : ndarray
-        (cycles,), s.
+    That of the loading counts, from trough to peak: a mass also rests while its drive does. The
+    speed (n,) is that of slip over that of the drive; start, peak and period are of each cycle, s.
     """
     still = np.concatenate([[False], speed < STILL, [False]])
     ends = np.flatnonzero(np.diff(still.astype(np.int8)))
@@ -84,12 +78,7 @@ def still_shares(
 def stick_shares(sticks: Floats, start: Floats, peak_time: Floats, period: Floats) -> Floats:
     """Return the share of each cycle for which the mass sticks while the spring is loaded.
 
-    Parameters
-    ----------
-    sticks : ndarray
-        (n, 2), s: all intervals of sticking, in order.
-    start, peak_time, period : ndarray
-        (cycles,), s.
+    All intervals of sticking, `sticks`, (n, 2), s, are in order.
     """
     return (stuck_until(peak_time, sticks) - stuck_until(start, sticks)) / period
 
@@ -118,14 +107,8 @@ def rests_throughout(time: Floats, speed: Floats | None, sticks: Floats | None) 
     """Return whether a mass is known to rest from beginning to end, also between samples.
 
     With internal states friction never sticks: there a mass rests that moves by no measurable
-    distance.
-
-    Parameters
-    ----------
-    time : ndarray
-        (n,), s.
-    speed, sticks : ndarray or None
-        (n,), slip speed, m/s, and (k, 2), s: all intervals of sticking, in order.
+    distance. The slip speed (n,) is in m/s; `sticks` are all intervals of sticking, (k, 2), s, in
+    order.
     """
     if speed is None or sticks is None or not len(time):
         return False

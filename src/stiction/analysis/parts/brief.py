@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from stiction.analysis.motion.friction import without_loading
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
-from stiction.analysis.parts.motion import plainly
 from stiction.analysis.parts.procedure import name_of
 from stiction.text.sections import Section, first_clause, first_sentence
 from stiction.text.units import with_error
@@ -29,7 +28,7 @@ def section(found: Analysis) -> Section:
     lines = [
         *([] if test is None else [f"A test of {name_of(test).replace('-', ' ')}, as below."]),
         f"{kind[0].upper()}{kind[1:]}.",
-        first_sentence(plainly(found)),
+        first_sentence(found.parts["motion"]),
         _friction(found),
         *_misalignment(found),
         *_warnings(found.warnings),

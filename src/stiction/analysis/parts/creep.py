@@ -32,6 +32,7 @@ RESTING, UNKNOWN = "it rests", "its creep is not determined"
 BARELY = "it creeps at less than a millionth of the drive's velocity"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
 RAPID = 0.5  # of the drive's velocity: a mass so fast does not creep, it gains speed
+FAR_STIFFER = " This supposes a spring across the force that is far stiffer, k_x/k_y ≪ tan² φ."
 EXCLUDED = 9.0  # sum of squares, in standard errors, by which presliding alone fits worse
 
 
@@ -97,11 +98,12 @@ def section(found: Analysis) -> Section:
             f"{with_error(d.exponent, d.exponent_error, '1')} (1/2 by Eq. (8), corrected)."
         )
     if phi is not None:
+        both = found.record.stiffness_across is not None or isinstance(found.source, Trajectory)
         lines.append(
-            f"By Eq. (7){_of_both(found)} it implies a misalignment of "
+            f"By Eq. (7){', with both springs,' * both} it implies a misalignment of "
             f"{with_error(phi.phi, phi.phi_error, 'rad')}{_true(found)}, and "
-            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}{_at_load(found)}.{_assumption(found)}"
-            f"{_below_peak(found, phi)}{_presliding(found, phi)}"
+            f"F_0 = {with_error(phi.F_0, phi.F_0_error, 'N')}{_at_load(found)}."
+            f"{FAR_STIFFER * (not both)}{_below_peak(found, phi)}{_presliding(found, phi)}"
         )
     fits = {"divergence": "Exponent of its divergence", "misalignment": "Implied misalignment"}
     lines += [
@@ -131,22 +133,6 @@ def _presliding(found: Analysis, its: Misalignment) -> str:
         f"{supposed}. One {times(its.contact)} as stiff as the spring would creep so without "
         "any misalignment; the errors do not include that."
     )
-
-
-def _knows_both(found: Analysis) -> bool:
-    """Return whether the fit of creep has the stiffness of both springs."""
-    return found.record.stiffness_across is not None or isinstance(found.source, Trajectory)
-
-
-def _of_both(found: Analysis) -> str:
-    return ", with both springs," if _knows_both(found) else ""
-
-
-def _assumption(found: Analysis) -> str:
-    """Return what Eq. (7) supposes of a spring that is not known."""
-    if _knows_both(found):
-        return ""
-    return " This supposes a spring across the force that is far stiffer, k_x/k_y ≪ tan² φ."
 
 
 def _true(found: Analysis) -> str:

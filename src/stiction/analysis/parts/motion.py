@@ -65,9 +65,19 @@ IMPOSED = {  # by the evidence
 TO_AND_FRO = ("forth", "plateaus")  # of these
 
 
+def find(found: Analysis) -> str:
+    """Describe the motion in a sentence that needs no theory."""
+    return (
+        _describe_imposed_force(found)
+        or _describe_cycles(found)
+        or _describe_unclear_force(found)
+        or _describe_course(found)
+    )
+
+
 def section(found: Analysis) -> Section:
     """Return what follows the plain sentence of the brief, and the evidence of the kind."""
-    said = plainly(found)
+    said = found.parts["motion"]
     more = said.removeprefix(first_sentence(said)).strip()
     grounds = f"Evidence: {found.regime.grounds}." if found.regime.evidence else ""
     return Section("Motion", [line for line in (more, grounds) if line])
@@ -84,16 +94,6 @@ def numbers(found: Analysis) -> dict[str, Any]:
             "evidence": {name: number(value) for name, value in its.evidence.items()},
         }
     }
-
-
-def plainly(found: Analysis) -> str:
-    """Describe the motion in a sentence that needs no theory."""
-    return (
-        _describe_imposed_force(found)
-        or _describe_cycles(found)
-        or _describe_unclear_force(found)
-        or _describe_course(found)
-    )
 
 
 def _describe_imposed_force(found: Analysis) -> str:

@@ -19,7 +19,6 @@ from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
-    from stiction.system.slider import Slider
     from stiction.text.sections import SectionReport
 
 TWO_AXES = (
@@ -103,13 +102,13 @@ def section(found: Analysis) -> Section | None:
     if its is None:
         return None
     shown: Section = its.section
-    if isinstance(source, Trajectory) and _reads_along_two_axes(source.slider):
+    if (
+        isinstance(source, Trajectory)
+        and source.slider.cell_angle is None
+        and source.slider.misalignment != 0.0
+    ):
         shown = shown._replace(sentences=[*shown.sentences, TWO_AXES])
     return shown
-
-
-def _reads_along_two_axes(slider: Slider) -> bool:
-    return slider.cell_angle is None and slider.misalignment != 0.0
 
 
 def name_of(its: SectionReport) -> str:

@@ -73,15 +73,9 @@ def common_mean(
 ) -> CommonMean:
     """Return the mean of values with standard errors, (n,) each, by weighted least squares.
 
-    Parameters
-    ----------
-    values, errors : ndarray
-        (n,), at least one; the errors are those that values do not share.
-    shares : ndarray, optional
-        (n,), further error of each, with its sign, by a quantity that is the same for all: one more
-        unknown, zero within its error.
-    times : int
-        So many values each error counts in: it is averaged away by so many fewer of them.
+    The errors are those that values do not share. Further ones, `shares`, each with its sign, are
+    by a quantity that is the same for all: one more unknown, zero within its error. So many `times`
+    each error counts in values: it is averaged away by so many fewer of them.
     """
     shares = np.zeros(len(values)) if shares is None else shares
     floor = LEAST_ERROR * (float(errors.max()) or 1.0)

@@ -124,18 +124,7 @@ class EvenGrid:
 
 @compute_once
 def even_grid(time: Floats) -> EvenGrid | None:
-    """Return the even grid that is closest to the times of a record.
-
-    Parameters
-    ----------
-    time : ndarray
-        (n,), s, increasing.
-
-    Returns
-    -------
-    EvenGrid or None
-        None for fewer than two samples.
-    """
+    """Return the even grid that is closest to increasing times (s), None for fewer than two."""
     n = len(time)
     if n < 2:
         return None

@@ -73,17 +73,7 @@ class Line(NamedTuple):
 
 
 def narrow_lines(grid: EvenGrid | None, force: Floats, least: float = 1.0) -> list[Line]:
-    """Return up to four lines that are narrow and alone, first those most alone.
-
-    Parameters
-    ----------
-    grid : EvenGrid or None
-        That of the record's times.
-    force : ndarray
-        (n,), N.
-    least : float, optional
-        Their clearness, at least.
-    """
+    """Return up to four narrow lines of at least some clearness, first those most alone."""
     seen = _spectrum_on_grid(force, grid)
     if grid is None or seen is None:
         return []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.turning_points import TurningPoints
@@ -13,6 +14,31 @@ from stiction.arrays import Floats, Indices
 ROUNDING = 1e-9  # a slope less than this part of the bend is none
 LOPSIDED = 0.5  # of its readings beneath: so many more lie on one side of a top that falls suddenly
 LEVEL = 1e-12  # of the largest value: less is neither slope nor bend, as of a force that is clipped
+
+
+class Pieces(NamedTuple):
+    """The samples of pieces of a signal, the piece of each, and where each piece begins in them."""
+
+    at: Indices
+    piece: Indices
+    begins: Indices
+
+    @classmethod
+    def between(cls, first: Indices, last: Indices) -> Pieces:
+        """Return the pieces from one sample to another (included); they may overlap."""
+        counts = last - first + 1
+        begins = np.cumsum(counts) - counts
+        piece = np.repeat(np.arange(len(first)), counts)
+        return cls(np.arange(len(piece)) - begins[piece] + first[piece], piece, begins)
+
+    def first(self, which: NDArray[np.bool_]) -> Indices:
+        """Return the first sample of each piece that is among some (n,); there is one."""
+        where = np.where(which, self.at, np.iinfo(np.intp).max)
+        return np.asarray(np.minimum.reduceat(where, self.begins))
+
+    def last(self, which: NDArray[np.bool_]) -> Indices:
+        """Return the last sample of each piece that is among some (n,); -1 if none is."""
+        return np.asarray(np.maximum.reduceat(np.where(which, self.at, -1), self.begins))
 
 
 class Fits(NamedTuple):
@@ -42,10 +68,7 @@ def fit_pieces(time: Floats, values: Floats, first: Indices, last: Indices, degr
 
     Each piece has more samples than the degree; pieces may overlap.
     """
-    counts = last - first + 1
-    begins = np.cumsum(counts) - counts
-    piece = np.repeat(np.arange(len(first)), counts)
-    at = np.arange(len(piece)) - begins[piece] + first[piece]
+    at, piece, begins = Pieces.between(first, last)
     middle, half = 0.5 * (time[last] + time[first]), 0.5 * (time[last] - time[first])
     x = (time[at] - middle[piece]) / half[piece]
     y = values[at]
@@ -72,12 +95,7 @@ def vertices(time: Floats, points: TurningPoints) -> Vertices:
     neighbours. The parabola's vertex is kept among them: at a corner, where a slow rise ends in a
     fall, it lies where the fall begins.
 
-    Parameters
-    ----------
-    time : array
-        (n,), of each sample of the signal.
-    points : TurningPoints
-        At least two.
+    There are at least two points.
     """
     values = points.values
     time = time[: len(values) * points.width].reshape(len(values), -1).mean(axis=1)

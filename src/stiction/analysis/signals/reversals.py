@@ -43,14 +43,8 @@ def extrema(values: Counts | Floats) -> Indices:
 def smallest_legs(legs: Counts | Floats, below: Floats | float) -> Indices:
     """Return the inner legs that are no longer than both neighbours and shorter than a limit.
 
-    There are never two neighbours among them: one of these is not the smaller.
-
-    Parameters
-    ----------
-    legs : array
-        (n,) lengths.
-    below : array or float
-        The limit, one for all or (n - 2,).
+    There are never two neighbours among them: one of these is not the smaller. The limit `below` is
+    one for all legs, or (n - 2,).
     """
     inner = legs[1:-1]
     small = (inner < legs[2:]) & (inner <= legs[:-2]) & (inner < below)

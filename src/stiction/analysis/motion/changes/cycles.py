@@ -87,11 +87,6 @@ def built_up(drop: ArrayLike) -> slice:
 
     The number of these depends on sampling and noise: they are not cycles of the motion. Smaller
     swings that form a part of their own, as under a smaller load, are cycles.
-
-    Parameters
-    ----------
-    drop : array
-        (n,) of each swing, in any unit.
     """
     size = np.asarray(drop, dtype=np.float64)
     first, last = (_building(each) for each in (size, size[::-1]))

@@ -55,11 +55,6 @@ def few_slips(time: Floats, force: Floats) -> FewSlips | None:
     """Return the slips of a force that has a few of them; None if it is no such force.
 
     All falls that are as large as a twentieth of its range must be slips.
-
-    Parameters
-    ----------
-    time, force : ndarray
-        (n,), s, and N.
     """
     if len(force) < PARTS:
         return None

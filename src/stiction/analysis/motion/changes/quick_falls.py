@@ -64,11 +64,6 @@ def quick_falls(time: Floats, force: Floats) -> QuickFalls:
 
     Its changes are looked at over 1, 2, 4, ... even steps of time, so that its change in a gap is
     not quick. A force whose times have no even grid has none.
-
-    Parameters
-    ----------
-    time, force : ndarray
-        (n,), s, and N.
     """
     grid = even_grid(time)
     if grid is None or not grid.serves:

@@ -28,12 +28,7 @@ class Ringing(NamedTuple):
 def ringing_of(time: Floats, peak: Floats, drop: Floats) -> Ringing | None:
     """Return where swings that die out ring, if that is a short part within a record.
 
-    Parameters
-    ----------
-    time : ndarray
-        (n,), of the record, s.
-    peak, drop : ndarray
-        (m,), time of each swing's peak, s, and its height, N.
+    Of each swing count the time of its peak, s, and its height `drop`, N; `time` is the record's.
     """
     gaps = np.diff(peak)
     if not len(gaps):

@@ -110,13 +110,6 @@ def find_corners(time: Floats, force: Floats, points: TurningPoints) -> CycleCor
     themselves, unless they build up or die out, or are a ripple that goes on beside the larger
     ones. Beside a ringing, as after a knock, there are none: its swings are not cycles. Nor are any
     sought beside irregular stick-slip, where cycles of every size lie between the larger ones.
-
-    Parameters
-    ----------
-    time, force : ndarray
-        (n,), s, N.
-    points : TurningPoints
-        Those of the whole force.
     """
     whole = found = _corners(time, points)
     falls = whole.drop > 0.0  # on a steep slow motion a force may not fall at all

@@ -124,8 +124,8 @@ def _in_words(reached: Sequence[str]) -> str:
 
 
 def _ends_reached(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> list[str]:
-    """Return the names of the ends that the cycles reach."""
-    return [each.name for each in ends if _is_reached(record, cycles, each)]
+    """Return the names of the ends that more than a few of the cycles reach."""
+    return [each.name for each in ends if _share_reached(record, cycles, each) > FEW]
 
 
 def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: FlatEnd) -> bool:
@@ -133,11 +133,6 @@ def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: FlatEnd
     until = cycles["start"][0] if len(cycles) else inf
     near = broke.force + ERRORS_997 * broke.error >= end.value - end.within
     return near and bool(end.mask(record.force[record.time <= until]).any())
-
-
-def _is_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> bool:
-    """Return whether the force is at an end in more than a few of its cycles."""
-    return _share_reached(record, cycles, end) > FEW
 
 
 def _share_reached(record: Record, cycles: CycleTable, end: FlatEnd) -> float:

@@ -18,6 +18,7 @@ from stiction.analysis.motion.metadata.stiffness_over_mass import (
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid, why_not
+from stiction.analysis.signals.peak_refinement import Pieces
 from stiction.arrays import Floats
 from stiction.recording.noise import white_noise
 from stiction.recording.sensor import LowPass, low_pass
@@ -122,18 +123,19 @@ def usual_fall(record: Record, cycles: CycleTable) -> float:
         return inf
     reach = 2.0 * REACH * white_noise(record.force) + resolution(record.force)
     shares = np.minimum(reach / cycles["drop"], MOST_HIDDEN)
-    ends = np.searchsorted(record.time, [cycles["peak_time"], cycles["trough_time"]])
-    longer = np.zeros(len(falls))  # samples
-    for at, (first, last, share) in enumerate(zip(*ends, shares, strict=True)):
-        force = record.force[max(first - 1, 0) : last + 1]
-        edge = share * np.ptp(force)
-        comes = int(np.argmax(force <= force.min() + edge))
-        leaves = np.flatnonzero(force[: comes + 1] >= force.max() - edge)
-        if not len(leaves):
-            continue
-        hidden = 2.0 * np.arccos(1.0 - 2.0 * share) / pi
-        lasts = 1.0 + (comes - leaves[-1] - 1) / (1.0 - hidden)  # a fall seems to last one more
-        longer[at] = max(np.argmin(force) - np.argmax(force) - lasts, 0.0)
+    first, last = np.searchsorted(record.time, [cycles["peak_time"], cycles["trough_time"]])
+    at, piece, begins = its = Pieces.between(
+        np.maximum(first - 1, 0), np.minimum(last, len(record) - 1)
+    )
+    force = record.force[at]
+    low, high = (each.reduceat(force, begins) for each in (np.minimum, np.maximum))
+    edge = shares * (high - low)
+    comes = its.first(force <= (low + edge)[piece])
+    leaves = its.last((force >= (high - edge)[piece]) & (at <= comes[piece]))
+    hidden = 2.0 * np.arccos(1.0 - 2.0 * shares) / pi
+    lasts = 1.0 + (comes - leaves - 1) / (1.0 - hidden)  # a fall seems to last one more
+    seem = its.first(force == low[piece]) - its.first(force == high[piece])
+    longer = np.where(leaves >= 0, np.maximum(seem - lasts, 0.0), 0.0)  # samples
     return float(np.median(falls - longer / record.sample_rate))
 
 

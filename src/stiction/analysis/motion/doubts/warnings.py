@@ -173,7 +173,7 @@ def _unsteady(run: Trajectory) -> tuple[str, ...]:
 
 def variations(run: Trajectory) -> list[str]:
     """Return what varies in a run, drive or load or both, in words."""
-    return [name for name, of in IMPOSED.items() if _varies(run, of)]
+    return [name for name, of in IMPOSED.items() if any(np.ptp(run.samples[x]) > 0.0 for x in of)]
 
 
 def turns_round(run: Trajectory) -> bool:
@@ -181,10 +181,6 @@ def turns_round(run: Trajectory) -> bool:
     along = run.samples["drive_X"]
     least = STIRS * float(np.abs(along).max(initial=0.0))
     return bool(along.min() < -least and along.max() > least)
-
-
-def _varies(run: Trajectory, columns: tuple[str, ...]) -> bool:
-    return any(bool(np.ptp(run.samples[name]) > 0.0) for name in columns)
 
 
 def _mains(kind: str, cycles: CycleTable) -> Iterator[str]:

@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITI
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.digitised import resolution
+from stiction.analysis.signals.peak_refinement import Pieces
 from stiction.arrays import TINY, Floats
 from stiction.recording.noise import white_noise
 
@@ -107,18 +108,18 @@ def _main_part(record: Record, cycles: CycleTable) -> float:
 
     Half a cosine is so for 59 %.
     """
-    shares = []
-    for begin, end in zip(cycles["peak_time"], cycles["trough_time"], strict=True):
-        first, last = np.searchsorted(record.time, [begin, end])
-        force = record.force[first : last + 1]
-        if len(force) < 2:
-            continue
-        top, bottom = (float(force.max()), float(force.min()))
-        edge = 0.1 * (top - bottom)
-        leaves = np.flatnonzero(force >= top - edge)[-1]
-        comes = np.flatnonzero(force <= bottom + edge)[0]
-        shares.append((comes - leaves) / (len(force) - 1))
-    return float(np.median(shares)) if shares else nan
+    first, last = np.searchsorted(record.time, [cycles["peak_time"], cycles["trough_time"]])
+    last = np.minimum(last, len(record) - 1)
+    first, last = first[last > first], last[last > first]
+    if not len(first):
+        return nan
+    its = Pieces.between(first, last)
+    force = record.force[its.at]
+    top, bottom = (each.reduceat(force, its.begins) for each in (np.maximum, np.minimum))
+    edge = 0.1 * (top - bottom)
+    leaves = its.last(force >= (top - edge)[its.piece])
+    comes = its.first(force <= (bottom + edge)[its.piece])
+    return float(np.median((comes - leaves) / (last - first)))
 
 
 def _unseen_ends(reach: float, cycles: CycleTable) -> tuple[float, float]:

@@ -71,14 +71,8 @@ def highest_hump(time: Floats, force: Floats, periods: int = PERIODS) -> Hump:
     """Return the highest hump of a force's spectrum, of height zero if there is none.
 
     Nor is there one where it is no larger than the rounding of the force, which is a vibration with
-    the frequency at which an even change passes through the steps of a converter.
-
-    Parameters
-    ----------
-    time, force : ndarray
-        (n,), s, and N.
-    periods : int, optional
-        Of the vibration that the record has at least.
+    the frequency at which an even change passes through the steps of a converter. The record has at
+    least so many `periods` of the vibration.
     """
     grid = even_grid(time)
     if grid is None or not grid.serves or np.ptp(force) == 0.0:
@@ -107,12 +101,7 @@ def highest_hump(time: Floats, force: Floats, periods: int = PERIODS) -> Hump:
 def remaining(time: Floats, force: Floats, frequency: float) -> float:
     """Return the share of a vibration that remains at the end, 1 unless it fades steadily.
 
-    Parameters
-    ----------
-    time, force : ndarray
-        (n,), s, and N.
-    frequency : float
-        Of the vibration, Hz. What is slower is left out.
+    What is slower than its `frequency`, Hz, is left out.
     """
     grid = even_grid(time)
     if grid is None or not grid.serves or len(force) < EIGHTHS:

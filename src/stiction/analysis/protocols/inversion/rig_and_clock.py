@@ -22,12 +22,8 @@ def say_rig_and_clock(
 ) -> list[str]:
     """Return how far stiffness and times of the steps are from those stated, where they are.
 
-    Parameters
-    ----------
-    steps, fits : sequence
-        Those of a record.
-    drive : str
-        What tells the times of the steps: "the program", "the displacement of the drive".
+    The `drive` says what tells the times of the steps: "the program", "the displacement of the
+    drive".
     """
     pairs = [(step, fit) for step, fit in zip(steps, fits, strict=True) if step.clock > 0.0]
     said = _say_clock([step for step, fit in pairs if isnan(fit.D_c)], drive)

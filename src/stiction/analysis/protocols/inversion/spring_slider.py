@@ -72,10 +72,7 @@ def course_after_a_step(
 ) -> FrictionCourse | None:
     """Return the course of friction after a step; None if it slips away.
 
-    Parameters
-    ----------
-    slip : ndarray
-        (n,), ascending travel of the drive since the step, m.
+    The slip (n,) is the ascending travel of the drive since the step, m.
     """
     kappa = rig.stiffness * D_c
     # k (1 - v) would be the slope as well, but on a stiff rig it is that of rounded v

@@ -37,7 +37,6 @@ from stiction.analysis.motion.regime.band import highest_hump
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.rest import rest_share
 from stiction.analysis.motion.vibration import is_irregular
-from stiction.analysis.parts.motion import plainly
 from stiction.plotting.analysis.overview import figures
 from stiction.study.variables.observed_run import observe_run
 
@@ -725,7 +724,7 @@ def test_quick_falls_that_noise_hides_are_named() -> None:
     regime = st.analysis.classify(slips)
     assert regime.surely == "undetermined, perhaps stick-slip"
     assert "hardly ever rises so quickly, as where a mass slips; the median of these" in str(regime)
-    assert "by about 1 N" in plainly(st.analyse(slips))
+    assert "by about 1 N" in st.analyse(slips).parts["motion"]
 
 
 def test_small_slips_of_a_mass_that_slides_are_named() -> None:
