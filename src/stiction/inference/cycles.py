@@ -33,14 +33,8 @@ def slip_cycles(force: Floats, noise: float = 0.0) -> Cycles:
 
     The first begins at the end of a slip: a least force after no slip is where the record begins,
     as at an unloaded spring, whose loading is longer than that of any cycle. How high a fall must
-    be to be a slip does not depend on this loading either.
-
-    Parameters
-    ----------
-    force : ndarray
-        (n,), of equally spaced samples.
-    noise : float, optional
-        Standard deviation of its noise.
+    be to be a slip does not depend on this loading either. Samples are equally spaced; `noise` is
+    the standard deviation of theirs.
 
     Examples
     --------

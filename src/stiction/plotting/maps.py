@@ -54,14 +54,8 @@ class Side(NamedTuple):
 def draw_regimes(ax: Axes, x: Side, y: Side, kinds: NDArray[np.object_]) -> list[Patch]:
     """Draw the kind of motion of each run; return a patch per kind for the legend.
 
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on.
-    x, y : Side
-        n and m values.
-    kinds : ndarray
-        (n, m), names as in `COLORS`; others (a run that failed, or is not done) are hatched.
+    The kinds (n, m) are named as in `COLORS`; others (a run that failed, or is not done) are
+    hatched.
     """
     shades, codes = kind_shades(), kind_codes(kinds)
     ax.set_facecolor("white")
@@ -112,14 +106,7 @@ def draw_measure(
 def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> list[Line2D]:
     """Draw the zero contour of each field; return the lines of those that have one.
 
-    Parameters
-    ----------
-    ax : Axes
-        With a map on it.
-    x, y : Side
-        n and m values, as fine as the lines are to be.
-    fields : mapping of str to ndarray
-        (n, m) by the line's name.
+    Each (n, m) by the name of its line, as fine as the line is to be.
     """
     lines = []
     looks: tuple[tuple[str, Any], ...] = ((BLACK, "-"), (GREEN, (0, (4, 1.5))))
@@ -155,14 +142,7 @@ def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
 def draw_kinds(ax: Axes, x: Side, kinds: Sequence[str]) -> None:
     """Draw the kind of motion over one parameter: a row for each kind, in the order of `COLORS`.
 
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on.
-    x : Side
-        n values.
-    kinds : sequence of str
-        n names as in `COLORS`; others (a run that failed, or is not done) have no result.
+    Other kinds (a run that failed, or is not done) have no result.
     """
     names = [name if name in COLORS else NO_RESULT for name in kinds]
     rows = [name for name in (*COLORS, NO_RESULT) if name in names]

@@ -60,19 +60,8 @@ def remove_reversals(
     amplitude changes slowly, the rest is removed in one go from left to right: in any order the
     same reversals go, because none of two that can go is in the way of the other.
 
-    Parameters
-    ----------
-    values : array
-        (n,).
-    below : float, optional
-        Only reversals smaller than this.
-
-    Returns
-    -------
-    points : ndarray
-        Indices of the remaining samples, including both ends of the signal.
-    heights : ndarray
-        Heights of the removed reversals, in any order.
+    Return the indices of the remaining samples, both ends of the signal among them, and the heights
+    of the removed reversals in any order; only those smaller than `below` are removed.
     """
     points, heights = extrema(values), [np.zeros(0, np.int64)]
     while len(points) > 3:

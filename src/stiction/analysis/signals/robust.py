@@ -97,11 +97,6 @@ def trimmed_mean(values: Floats) -> Mean:
     The error is that of the winsorised values (J. W. Tukey & D. H. McLaughlin, Sankhya A 25, 331
     (1963)), for independent values. The mean of no values, and the error of a single one, are NaN.
     Unlike a median, the mean of discretised values resolves less than a step.
-
-    Parameters
-    ----------
-    values : ndarray
-        (n,), in any order.
     """
     if len(values) == 0:
         return Mean(np.nan, np.nan)
@@ -112,12 +107,7 @@ def trimmed_mean(values: Floats) -> Mean:
 def trimmed_means(values: Floats, starts: Indices) -> tuple[Floats, Floats]:
     """Return `trimmed_mean` of each part of some values, and its standard error.
 
-    Parameters
-    ----------
-    values : ndarray
-        (n,), one part after the other.
-    starts : ndarray
-        Where each part begins; none is empty.
+    Each part begins at one of `starts`; none is empty.
     """
     count = np.diff(starts, append=len(values))
     part = np.repeat(np.arange(len(starts)), count)
@@ -139,10 +129,7 @@ def trimmed_means(values: Floats, starts: Indices) -> tuple[Floats, Floats]:
 def without_outliers(values: Floats) -> Floats:
     """Replace wild samples by the straight line between their neighbours.
 
-    Parameters
-    ----------
-    values : ndarray
-        (n,), in any unit; returned unchanged if none is wild.
+    They are returned unchanged if none is wild.
     """
     found = _replacement(values)
     return values if found is None else found

@@ -76,15 +76,10 @@ def slope_in_lasting_noise(x: Floats, y: Floats) -> tuple[float, float]:
     """Return the slope of a line, and its standard error, where neighbours may deviate alike.
 
     How alike they are, few of them hardly tell, and a line follows a part of what lasts. So slope
-    and variance are means over many correlations, each as likely as it makes the deviations (by
-    the restricted likelihood, H. D. Patterson & R. Thompson, Biometrika 58, 545 (1971)). With each
-    the line is that of values made independent (S. J. Prais & C. B. Winsten, Cowles Commission
-    Discussion Paper 383 (1954)).
-
-    Parameters
-    ----------
-    x, y : ndarray
-        (n,), at least 3, nearly evenly spaced.
+    and variance are means over many correlations, each as likely as it makes the deviations (by the
+    restricted likelihood, H. D. Patterson & R. Thompson, Biometrika 58, 545 (1971)). With each the
+    line is that of values made independent (S. J. Prais & C. B. Winsten, Cowles Commission
+    Discussion Paper 383 (1954)). There are at least 3 points, nearly evenly spaced.
     """
     spread = float(x.std())
     each = LASTING[:, None]

@@ -75,14 +75,8 @@ NO_GAP = Gap(0.0, 0.0, 0.0)
 def widest_gap(heights: ArrayLike, step: float, most: float) -> Gap:
     """Return the gap that is least likely in a random walk.
 
-    Parameters
-    ----------
-    heights : array
-        (n,) heights of reversals.
-    step : float
-        Resolution of the heights; gaps are sought above two steps.
-    most : float
-        Largest number of large heights.
+    Heights are those of reversals, with a resolution of `step`: gaps are sought above two of these.
+    There are at most so many large ones as `most`.
     """
     size = np.sort(np.asarray(heights, dtype=np.float64))
     lowest = 2.0 * step
@@ -173,11 +167,6 @@ def turning_points(values: Floats) -> TurningPoints:
     The signal is averaged over 1, 2, 4, 8 ... samples. At each level the gap between small and
     large heights of reversals is sought; the level with the clearest gap decides. If none is clear,
     there are no points.
-
-    Parameters
-    ----------
-    values : array
-        (n,), finite, in any unit: a factor does not change the turning points.
     """
     counts = without_spikes(as_counts(values))
     levels = list(running_sums(counts))

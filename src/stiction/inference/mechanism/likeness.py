@@ -72,16 +72,8 @@ def learn_or_read(
 ) -> tuple[Reference, ...]:
     """Learn the reference of each mechanism, or read from a file what was learned.
 
-    Parameters
-    ----------
-    simulated : Simulations
-        Of all mechanisms.
-    scores, bends : ndarray
-        (n, f) and (n, s), their standardised features, and their loading's departure from straight.
-    path : Path, optional
-        Of the file.
-    progress : callable, optional
-        Called with the fraction done.
+    The `scores` (n, f) are their standardised features, the `bends` (n, s) their loading's
+    departure from straight.
     """
     places = [simulated.labels == label for label in range(len(simulated.names))]
     members = [scores[own] for own in places]

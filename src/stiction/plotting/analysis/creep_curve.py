@@ -23,13 +23,8 @@ def creep_theory(
 ) -> dict[str, Line]:
     """Return Eqs. (7) and (8) as functions of the time to slip.
 
-    Parameters
-    ----------
-    V, phi, l_x : float
-        Drive velocity (m/s), misalignment (rad), slip length (m), as in `stiction.theory`.
-    slip_time : float, optional
-        When slip comes in a loading that starts at t = 0 with an unloaded spring, s; by default
-        at V t = l_x. Inertia makes it later.
+    Slip comes in a loading that starts at t = 0 with an unloaded spring at `slip_time`, s; by
+    default at V t = l_x. Inertia makes it later.
     """
     formulas = {
         "Eq. (7), closed form": theory.creep_velocity,

@@ -80,17 +80,7 @@ def plot_motion(
 
 
 def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
-    """Draw the force of a record over time and mark peaks and troughs.
-
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on.
-    record : Record
-        Not empty.
-    cycles : Dataset
-        From `stiction.analysis.motion.cycles.find_cycles`.
-    """
+    """Draw the force of a record over time and mark peaks and troughs."""
     factor, prefix = metric_prefix(record.force)
     draw_line(ax, record.time, factor * record.force, GREY, 0.5)
     size = float(np.clip(60.0 / max(cycles.sizes["cycle"], 1), 1.5, 4.0))  # pt: they must not touch

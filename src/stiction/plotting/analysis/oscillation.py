@@ -68,23 +68,8 @@ def draw_spectrogram(
 ) -> QuadMesh:
     """Draw amplitudes over time and frequency, in decibels.
 
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on.
-    amplitude : DataArray
-        Over ``frequency`` (Hz) and ``time`` (s), from `stiction.analysis.signals.spectrum`.
-    reference : float
-        The amplitude of 0 dB, in the unit of `amplitude`.
-    decibels : tuple of float
-        Ends of the colour scale, dB.
-    highest : float
-        Upper end of the frequency axis, Hz.
-
-    Returns
-    -------
-    QuadMesh
-        For the colour bar.
+    The `reference` is the amplitude of 0 dB, `decibels` are the ends of the colour scale, and
+    `highest` is the upper end of the frequency axis, Hz.
     """
     shown = amplitude.sel(frequency=slice(0.0, highest))
     factor, unit = frequency_unit(highest)

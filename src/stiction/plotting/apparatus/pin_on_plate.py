@@ -20,13 +20,6 @@ def draw_apparatus(ax: Axes, slider: Slider) -> Axes:
 
     The leaf spring bends easily along x and hardly yields along y; mounted a little askew, its
     principal axes (red) lie at the misalignment phi to the drive direction (blue).
-
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on without frame, with equal aspect.
-    slider : Slider
-        The system; only its misalignment matters.
     """
     phi = drawn_misalignment(slider.misalignment)
     turn = np.array([[np.cos(phi), -np.sin(phi), 0], [np.sin(phi), np.cos(phi), 0], [0, 0, 1]])
@@ -99,15 +92,7 @@ def _project(points: ArrayLike) -> Floats:
 
 
 def draw_side_view(ax: Axes, slider: Slider) -> Axes:
-    """Draw the slider from the side (Nakano & Popov, Fig. 2(a)).
-
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on without frame, with equal aspect.
-    slider : Slider
-        The system, with or without dampers, pulled either way or not at all.
-    """
+    """Draw the slider from the side (Nakano & Popov, Fig. 2(a))."""
     damped = slider.c_x > 0 or slider.c_y > 0
     velocity = slider.motion.rate(0.0)[0]
     _draw_floor(ax)

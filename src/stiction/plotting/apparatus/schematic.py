@@ -54,20 +54,13 @@ def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
 def draw_schematic(ax: Axes, slider: Slider) -> Axes:
     """Draw the slider from above (Nakano & Popov, Fig. 2(b)).
 
-    Blue is the drive direction X, red are the principal axes x and y of the spring; the far
-    end of the spring is a bracket that moves with the drive. The friction F on the block is
-    opposite to its slip velocity; psi and theta are the angles of the slip to X and x, and so
-    those of F to -X and -x, where they are drawn. Springs in series are numbered from the block
-    to the bracket, a bar where one does not yield. Two masses have their axes in the block, dampers
-    that do not lie along the springs an end of their own.
-    Lengths are not to scale; the misalignment is, where it is large enough to be seen.
-
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on as the floor, with equal aspect and without ticks.
-    slider : Slider
-        The system, with or without dampers, pulled either way or not at all.
+    Blue is the drive direction X, red are the principal axes x and y of the spring; the far end of
+    the spring is a bracket that moves with the drive. The friction F on the block is opposite to
+    its slip velocity; psi and theta are the angles of the slip to X and x, and so those of F to -X
+    and -x, where they are drawn. Springs in series are numbered from the block to the bracket, a
+    bar where one does not yield. Two masses have their axes in the block, dampers that do not lie
+    along the springs an end of their own. Lengths are not to scale; the misalignment is, where it
+    is large enough to be seen.
     """
     drawn = drawn_misalignment(slider.misalignment)
     side = copysign(1.0, drawn)

@@ -175,11 +175,6 @@ def placement(drawn: float) -> Placement:
     """Return the map from points in the axes of the spring to the drawing.
 
     For a negative misalignment the drawing is that of the positive one, mirrored about X.
-
-    Parameters
-    ----------
-    drawn : float
-        Misalignment as drawn, rad.
     """
     phi, side = abs(drawn), copysign(1.0, drawn)
     turn = np.array([[cos(phi), -sin(phi)], [sin(phi), cos(phi)]])

@@ -32,19 +32,7 @@ def friction_vector(data: xr.Dataset) -> Floats:
 def draw_friction_circle(ax: Axes, run: Trajectory, window: tuple[float, float]) -> Line2D:
     """Draw the circle mu_0 W, the friction vector on the mass, and the path of its tip.
 
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on with equal aspect.
-    run : Trajectory
-        The run.
-    window : tuple of float
-        Start and end of the path, s.
-
-    Returns
-    -------
-    Line2D
-        The path.
+    Its window is in s; the path is returned.
     """
     vector = friction_vector(run.data.sel(time=slice(*window)))
     F_0 = run.slider.F_0
@@ -99,15 +87,8 @@ def _name_axes(ax: Axes) -> None:
 def draw_velocity_triangle(ax: Axes, slider: Slider) -> Axes:
     """Draw drive velocity = elongation rates + slip velocity (Nakano & Popov, Fig. 2(c)).
 
-    With the angles phi from x to X, theta from x to the slip velocity, psi = theta - phi
-    from X to the slip velocity, at the misalignment at which `draw_schematic` draws it.
-
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on without frame, with equal aspect.
-    slider : Slider
-        The system; only its misalignment matters.
+    With the angles phi from x to X, theta from x to the slip velocity, psi = theta - phi from X to
+    the slip velocity, at the misalignment at which `draw_schematic` draws it.
     """
     drawn = drawn_misalignment(slider.misalignment)
     phi, theta, lab = abs(drawn), abs(drawn_slip_angle(drawn)), placement(drawn)

@@ -41,17 +41,10 @@ def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = Non
 def draw_law(ax: Axes, slider: Slider, fastest: float) -> Line2D:
     """Draw the friction coefficient over slip speed.
 
-    At zero slip friction takes any value up to the static coefficient: the vertical line. For a
-    law with internal state the coefficient is that of steady sliding, over the logarithm.
+    At zero slip friction takes any value up to the static coefficient: the vertical line. For a law
+    with internal state the coefficient is that of steady sliding, over the logarithm.
 
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on.
-    slider : Slider
-        The system.
-    fastest : float
-        Largest slip speed, m/s; 1 m/s if it is zero or not finite.
+    The `fastest` slip speed is in m/s; 1 m/s if it is zero or not finite.
     """
     top = fastest if 0 < fastest < np.inf else 1.0
     law, rests = slider.law, not has_state(slider.law)

@@ -39,17 +39,8 @@ BAND = 0.3  # opacity of the range
 def envelope(time: ArrayLike, values: ArrayLike, bins: int = BINS) -> tuple[Floats, Floats]:
     """Thin out a long series without a visible change: keep the extremes of `bins` bins.
 
-    Parameters
-    ----------
-    time, values : array
-        (n,); NaN values leave gaps only where a whole bin lacks a value.
-    bins : int
-        How many.
-
-    Returns
-    -------
-    time, values : ndarray
-        (2 bins,), or what was given if that is not longer.
+    NaN values leave gaps only where a whole bin lacks a value. A series that is no longer than (2
+    bins,) stays as it is.
     """
     t, v = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
     if len(t) <= 2 * bins:
@@ -113,17 +104,8 @@ def visible_turns(time: Floats, values: Floats, turns: Indices, group: Indices) 
     The mean of a few noise periods takes away part of an oscillation that is hardly slower, and
     more of it where the noise is slower: what is left beats.
 
-    Parameters
-    ----------
-    time, values : ndarray
-        (n,).
-    turns, group : ndarray
-        Indices of all turns, and of those that are looked at, which follow one another.
-
-    Returns
-    -------
-    ndarray
-        Those of the slower oscillation, or `group`.
+    Of all `turns`, a `group` of which is looked at, those of the slower oscillation are returned,
+    or the group.
     """
     while len(group) >= TURNS:
         gaps, least = np.diff(time[group]), LARGER * np.median(np.abs(np.diff(values[group])))
@@ -156,18 +138,8 @@ def draw_line(
     Where oscillations are too fast for a line of this width in this panel, the line is their mean,
     and a pale band their range.
 
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on, in a figure that has its size.
-    time, values : array
-        (n,).
-    color : str
-        Of the line and the band.
-    width : float
-        Of the line, pt.
-    window : tuple of float, optional
-        Time and range that the panel shows, by default those of the values.
+    The `window` is the time and range that the panel shows, by default those of the values; the
+    figure has its size already.
     """
     times, shown = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
     if len(times) > FEW:
@@ -202,14 +174,8 @@ def mean_course(
 ) -> tuple[Floats, Floats]:
     """Return mean and highest speed of each fast oscillation that a logarithmic axis shows.
 
-    Elsewhere, as in a slip, they stay what they are.
-
-    Parameters
-    ----------
-    time, speeds, highest : ndarray
-        (n,).
-    longest : float
-        Period of the slowest of the oscillations, s.
+    Elsewhere, as in a slip, they stay what they are. The slowest of the oscillations has a period
+    of `longest`, s.
     """
     decades = np.log10(np.where(speeds > 0.0, speeds, np.nan))
     height = np.fmax.reduce(decades) - np.fmin.reduce(decades)
@@ -267,16 +233,7 @@ def _course(
 
     A slip is as fast as the oscillation, and would be drawn as a slope many periods long.
 
-    Parameters
-    ----------
-    values : ndarray
-        (n,), of an oscillation.
-    starts, mean : ndarray
-        (b,), of bins: their first samples, and the mean over periods.
-    turns : ndarray
-        Indices of the turns.
-    period : float
-        In bins.
+    Bins begin at `starts`, and have a `mean` over periods and a `period` in bins.
     """
     from scipy.ndimage import (  # type: ignore[attr-defined]
         maximum_filter1d,

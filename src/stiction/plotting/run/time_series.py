@@ -186,14 +186,8 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
 def slipping(slip: Slip, drive: float) -> Floats | None:
     """Return the mean speeds of slip, without the moments beside a rest; None if nothing slips.
 
-    How slow the last sample before a rest is depends on when it is taken.
-
-    Parameters
-    ----------
-    slip : Slip
-        Of a run.
-    drive : float
-        Largest speed of its drive, m/s.
+    How slow the last sample before a rest is depends on when it is taken. The largest speed of its
+    `drive` is in m/s.
     """
     moves = np.isfinite(slip.mean) & (slip.mean > DEEPEST * drive)
     if not moves[1:].any() or not np.fmax.reduce(slip.high[1:]) > LEAST * drive:
@@ -207,14 +201,8 @@ def slipping(slip: Slip, drive: float) -> Floats | None:
 def set_speed_limits(ax: Axes, slips: Sequence[tuple[Slip, float]]) -> bool:
     """Fit a logarithmic axis to slip speeds, ignoring rest and the moments beside it.
 
-    Return whether anything slips: nothing is done otherwise.
-
-    Parameters
-    ----------
-    ax : Axes
-        The axes.
-    slips : sequence of (Slip, float)
-        Of each run, with the largest speed of its drive, m/s.
+    Return whether anything slips: nothing is done otherwise. Each slip has the largest speed of its
+    drive, m/s, beside it.
     """
     means = [each for each in (slipping(*of) for of in slips) if each is not None]
     if not means:

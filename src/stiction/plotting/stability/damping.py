@@ -38,19 +38,7 @@ def draw_damping_map(
     The boundary zeta = 1 is green: above it the slow motion is overdamped (creep), below it
     underdamped (rapid slip).
 
-    Parameters
-    ----------
-    ax : Axes
-        Drawn on with logarithmic axes.
-    A : tuple of float
-        Range of the damping number, dimensionless.
-    theta : tuple of float
-        Range of the force angle, deg.
-
-    Returns
-    -------
-    QuadContourSet
-        The contour zeta = 1.
+    The range of `theta` is in deg. The contour zeta = 1 is returned.
     """
     across, up = np.geomspace(*A, 200), np.geomspace(*theta, 200)
     zeta = theory.damping_ratio(across[None, :], np.radians(up[:, None]))
@@ -104,17 +92,6 @@ def draw_force_path(ax: Axes, A: float, phi: float, color: str, label: str) -> L
     """Draw the path of the friction force during creep: at constant A from 90 deg down to phi.
 
     Where the path meets zeta = 1 a cross marks the change from slow to fast slip.
-
-    Parameters
-    ----------
-    ax : Axes
-        With a damping map on it.
-    A : float
-        Damping number, dimensionless.
-    phi : float
-        Misalignment, rad.
-    color, label : str
-        For the line and the legend.
     """
     end = float(np.degrees(abs(phi)))
     (path,) = ax.plot([A, A], [90.0, end], color=color, linewidth=1.8, label=label, zorder=4)
