@@ -49,30 +49,17 @@ CHANGING = "the rate of loading goes on changing"
 
 
 class Assessment(NamedTuple):
-    """What of cycles and friction counts.
+    """What of cycles and friction counts."""
 
-    Parameters
-    ----------
-    cycles : CycleTable
-        A row for each cycle; columns that mean nothing for its motion are blank.
-    usual, sticking : CycleTable
-        Those of its cycles that belong together, and those that creep before they slip.
-    friction : Friction
-        Friction at the break-away, static and kinetic.
-    stated : tuple of StatedQuantity
-        What a record states of its apparatus, beside what its force says.
-    warnings : tuple of str
-        To be read first.
-    missing : dict
-        The reason for each column that is blank, and for creep where no cycle shows it.
-    """
-
-    cycles: CycleTable
+    cycles: CycleTable  # a row for each cycle; columns that mean nothing for its motion are blank
+    # those of its cycles that belong together, and those that creep before they slip
     usual: CycleTable
     sticking: CycleTable
-    friction: Friction
+    friction: Friction  # friction at the break-away, static and kinetic
+    # what a record states of its apparatus, beside what its force says
     stated: tuple[StatedQuantity, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[str, ...]  # to be read first
+    # the reason for each column that is blank, and for creep where no cycle shows it
     missing: dict[str, str]
 
 

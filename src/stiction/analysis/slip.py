@@ -127,44 +127,26 @@ def is_undersampled(run: Trajectory) -> bool:
 
 
 class Outcome(NamedTuple):
-    """The outcome of a run.
+    """The outcome of a run."""
 
-    Parameters
-    ----------
-    status : Status
-        How it ended.
-    sticks : int
-        Number of stick intervals.
-    time_stuck : float
-        Their total duration, s.
-    peak : float
-        Largest ratio of the load cell's force, in either direction, to the normal load at the same
-        instant; NaN without a load. Under a load that falls it comes later than the largest force.
-    fastest : float
-        Largest slip speed of the samples, m/s; or of the means between two of them, where one of
-        those is larger.
-    hidden : bool
-        Whether it is a mean: then the mass is faster still, between two samples.
-    slowest : float
-        Smallest mean speed over a hundredth of the first loading, m/s, so that the speed at the
-        release does not count; zero if the mass rests during the loading, however shortly.
-    creep : float
-        Median over hundredths of the first loading of the distance between their ends over their
-        time, m/s: zero only if the mass rests for half of it. Places are exact however few samples
-        there are; means of the slip speed would show the phase of the oscillation at the samples.
-    steps : int
-        Slip steps of the solver.
-    """
-
-    status: Status
-    sticks: int
-    time_stuck: float
+    status: Status  # how it ended
+    sticks: int  # number of stick intervals
+    time_stuck: float  # their total duration, s
+    # largest ratio of the load cell's force, in either direction, to the normal load at the same
+    # instant; NaN without a load. Under a load that falls it comes later than the largest force
     peak: float
+    # largest slip speed of the samples, m/s; or of the means between two of them, where one of
+    # those is larger
     fastest: float
-    hidden: bool
+    hidden: bool  # whether it is a mean: then the mass is faster still, between two samples
+    # smallest mean speed over a hundredth of the first loading, m/s, so that the speed at the
+    # release does not count; zero if the mass rests during the loading, however shortly
     slowest: float
+    # median over hundredths of the first loading of the distance between their ends over their
+    # time, m/s: zero only if the mass rests for half of it. Places are exact however few samples
+    # there are; means of the slip speed would show the phase of the oscillation at the samples
     creep: float
-    steps: int
+    steps: int  # slip steps of the solver
 
 
 def outcome(run: Trajectory) -> Outcome:

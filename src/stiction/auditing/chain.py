@@ -25,46 +25,26 @@ SMALL = 0.01  # of the compliance: the mass of a part that adds less may be left
 
 
 class Part(NamedTuple):
-    """One of several springs in series.
+    """One of several springs in series."""
 
-    Parameters
-    ----------
-    spring : Spring
-        The part.
-    along_x, along_y : float
-        Its shares of the compliance along the principal axes of the whole.
-    more : float
-        What its own mass adds to the compliance of all, a share of it, at the natural frequency
-        where that is more (M77); infinite above its own resonance; zero without a mass.
-    """
-
-    spring: Spring
+    spring: Spring  # the part
+    # its shares of the compliance along the principal axes of the whole
     along_x: float
     along_y: float
+    # what its own mass adds to the compliance of all, a share of it, at the natural frequency where
+    # that is more (M77); infinite above its own resonance; zero without a mass
     more: float
 
 
 class Replacement(NamedTuple):
-    """A part replaced by a stiffer one, and the simulation of that.
+    """A part replaced by a stiffer one, and the simulation of that."""
 
-    Parameters
-    ----------
-    spring : Spring
-        The part as it is.
-    factor : float
-        Of its stiffnesses; infinite for a rigid part.
-    slider : Slider or None
-        The apparatus with it; None if all parts together would be rigid along some axis.
-    prediction : Prediction or None
-        The theory of it.
-    tried : SimulatedTest or None
-        The simulation from rest; None if it was not done, since the work has a limit.
-    """
-
-    spring: Spring
-    factor: float
+    spring: Spring  # the part as it is
+    factor: float  # of its stiffnesses; infinite for a rigid part
+    # the apparatus with it; None if all parts together would be rigid along some axis
     slider: Slider | None = None
-    prediction: Prediction | None = None
+    prediction: Prediction | None = None  # the theory of it
+    # the simulation from rest; None if it was not done, since the work has a limit
     tried: SimulatedTest | None = None
 
 

@@ -25,26 +25,13 @@ SMALL = 1e-9  # of the scale: replaces zero in a logarithm
 
 
 class FeatureScale(NamedTuple):
-    """What features are relative to, from the middle of the priors.
+    """What features are relative to, from the middle of the priors."""
 
-    Parameters
-    ----------
-    force : float
-        Friction force at rest, N.
-    loading : float
-        Rate of the force while the mass is at rest, N/s.
-    period : float
-        Of the mass on the spring along the drive, s.
-    velocity : float
-        Of the drive, m/s.
-    drift : float
-        Of the load cell's zero, N/s, as it is stated; without it trends are not features.
-    """
-
-    force: float
-    loading: float
-    period: float
-    velocity: float
+    force: float  # friction force at rest, N
+    loading: float  # rate of the force while the mass is at rest, N/s
+    period: float  # of the mass on the spring along the drive, s
+    velocity: float  # of the drive, m/s
+    # of the load cell's zero, N/s, as it is stated; without it trends are not features
     drift: float = 0.0
 
 

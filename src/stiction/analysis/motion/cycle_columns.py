@@ -53,17 +53,10 @@ class CycleTable:
     """A row for each cycle: columns as plain arrays, for all that only reads numbers.
 
     xarray, and the libraries that it looks for, take longer to import than most runs to simulate.
-
-    Parameters
-    ----------
-    columns : mapping
-        The columns by name, with `COLUMNS`, (n,) each.
-    least : float
-        Depth of a hesitation that is seen, N.
     """
 
-    columns: Mapping[str, Floats]
-    least: float
+    columns: Mapping[str, Floats]  # the columns by name, with `COLUMNS`, (n,) each
+    least: float  # depth of a hesitation that is seen, N
 
     def __getitem__(self, name: str) -> Floats:
         """Return a column."""

@@ -35,19 +35,12 @@ FAST_PERIODS = 32  # of the fast oscillation at the end, over which it is measur
 
 
 class FastOscillation(NamedTuple):
-    """The fast oscillation at the end of a run.
+    """The fast oscillation at the end of a run."""
 
-    Parameters
-    ----------
-    amplitude : float
-        Of the rate along the stiffer axis, over the drive's velocity along it: at most 1 unless
-        the slip reverses (Nakano & Popov, below Eq. (9)).
-    rate : float
-        That amplitude times the lesser stiffness, N/s.
-    """
-
+    # of the rate along the stiffer axis, over the drive's velocity along it: at most 1 unless the
+    # slip reverses (Nakano & Popov, below Eq. (9))
     amplitude: float
-    rate: float
+    rate: float  # that amplitude times the lesser stiffness, N/s
 
     @classmethod
     def at_end(cls, slider: Slider, rate: Floats) -> FastOscillation:

@@ -28,21 +28,13 @@ TWO_AXES = (
 
 
 class ColumnsOfTest(NamedTuple):
-    """Units of the numbers of a test by name: attributes of its analysis, or of each of its parts.
+    """Units of the numbers of a test by name: attributes of its analysis, or of each part of it."""
 
-    Parameters
-    ----------
-    row : str
-        What a row of its table is.
-    rows, results : dict
-        Columns of the table, and what follows from all rows.
-    parts : str
-        Which attribute holds the rows, an object each; '' where each column is an attribute.
-    """
-
-    row: str
+    row: str  # what a row of its table is
+    # columns of the table, and what follows from all rows
     rows: dict[str, str]
     results: dict[str, str]
+    # which attribute holds the rows, an object each; '' where each column is an attribute
     parts: str = ""
 
 

@@ -32,22 +32,13 @@ FEWEST_SAMPLES = 16  # samples with which the step is first refined
 
 @dataclass(frozen=True, eq=False)
 class EvenGrid:
-    """Even times through those of a record.
+    """Even times through those of a record."""
 
-    Parameters
-    ----------
-    places : ndarray
-        (n,) of the record's samples on the grid, in steps from its first time.
-    start, step : float
-        The first time of the grid and its step, s.
-    size : int
-        Number of its times.
-    """
-
-    places: Floats
+    places: Floats  # (n,) of the record's samples on the grid, in steps from its first time
+    # the first time of the grid and its step, s
     start: float
     step: float
-    size: int
+    size: int  # number of its times
 
     @property
     def exact(self) -> bool:

@@ -42,17 +42,10 @@ class Pieces(NamedTuple):
 
 
 class Fits(NamedTuple):
-    """Polynomials c_0 + c_1 x + ... in x = (t - middle)/half, which is -1 to 1 over each piece.
+    """Polynomials c_0 + c_1 x + ... in x = (t - middle)/half, which is -1 to 1 over each piece."""
 
-    Parameters
-    ----------
-    coefficients : ndarray
-        (pieces, degree + 1), in the unit of the values.
-    middle, half : ndarray
-        (pieces,), in the unit of the time.
-    """
-
-    coefficients: Floats
+    coefficients: Floats  # (pieces, degree + 1), in the unit of the values
+    # (pieces,), in the unit of the time
     middle: Floats
     half: Floats
 

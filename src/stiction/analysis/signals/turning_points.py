@@ -48,19 +48,12 @@ CLEAR = 12.0
 
 
 class Gap(NamedTuple):
-    """The gap between small and large.
+    """The gap between small and large."""
 
-    Parameters
-    ----------
-    low, high : float
-        Ends of the gap.
-    clearness : float
-        Minus the logarithm of (a bound of) the probability that a random walk has as many above
-        it.
-    """
-
+    # ends of the gap
     low: float
     high: float
+    # minus the logarithm of (a bound of) the probability that a random walk has as many above it
     clearness: float
 
     @property
@@ -120,32 +113,16 @@ def surprise(found: ArrayLike, among: ArrayLike, chance: ArrayLike) -> Floats:
 
 
 class TurningPoints(NamedTuple):
-    """Alternating troughs and peaks, and the averaged signal in which they were found.
+    """Alternating troughs and peaks, and the averaged signal in which they were found."""
 
-    Parameters
-    ----------
-    index : ndarray
-        (n,) index of each in `values`.
-    trough : ndarray
-        (n,) whether it is a trough.
-    values : ndarray
-        Means of the signal over `width` samples each, without wild ones.
-    width : int
-        1, 2, 4, ...
-    noise : float
-        How far noise reaches in `values`, see `noise_reach`.
-    clearness : float
-        Clearness of the gap to all smaller reversals, see `widest_gap`.
-    least : float
-        Height of that gap's middle, in the unit of the values: smaller reversals are not seen.
-    """
-
+    # (n,) index of each in `values`
     index: Indices  # type: ignore[assignment]  # a tuple's index(), which nobody needs here
-    trough: NDArray[np.bool_]
-    values: Floats
-    width: int
-    noise: float
-    clearness: float
+    trough: NDArray[np.bool_]  # (n,) whether it is a trough
+    values: Floats  # means of the signal over `width` samples each, without wild ones
+    width: int  # 1, 2, 4, ...
+    noise: float  # how far noise reaches in `values`, see `noise_reach`
+    clearness: float  # clearness of the gap to all smaller reversals, see `widest_gap`
+    # height of that gap's middle, in the unit of the values: smaller reversals are not seen
     least: float = 0.0
 
     @property

@@ -25,21 +25,11 @@ SAME = 1e-3  # of friction: larger ones in a swing are one value, and the last i
 
 
 class FrictionBeside(NamedTuple):
-    """The friction force beside the part of it that a load cell measures.
+    """The friction force beside the part of it that a load cell measures."""
 
-    Parameters
-    ----------
-    coefficient : float
-        Friction over the normal load.
-    share : float
-        The part along the axis of the load cell, over friction: the cosine of the angle.
-    across : float
-        The part across that axis, which the springs carry past the load cell, N.
-    """
-
-    coefficient: float
-    share: float
-    across: float
+    coefficient: float  # friction over the normal load
+    share: float  # the part along the axis of the load cell, over friction: the cosine of the angle
+    across: float  # the part across that axis, which the springs carry past the load cell, N
 
     @property
     def angle(self) -> float:

@@ -38,24 +38,12 @@ REGRESSIONS = "middle", "spread"  # of a summary
 
 
 class Learned(NamedTuple):
-    """What features say about parameters, and how truthfully.
+    """What features say about parameters, and how truthfully."""
 
-    Parameters
-    ----------
-    summary : FeatureSummary
-        Estimates from features.
-    truth : ndarray
-        (n, p), scores of the library.
-    ranks : ndarray
-        (m, p), of the truth in the posterior of each of some records, from all others.
-    typicality : Typicality
-        How like the records are to each other.
-    """
-
-    summary: FeatureSummary
-    truth: Floats
-    ranks: Floats
-    typicality: Typicality
+    summary: FeatureSummary  # estimates from features
+    truth: Floats  # (n, p), scores of the library
+    ranks: Floats  # (m, p), of the truth in the posterior of each of some records, from all others
+    typicality: Typicality  # how like the records are to each other
 
     def posteriors(self, features: Floats) -> Iterator[Sample]:
         """Yield the posteriors of records with these features (m, f)."""

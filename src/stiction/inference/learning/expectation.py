@@ -25,23 +25,12 @@ NARROW = 0.6  # width of the kernel by which estimates say what features are: th
 
 
 class Expectation(NamedTuple):
-    """Regressions of parameters over features, and of features over what these say of parameters.
+    """Regressions of parameters over features, and of features over what these say of them."""
 
-    Parameters
-    ----------
-    scores : ndarray
-        (n, f), standardised features of the library.
-    shown : ndarray
-        (p,), whether features say something of a parameter, 0 or 1.
-    estimates : Regression
-        Of the parameters.
-    expected : Regression
-        Of the features, over the estimates of those that are shown, in their standard deviations.
-    """
-
-    scores: Floats
-    shown: Floats
-    estimates: Regression
+    scores: Floats  # (n, f), standardised features of the library
+    shown: Floats  # (p,), whether features say something of a parameter, 0 or 1
+    estimates: Regression  # of the parameters
+    # of the features, over the estimates of those that are shown, in their standard deviations
     expected: Regression
 
     @classmethod

@@ -61,28 +61,15 @@ class Standard(NamedTuple):
 
 
 class Regression(NamedTuple):
-    """A kernel ridge regression of targets (n, p) over standardised features.
+    """A kernel ridge regression of targets (n, p) over standardised features."""
 
-    Parameters
-    ----------
-    width, ridge : ndarray
-        (p,), of the kernel for each target.
-    metric : ndarray
-        (p, f, f), by which features are multiplied; (1, f, f) where it is that of all.
-    weights : ndarray
-        (n, p).
-    mean : ndarray
-        (p,), of the targets.
-    library : ndarray
-        (n, p), the prediction for each record of the library, from all others.
-    """
-
+    # (p,), of the kernel for each target
     width: Floats
     ridge: Floats
-    metric: Floats
-    weights: Floats
-    mean: Floats
-    library: Floats
+    metric: Floats  # (p, f, f), by which features are multiplied; (1, f, f) where it is that of all
+    weights: Floats  # (n, p)
+    mean: Floats  # (p,), of the targets
+    library: Floats  # (n, p), the prediction for each record of the library, from all others
 
     def predict(self, new: Floats, scores: Floats) -> Floats:
         """Return predictions for new scores (m, f), given those of the library."""
@@ -95,24 +82,12 @@ class Regression(NamedTuple):
 
 
 class FeatureSummary(NamedTuple):
-    """What features say about parameters: where they lie, and how far they scatter about that.
+    """What features say about parameters: where they lie, and how far they scatter about that."""
 
-    Parameters
-    ----------
-    standard : Standard
-        How features are made comparable.
-    scores : ndarray
-        (n, f), standardised features of the library.
-    middle : Regression
-        Of the parameters.
-    spread : Regression
-        Of the logarithm of their squared distance from it.
-    """
-
-    standard: Standard
-    scores: Floats
-    middle: Regression
-    spread: Regression
+    standard: Standard  # how features are made comparable
+    scores: Floats  # (n, f), standardised features of the library
+    middle: Regression  # of the parameters
+    spread: Regression  # of the logarithm of their squared distance from it
 
     def __call__(self, features: Floats) -> tuple[Floats, Floats]:
         """Return middles and spreads (m, p) for records with these features (m, f)."""

@@ -32,20 +32,11 @@ CLOUDS, KEPT = ("near", "beside"), ("apart", "own")  # what is stored of which
 
 
 class Cloud(NamedTuple):
-    """Points, each of which is compared with those whose places are nearest to its own.
+    """Points, each of which is compared with those whose places are nearest to its own."""
 
-    Parameters
-    ----------
-    places : ndarray
-        (n, q), where they are.
-    points : ndarray
-        (n, f), what is compared.
-    apart, own : ndarray
-        (n,), distance of each from its nearest others; and over that of the ones around it.
-    """
-
-    places: Floats
-    points: Floats
+    places: Floats  # (n, q), where they are
+    points: Floats  # (n, f), what is compared
+    # (n,), distance of each from its nearest others; and over that of the ones around it
     apart: Floats
     own: Floats
 
@@ -70,21 +61,11 @@ class Cloud(NamedTuple):
 
 
 class Typicality(NamedTuple):
-    """Records of a library, with which others are compared.
+    """Records of a library, with which others are compared."""
 
-    Parameters
-    ----------
-    expectation : Expectation
-        What their parameters let expect.
-    near : Cloud
-        Their features, at themselves.
-    beside : Cloud
-        How far these are from what is expected, at the parameters.
-    """
-
-    expectation: Expectation
-    near: Cloud
-    beside: Cloud
+    expectation: Expectation  # what their parameters let expect
+    near: Cloud  # their features, at themselves
+    beside: Cloud  # how far these are from what is expected, at the parameters
 
     @classmethod
     def of(cls, expectation: Expectation) -> Self:

@@ -134,21 +134,11 @@ def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:
 
 
 class Discriminant(NamedTuple):
-    """What tells mechanisms apart, as learned from some simulations.
+    """What tells mechanisms apart, as learned from some simulations."""
 
-    Parameters
-    ----------
-    scores : ndarray
-        (n, f), standardised features of the simulations.
-    membership : Regression
-        Of each mechanism, 0 or 1.
-    slopes : ndarray
-        (k + 1, k), from its predictions to log odds, the constant last.
-    """
-
-    scores: Floats
-    membership: Regression
-    slopes: Floats
+    scores: Floats  # (n, f), standardised features of the simulations
+    membership: Regression  # of each mechanism, 0 or 1
+    slopes: Floats  # (k + 1, k), from its predictions to log odds, the constant last
 
     @classmethod
     def of(cls, scores: Floats, labels: NDArray[np.int64], progress: Progress = silent) -> Self:
@@ -172,21 +162,11 @@ class Discriminant(NamedTuple):
 
 
 class Classifier(NamedTuple):
-    """What tells mechanisms apart, and how far that depends on the simulations drawn.
+    """What tells mechanisms apart, and how far that depends on the simulations drawn."""
 
-    Parameters
-    ----------
-    standard : Standard
-        How features are made comparable.
-    whole : Discriminant
-        Learned from all simulations.
-    halves : tuple of Discriminant
-        Learned from every second one, and from the others.
-    """
-
-    standard: Standard
-    whole: Discriminant
-    halves: tuple[Discriminant, ...]
+    standard: Standard  # how features are made comparable
+    whole: Discriminant  # learned from all simulations
+    halves: tuple[Discriminant, ...]  # learned from every second one, and from the others
 
     def probabilities(self, features: Floats) -> Floats:
         """Return the probability of each mechanism (m, k) for records with features (m, f)."""

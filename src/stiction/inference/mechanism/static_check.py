@@ -22,18 +22,10 @@ ELASTIC = RATE_AND_STATE, LUGRE  # contacts yield before they slip
 
 
 class StaticCheck(NamedTuple):
-    """What tells mechanisms from static friction on the misaligned rig.
+    """What tells mechanisms from static friction on the misaligned rig."""
 
-    Parameters
-    ----------
-    names : tuple of str
-        Of the mechanisms that it tells apart.
-    classifier : Classifier or None
-        None if one of them only has been simulated.
-    """
-
-    names: tuple[str, ...]
-    classifier: Classifier | None
+    names: tuple[str, ...]  # of the mechanisms that it tells apart
+    classifier: Classifier | None  # None if one of them only has been simulated
 
     @classmethod
     def of(

@@ -24,24 +24,12 @@ SEVERAL = ("channels", "angles", "velocities", "loads")  # arguments that may be
 
 
 class Question(NamedTuple):
-    """What is asked of a design.
+    """What is asked of a design."""
 
-    Parameters
-    ----------
-    rig : Rig
-        With its priors.
-    of : str
-        The path of the parameter of interest.
-    wanted : Wanted
-        The other arguments.
-    record : Record or None
-        Of the present test.
-    """
-
-    rig: Rig
-    of: str
-    wanted: Wanted
-    record: Record | None
+    rig: Rig  # with its priors
+    of: str  # the path of the parameter of interest
+    wanted: Wanted  # the other arguments
+    record: Record | None  # of the present test
 
 
 def ask(

@@ -32,17 +32,10 @@ SLOW = float(1.0 / rise_share(STICKING) - 1.0)  # a fall over the time in which 
 
 
 class FewSlips(NamedTuple):
-    """The turning points of a force with few slips, and where its first loading is even from.
+    """The turning points of a force with few slips, and where its first loading is even from."""
 
-    Parameters
-    ----------
-    points : TurningPoints
-        A peak first, a trough last.
-    begin : Vertices
-        (1,), as far below the first peak as it falls, or less: there a trough would be (s, N).
-    """
-
-    points: TurningPoints
+    points: TurningPoints  # a peak first, a trough last
+    # (1,), as far below the first peak as it falls, or less: there a trough would be (s, N)
     begin: Vertices
 
     def corners(self, time: Floats) -> Vertices:

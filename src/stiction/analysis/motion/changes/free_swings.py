@@ -33,19 +33,12 @@ LOUD, RESTORED = 0.1, (2.0, 6.0)
 
 
 class FreeSwing(NamedTuple):
-    """A free swing, as of a load cell.
+    """A free swing, as of a load cell."""
 
-    Parameters
-    ----------
-    frequency, quality : float
-        Hz, and pi times the periods in which it falls to 1/e.
-    share : float
-        Of the time in which it is seen.
-    """
-
+    # Hz, and pi times the periods in which it falls to 1/e
     frequency: float
     quality: float
-    share: float
+    share: float  # of the time in which it is seen
 
     @property
     def rings(self) -> bool:

@@ -34,25 +34,15 @@ DRIFTS = 1.0
 
 
 class QuickFalls(NamedTuple):
-    """Quick falls that no rise matches.
+    """Quick falls that no rise matches."""
 
-    Parameters
-    ----------
-    number : int
-        How many there are.
-    height : float
-        Their median, N.
-    times : float
-        The same over the standard deviation of the force, averaged over the time of a fall: 3.5 for
-        a sawtooth; less where the force wanders by itself.
-    clearness : float
-        Minus the logarithm of (a bound of) the probability that so many of the largest changes
-        are falls, were rises as frequent.
-    """
-
-    number: int
-    height: float
+    number: int  # how many there are
+    height: float  # their median, N
+    # the same over the standard deviation of the force, averaged over the time of a fall: 3.5 for a
+    # sawtooth; less where the force wanders by itself
     times: float
+    # minus the logarithm of (a bound of) the probability that so many of the largest changes are
+    # falls, were rises as frequent
     clearness: float
 
 

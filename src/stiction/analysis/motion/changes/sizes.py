@@ -36,21 +36,11 @@ AS_HIGH, AS_MANY, MEANS, ENOUGH = 0.5, 0.5, 12, 400
 
 
 class CycleCorners(NamedTuple):
-    """The corners of cycles.
+    """The corners of cycles."""
 
-    Parameters
-    ----------
-    corners : Vertices
-        Troughs and peaks in turn, a trough first and last (s, N).
-    dips : Vertices
-        Hesitations: time of the first point (s), and depth (N).
-    turns : int
-        Number of peaks and troughs, including those of cut cycles.
-    """
-
-    corners: Vertices
-    dips: Vertices
-    turns: int
+    corners: Vertices  # troughs and peaks in turn, a trough first and last (s, N)
+    dips: Vertices  # hesitations: time of the first point (s), and depth (N)
+    turns: int  # number of peaks and troughs, including those of cut cycles
 
     @property
     def peak_time(self) -> Floats:
@@ -85,22 +75,13 @@ class CycleCorners(NamedTuple):
 
 
 class Larger(NamedTuple):
-    """The cycles of a whole force, beside which smaller ones are sought.
+    """The cycles of a whole force, beside which smaller ones are sought."""
 
-    Parameters
-    ----------
-    time, force : ndarray
-        (n,), s, N.
-    cycles : CycleCorners
-        Those that stand apart in the whole.
-    parts : list
-        Begin and end of each part with such cycles, s.
-    """
-
+    # (n,), s, N
     time: Floats
     force: Floats
-    cycles: CycleCorners
-    parts: list[tuple[float, float]]
+    cycles: CycleCorners  # those that stand apart in the whole
+    parts: list[tuple[float, float]]  # begin and end of each part with such cycles, s
 
 
 def find_corners(time: Floats, force: Floats, points: TurningPoints) -> CycleCorners:

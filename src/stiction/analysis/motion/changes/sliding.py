@@ -29,19 +29,12 @@ TURNS = 1e-3
 
 
 class Sliding(NamedTuple):
-    """The part of a record in which the mass slides.
+    """The part of a record in which the mass slides."""
 
-    Parameters
-    ----------
-    first, last : int
-        Its first sample, and the one after its last.
-    falls : int
-        The sample from which on the force lies below for good; the number of all if none.
-    """
-
+    # its first sample, and the one after its last
     first: int
     last: int
-    falls: int
+    falls: int  # the sample from which on the force lies below for good; the number of all if none
 
     @property
     def half(self) -> int:

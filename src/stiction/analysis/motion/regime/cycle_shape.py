@@ -49,24 +49,15 @@ NOISE_SHOWS = 1e-3  # of a force drop; what is less is not the noise of a load c
 
 
 class Shapes(NamedTuple):
-    """The shapes of cycles.
+    """The shapes of cycles."""
 
-    Parameters
-    ----------
-    rise, still, sticks : ndarray
-        (n,), shares of each cycle: in which the force rises, in which the mass is known to rest or
-        creep, and in which it is known to stick.
-    resolution : float
-        Of the shares of rise: time between samples over period.
-    other : str
-        Kind of cycles as likely as `kind`, where they have few samples; else empty.
-    """
-
+    # (n,), shares of each cycle: in which the force rises, in which the mass is known to rest or
+    # creep, and in which it is known to stick
     rise: Floats
     still: Floats
     sticks: Floats
-    resolution: float
-    other: str
+    resolution: float  # of the shares of rise: time between samples over period
+    other: str  # kind of cycles as likely as `kind`, where they have few samples; else empty
 
     @property
     def typical(self) -> tuple[float, float, float]:
