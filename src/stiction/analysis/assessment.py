@@ -15,12 +15,7 @@ from stiction.analysis.motion.doubts.clipping import cut_off, noisy_end, without
 from stiction.analysis.motion.doubts.creep_distance import unseen_creep
 from stiction.analysis.motion.doubts.load_cell import doubt_ringing, with_ringing
 from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
-from stiction.analysis.motion.doubts.warnings import (
-    VARIES,
-    turns_round,
-    warnings,
-    warnings_of_run,
-)
+from stiction.analysis.motion.doubts.warnings import VARIES, turns_round, warnings, warnings_of_run
 from stiction.analysis.motion.doubts.zero import why_no_friction
 from stiction.analysis.motion.drift import Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading

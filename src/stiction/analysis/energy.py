@@ -108,10 +108,7 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     seconds = {"units": "s"}
     return xr.Dataset(
         variables,
-        {
-            "start": ("interval", borders[:-1], seconds),
-            "end": ("interval", borders[1:], seconds),
-        },
+        {"start": ("interval", borders[:-1], seconds), "end": ("interval", borders[1:], seconds)},
     )
 
 

@@ -131,12 +131,7 @@ class OnsetEstimate(NamedTuple):
 
 
 def find_onset(
-    slider: Slider,
-    path: str,
-    values: Quantities,
-    *,
-    most_blocks: int = 40,
-    rtol: float = 1e-6,
+    slider: Slider, path: str, values: Quantities, *, most_blocks: int = 40, rtol: float = 1e-6
 ) -> Onset:
     """Sweep a parameter up and down to find the onset and amplitude of an oscillation.
 

@@ -157,10 +157,7 @@ def oscillation_by_phase(oscillation: xr.Dataset, run: Trajectory, phases: Float
     seconds = {"units": "s"}
     return xr.Dataset(
         _label("phase", rows),
-        {
-            "start": ("phase", phases[:, 0], seconds),
-            "end": ("phase", phases[:, 1], seconds),
-        },
+        {"start": ("phase", phases[:, 0], seconds), "end": ("phase", phases[:, 1], seconds)},
     )
 
 

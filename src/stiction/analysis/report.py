@@ -22,11 +22,7 @@ from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import Regime
-from stiction.analysis.oscillation import (
-    apart,
-    oscillation_by_phase,
-    transverse_oscillation,
-)
+from stiction.analysis.oscillation import apart, oscillation_by_phase, transverse_oscillation
 from stiction.analysis.parts import functions
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.rotation.findings import GROWING

@@ -8,12 +8,7 @@ from typing import NamedTuple
 
 from stiction.auditing.chain import softest_path
 from stiction.auditing.prediction import predict
-from stiction.auditing.simulated_test import (
-    LEAST_WORK,
-    SLIDES,
-    SimulatedTest,
-    simulate_coarsely,
-)
+from stiction.auditing.simulated_test import LEAST_WORK, SLIDES, SimulatedTest, simulate_coarsely
 from stiction.inference.progress import Progress, part, silent
 from stiction.linear_stability import Critical, critical
 from stiction.system.parameter import change_parameter, quantity, read, unit

@@ -14,11 +14,7 @@ import numpy as np
 from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, predict
-from stiction.auditing.simulated_test import (
-    SimulatedTest,
-    creep_before_slip,
-    simulate_coarsely,
-)
+from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, simulate_coarsely
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.progress import Progress, silent

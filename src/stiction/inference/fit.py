@@ -16,25 +16,14 @@ from stiction.friction import Anisotropic, has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.observation import (
-    Conditions,
-    Observation,
-    Source,
-    observe_all,
-    sign_seen,
-)
+from stiction.inference.observation import Conditions, Observation, Source, observe_all, sign_seen
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
 from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
-from stiction.inference.simulated.library import (
-    Library,
-    build,
-    library_folder,
-    refuse_too_few,
-)
+from stiction.inference.simulated.library import Library, build, library_folder, refuse_too_few
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import ANALYSE

@@ -13,11 +13,7 @@ from stiction.trajectory import Trajectory, load
 
 
 def plot(
-    source: Any,
-    axes: Any = None,
-    *,
-    window: Sequence[Quantity] | None = None,
-    trust: bool = False,
+    source: Any, axes: Any = None, *, window: Sequence[Quantity] | None = None, trust: bool = False
 ) -> Any:
     """Draw a run, an analysis, a comparison, an audit, a map or anything else with a figure.
 

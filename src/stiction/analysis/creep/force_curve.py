@@ -7,12 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.creep.conditions import (
-    CHANGED,
-    load_change,
-    refuse_change,
-    typical_load,
-)
+from stiction.analysis.creep.conditions import CHANGED, load_change, refuse_change, typical_load
 from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles

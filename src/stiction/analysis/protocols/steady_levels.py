@@ -143,10 +143,7 @@ def _trend(
 
 
 def _levels(
-    test: FrictionTest,
-    sliding: list[ConstantStretch],
-    parts: list[SettledPart],
-    trend: TravelTrend,
+    test: FrictionTest, sliding: list[ConstantStretch], parts: list[SettledPart], trend: TravelTrend
 ) -> SteadyLevels:
     """Return the levels of settled parts, and their errors."""
     errors = _errors(test, sliding, parts)

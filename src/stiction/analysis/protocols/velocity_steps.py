@@ -18,11 +18,7 @@ from stiction.analysis.protocols.inversion.law_choice import FittedLaw, choose
 from stiction.analysis.protocols.inversion.rig_and_clock import say_rig_and_clock
 from stiction.analysis.protocols.inversion.spring_slider import Law, SpringSlider
 from stiction.analysis.protocols.inversion.step import StepData
-from stiction.analysis.protocols.steady_levels import (
-    SteadyLevels,
-    TravelTrend,
-    steady_levels,
-)
+from stiction.analysis.protocols.steady_levels import SteadyLevels, TravelTrend, steady_levels
 from stiction.analysis.protocols.step_findings import VelocityStep, VelocitySteps
 from stiction.analysis.record import Record
 from stiction.drive import DriveProgram

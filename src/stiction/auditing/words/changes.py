@@ -7,12 +7,7 @@ from typing import TYPE_CHECKING
 
 from stiction.auditing.advice import Remedy, is_compliance
 from stiction.auditing.pairs import ANGLES, FACTORS, Pair
-from stiction.auditing.simulated_test import (
-    MOST_WORK,
-    OSCILLATES,
-    UNSETTLED,
-    SimulatedTest,
-)
+from stiction.auditing.simulated_test import MOST_WORK, OSCILLATES, UNSETTLED, SimulatedTest
 from stiction.auditing.words.verdict import final_motion, where
 from stiction.text.sections import Table
 from stiction.text.units import in_words

@@ -15,13 +15,7 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
 )
 from stiction.analysis.signals.correlated_noise import statistics
-from stiction.auditing.simulated_test import (
-    OSCILLATES,
-    SLIDES,
-    SMALL,
-    UNSETTLED,
-    SimulatedTest,
-)
+from stiction.auditing.simulated_test import OSCILLATES, SLIDES, SMALL, UNSETTLED, SimulatedTest
 from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
 from stiction.linear_stability.linear import STABLE, UNSTABLE

@@ -26,13 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
-from stiction.friction.laws import (
-    Anisotropic,
-    Coulomb,
-    LuGre,
-    RateStateAgeing,
-    RateStateSlip,
-)
+from stiction.friction.laws import Anisotropic, Coulomb, LuGre, RateStateAgeing, RateStateSlip
 from stiction.friction.laws.rate_and_state.common import least_direct_effect
 from stiction.inference.fit import plan_for
 from stiction.inference.observation import Conditions

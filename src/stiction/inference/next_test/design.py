@@ -216,11 +216,7 @@ def learn_or_read(
 
 
 def expectations(
-    trial: Plan,
-    tests: Sequence[Further],
-    scores: Floats,
-    features: Floats,
-    progress: Progress,
+    trial: Plan, tests: Sequence[Further], scores: Floats, features: Floats, progress: Progress
 ) -> Iterator[Expected]:
     """Yield what each test leaves open, the present one first.
 

@@ -59,10 +59,7 @@ def plot_cycles(
 
 
 def plot_motion(
-    record: Record,
-    cycles: xr.Dataset,
-    kind: str,
-    axes: Axes | Sequence[Axes] | None = None,
+    record: Record, cycles: xr.Dataset, kind: str, axes: Axes | Sequence[Axes] | None = None
 ) -> NDArray[np.object_]:
     """Draw what `plot_cycles` draws, where cycles and kind of motion are known."""
     if not len(record):

@@ -14,15 +14,7 @@ from numpy.typing import NDArray
 from stiction.analysis.oscillation import oscillation_spectrogram
 from stiction.arrays import xr
 from stiction.plotting.page.canvas import panel, stack
-from stiction.plotting.page.style import (
-    BLACK,
-    BLUE,
-    GREY,
-    ORANGE,
-    RED,
-    panel_letter,
-    style,
-)
+from stiction.plotting.page.style import BLACK, BLUE, GREY, ORANGE, RED, panel_letter, style
 from stiction.trajectory import Trajectory
 
 HIGHEST = 1.5  # of omega_y, drawn

@@ -34,12 +34,7 @@ from stiction.plotting.run.curves import (
 )
 from stiction.plotting.run.excerpt import excerpts
 from stiction.plotting.run.lines import EDGE
-from stiction.plotting.run.time_series import (
-    fastest_drive,
-    say_only,
-    set_speed_limits,
-    slipping,
-)
+from stiction.plotting.run.time_series import fastest_drive, say_only, set_speed_limits, slipping
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
 

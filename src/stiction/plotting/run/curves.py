@@ -13,13 +13,7 @@ from stiction.analysis.slip import Slip, cell_force, cell_symbol
 from stiction.arrays import Floats
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED, SKY
 from stiction.plotting.run.lines import draw_line
-from stiction.plotting.run.time_series import (
-    DEEPEST,
-    average_slip,
-    fastest_drive,
-    say_only,
-    stays,
-)
+from stiction.plotting.run.time_series import DEEPEST, average_slip, fastest_drive, say_only, stays
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory

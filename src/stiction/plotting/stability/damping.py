@@ -29,9 +29,7 @@ MARGIN = 4.0  # pixels around a word
 
 
 def draw_damping_map(
-    ax: Axes,
-    A: tuple[float, float] = (1e-1, 1e5),
-    theta: tuple[float, float] = (0.5, 90.0),
+    ax: Axes, A: tuple[float, float] = (1e-1, 1e5), theta: tuple[float, float] = (0.5, 90.0)
 ) -> QuadContourSet:
     """Map zeta = A sin^3(theta), Eq. (10), over A and theta, with a contour at every decade.
 

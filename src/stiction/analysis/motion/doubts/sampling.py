@@ -10,11 +10,7 @@ import numpy as np
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.metadata.quantity import FEWEST_SAMPLES, StatedQuantity
-from stiction.analysis.motion.metadata.stiffness_over_mass import (
-    BY_SLIPS,
-    MOST_HIDDEN,
-    REACH,
-)
+from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS, MOST_HIDDEN, REACH
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid, why_not

@@ -25,11 +25,7 @@ AT_REST, ROUNDING = 0.02, 1e-12  # of the largest force: a reading at rest, and 
 
 
 def compare_metadata(
-    record: Record,
-    kind: str,
-    cycles: CycleTable,
-    drift: Drift | None,
-    ends: Sequence[FlatEnd],
+    record: Record, kind: str, cycles: CycleTable, drift: Drift | None, ends: Sequence[FlatEnd]
 ) -> tuple[StatedQuantity, ...]:
     """Return all that a record shows of its apparatus, beside what is stated.
 

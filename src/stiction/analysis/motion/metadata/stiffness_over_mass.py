@@ -7,11 +7,7 @@ from math import nan, pi
 import numpy as np
 
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.motion.metadata.quantity import (
-    FEWEST_SAMPLES,
-    StatedQuantity,
-    median_error,
-)
+from stiction.analysis.motion.metadata.quantity import FEWEST_SAMPLES, StatedQuantity, median_error
 from stiction.analysis.motion.regime.kinds import HARMONIC, STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95

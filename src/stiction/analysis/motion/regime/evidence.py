@@ -119,10 +119,7 @@ WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
     "late_share": ("in the last quarter of the time it spans {} of this", percent),
     "one_way": ("this change is {} of the sum of its rises and falls", percent),
     "rate_kept": ("its rate at the end is {} of that at the beginning", percent),
-    "rate_over_drive": (
-        "at the end its rate is {} of stiffness times drive velocity",
-        percent,
-    ),
+    "rate_over_drive": ("at the end its rate is {} of stiffness times drive velocity", percent),
     "hump": ("it vibrates at about {}, in swings of every size", _frequency),
     "hump_height": ("in the spectrum they stand {} times above the threshold", _three_digits),
     "fading": ("it vibrates at about {}, less and less", _frequency),
