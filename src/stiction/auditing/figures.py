@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -95,24 +96,17 @@ def mechanism(found: Audit) -> Figure | None:
     return figure_of(plot_mechanism, seen.odds) if seen and seen.odds else None
 
 
-def posterior(found: Audit) -> Figure | None:
-    """Draw prior against posterior of a measured record."""
-    return figure_of(plot_posterior, fit_of(found)) if fit_of(found) else None
+def of_fit(plot: Callable[[Fit], Any]) -> Callable[[Audit], Figure | None]:
+    """Return the function that draws the fit of a measured record, None without one."""
+
+    def draw(found: Audit) -> Figure | None:
+        fit = found.measured and found.measured.fit
+        return figure_of(plot, fit) if fit else None
+
+    return draw
 
 
-def corner(found: Audit) -> Figure | None:
-    """Draw all pairs of the posterior of a measured record."""
-    return figure_of(plot_corner, fit_of(found)) if fit_of(found) else None
-
-
-def ranks(found: Audit) -> Figure | None:
-    """Draw the calibration of the fit of a measured record."""
-    return figure_of(plot_ranks, fit_of(found)) if fit_of(found) else None
-
-
-def fit_of(found: Audit) -> Fit | None:
-    """Return the fit of a measured record; None without one."""
-    return found.measured.fit if found.measured else None
+posterior, corner, ranks = of_fit(plot_posterior), of_fit(plot_corner), of_fit(plot_ranks)
 
 
 def tolerance(found: Audit) -> Figure | None:

@@ -162,25 +162,10 @@ def simulate_test(
 ) -> SimulatedTest:
     """Simulate a friction test.
 
-    Parameters
-    ----------
-    slider : Slider
-        The apparatus.
-    prediction : Prediction
-        The prediction for it, which determines the duration of the test.
-    growth : float
-        Growth rate (1/s) of a disturbance of steady sliding; if negative, the test lasts until
-        the disturbance has died out.
-    sample_rate : float
-        Hz; reduced if there would be too many samples.
-    start : Initial, optional
-        The initial state; by default rest with unloaded springs.
-    multiscale : {"auto", True, False}, optional
-        As of `stiction.simulate`; by default True for a test of very many transverse periods.
-    most_steps : int, optional
-        Limit of the solver's steps.
-    progress : callable, optional
-        Called with the fraction done.
+    The prediction decides how long the test lasts: until a disturbance of steady sliding has died
+    out where its rate of `growth` (1/s) is negative. The sample rate is reduced if there would be
+    too many samples. It starts at rest with unloaded springs by default, and is `multiscale` by
+    default where it has very many transverse periods; the solver takes `most_steps` at most.
     """
     load_up = prediction.load_up
     if slips_at_once(slider):  # the soft spring goes on loading until friction lies along the drive

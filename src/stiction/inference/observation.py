@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import floor, hypot, log10
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -268,19 +268,21 @@ def grid_of(record: Record, name: str) -> EvenGrid:
 class Lineless(NamedTuple):
     """A channel on an even grid, less its lines, and the bands (Hz) in which these lay.
 
-    `restored` if it is the force to which a load cell answered that rings.
+    `noise` and `step` are those of its readings, as stated or as they show; 0 where they are not
+    known, nor of the force to which a load cell answered that rings: all of that is amplified.
     """
 
     values: Floats
     bands: tuple[Band, ...]
-    restored: bool = False
+    noise: float
+    step: float
 
 
 def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lineless]:
     """Return the channels of a record without lines, as of the mains; the force as its swings."""
     found, least = {}, OWN_HARMONICS / seen.lasting.median("period")
     for name in USED:
-        values, lines = getattr(record, name, None), list(seen.lines)
+        values, lines = getattr(record, name), list(seen.lines)
         if values is None:
             continue
         if name != "force":
@@ -288,8 +290,16 @@ def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lin
         less = seen.force if name == "force" else values - sum(line.values for line in lines)
         bands = tuple(band for line in lines for band in line.bands)
         restored = name == "force" and seen.cell is not None
-        found[name] = Lineless(grid.on(less), bands, restored)
+        of_readings = (0.0, 0.0) if restored else noise_and_step(record, name)
+        found[name] = Lineless(grid.on(less), bands, *of_readings)
     return found
+
+
+def noise_and_step(record: Record, channel: str) -> tuple[float, float]:
+    """Return the noise that a sensor states of its readings, or 0, and the step between them."""
+    sensor = (record.sensors or {}).get(channel)
+    step = sensor.quantisation if sensor else 0.0
+    return sensor.noise if sensor else 0.0, step or lattice(getattr(record, channel))
 
 
 class Thinned(NamedTuple):
@@ -355,19 +365,17 @@ def noise_of(
     record: Record,
     channel: str,
     values: Floats,
-    bands: tuple[Band, ...] = (),
-    restored: bool = False,
+    bands: tuple[Band, ...],
+    noise: float,
+    step: float,
 ) -> Noise:
     """Return the noise of a channel, as its sensor states it or as its samples show it.
 
     `values` are its samples on an even grid, between which they are interpolated, less lines in
-    some bands: rounding is noise where a line was rounded, too. In a force that was restored, all
-    that its sensor states is amplified.
+    some bands: rounding is noise where a line was rounded, too.
     """
-    sensor: Any = (getattr(record, "sensors", None) or {}).get(channel)
-    stated = (0.0, 0.0) if sensor is None else (sensor.noise, sensor.quantisation)
-    step = 0.0 if restored else stated[1] or lattice(getattr(record, channel))
-    level = (0.0 if restored else stated[0]) or resolved_noise(values, step)
+    sensor = (record.sensors or {}).get(channel)
+    level = noise or resolved_noise(values, step)
     if bands or level > DITHER * step:
         level, step = hypot(level, ROUNDING_SPREAD * step), 0.0
     if sensor is None:

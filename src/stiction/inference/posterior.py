@@ -192,7 +192,7 @@ class Fit(Report):
                 f"Not identifiable from these records: {', '.join(self.unidentified)}. The "
                 f"posterior is more than {percent(NARROWER)} as wide as the prior."
             )
-        if "phi" in self.plan.priors and self.sign_unseen:
+        if "phi" in self.plan.priors and not sign_seen(self.plan.conditions):
             sentences.append("These channels do not show the sign of phi: it is that of the prior.")
         if "phi" in self.plan.priors and self.plan.slider.cell_angle is None:
             sentences.append(ALONG_X)
@@ -306,11 +306,6 @@ class Fit(Report):
             named = ", ".join(in_words(time, "s") for time in times)
             found.append(f"Noise that is not white but lasts is simulated as seen: for {named}.")
         return found
-
-    @property
-    def sign_unseen(self) -> bool:
-        """Whether no channel shows the sign of phi."""
-        return not sign_seen(self.plan.conditions)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw prior against posterior; see `stiction.plotting.plot_posterior`."""

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.creep.curve import integral
+from stiction.analysis.creep.loading_curve import BEFORE_SLIP
 from stiction.analysis.record import Record
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
@@ -22,9 +23,9 @@ CHANGED, FOLLOWED, TURNED = 0.25, 0.4, 0.2
 # of another velocity. Creep differs by as much. In a run, whose drive is known, by less
 PAUSED, KNOWN = 0.1, 0.02
 NOISE = 4.3  # standard deviations of a sample: three of a difference of two
-# Fewer rises are not compared; the quantile of their beginnings, and the share of a rise before its
-# peak, between which there are so many levels
-FEWEST_RISES, LOWER, BEFORE_SLIP, LEVELS = 4, 0.8, 0.12, 10
+# Fewer rises are not compared; the quantile of their beginnings, from which up to `BEFORE_SLIP`
+# there are so many levels
+FEWEST_RISES, LOWER, LEVELS = 4, 0.8, 10
 
 
 def at_one_load(curves: xr.Dataset, record: Record) -> xr.Dataset:
@@ -140,13 +141,7 @@ def _load_readings(record: Record) -> tuple[Floats, Floats]:
 
 
 def refuse_change(change: float, most: float, why: str) -> None:
-    """Refuse a finding under a load that changes by more than a share `most`.
-
-    Raises
-    ------
-    ResultError
-        With `why` in words.
-    """
+    """Refuse a finding under a load that changes by more than a share `most`."""
     if change > most:
         raise ResultError(
             f"not determined: the normal load changes by {percent(change)} in a stick phase, {why}"

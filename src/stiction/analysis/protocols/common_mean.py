@@ -15,22 +15,13 @@ DIFFERENT = 1e-3  # probability of values that differ as much by chance
 
 
 class CommonMean(NamedTuple):
-    """The mean of values, weighted by their errors.
+    """The mean of values, weighted by their errors."""
 
-    Attributes
-    ----------
-    value, error : float
-        The mean, and its standard error by the errors of the values.
-    square : float
-        chi^2: the sum of squares of the deviations from it over the errors.
-    weights : ndarray
-        (n,), squares of the errors' reciprocals.
-    """
-
+    # the mean, and its standard error by the errors of the values
     value: float
     error: float
-    square: float
-    weights: Floats
+    square: float  # chi^2: the sum of squares of the deviations from it over the errors
+    weights: Floats  # (n,), squares of the errors' reciprocals
 
     @property
     def free(self) -> int:

@@ -147,25 +147,14 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
 
 
 class _Way(NamedTuple):
-    """The way of the drive along X, by its program or as it was measured.
+    """The way of the drive along X, by its program or as it was measured."""
 
-    Attributes
-    ----------
-    time, X : ndarray
-        s and m, so densely that no turn is missed.
-    sampled : ndarray
-        X at the samples of the force, m.
-    stirs : float
-        How far the drive goes back and forth beside the test, m.
-    noise : float
-        How far a measured drive may seem to move at rest, m.
-    """
-
+    # s and m, so densely that no turn is missed
     time: Floats
     X: Floats
-    sampled: Floats
-    stirs: float = 0.0
-    noise: float = 0.0
+    sampled: Floats  # X at the samples of the force, m
+    stirs: float = 0.0  # how far the drive goes back and forth beside the test, m
+    noise: float = 0.0  # how far a measured drive may seem to move at rest, m
 
 
 class _Turn(NamedTuple):

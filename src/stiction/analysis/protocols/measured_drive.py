@@ -56,15 +56,7 @@ def measured_stretches(time: Floats, position: Floats) -> Stretches:
 
     A brief change from one velocity to the next counts as a jump.
 
-    Parameters
-    ----------
-    time, position : array
-        (n,), s, m.
-
-    Raises
-    ------
-    ResultError
-        If the drive does not keep to any velocity.
+    A ResultError is raised where the drive does not keep to any velocity.
     """
     parts = _without_brief(_parts(time, position), (time[-1] - time[0]) / min(len(time), MEANS))
     bent = sum(each.duration for each in parts if each.bent)

@@ -56,26 +56,16 @@ def _blocks(time: Floats, values: Floats) -> tuple[Floats, Floats]:
 
 
 class SettledPart(NamedTuple):
-    """Friction after it has evolved in a stretch, as a straight line over the drive's travel.
+    """Friction after it has evolved in a stretch, as a straight line over the drive's travel."""
 
-    Attributes
-    ----------
-    centre, length : float
-        Mean travel since the stretch began, and travel within the part, m.
-    level, slope : float
-        Mean friction, and its change with the travel, 1/m.
-    left : ndarray
-        (n,), what samples deviate by from the line.
-    tail : float
-        What may be left of the evolution where the part begins.
-    """
-
+    # mean travel since the stretch began, and travel within the part, m
     centre: float
     length: float
+    # mean friction, and its change with the travel, 1/m
     level: float
     slope: float
-    left: Floats
-    tail: float
+    left: Floats  # (n,), what samples deviate by from the line
+    tail: float  # what may be left of the evolution where the part begins
 
 
 def settled_part(

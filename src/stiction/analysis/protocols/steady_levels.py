@@ -53,18 +53,11 @@ NO_TREND, NO_NOISE = TravelTrend(), CorrelatedNoise()
 
 
 class SteadyLevels(NamedTuple):
-    """Steady friction of the stretches of a test, and the trend that they have in common.
+    """Steady friction of the stretches of a test, and the trend that they have in common."""
 
-    Attributes
-    ----------
-    trend : TravelTrend
-        Over the travel of the drive.
-    level, error, travel : dict
-        Of each stretch: mean friction along the drive in its settled part, its standard error, and
-        how far the drive has come there since the stretch began, m.
-    """
-
-    trend: TravelTrend
+    trend: TravelTrend  # over the travel of the drive
+    # of each stretch: mean friction along the drive in its settled part, its standard error, and
+    # how far the drive has come there since the stretch began, m
     level: dict[ConstantStretch, float]
     error: dict[ConstantStretch, float]
     travel: dict[ConstantStretch, float]

@@ -18,7 +18,7 @@ from stiction.analysis.signals.robust import inner_product, median, uniform_mean
 from stiction.analysis.signals.spectrum import spectrum
 from stiction.arrays import TINY, Complex, Floats, compute_once
 
-PERIODS = 16  # of a line that a record has at least
+PERIODS = 16  # of a line, or a vibration, that a record has at least
 ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of a million samples
 BESIDE = 64  # at least so many samples of the spectrum, over which the median is taken
 LOBE = 4  # samples of the spectrum to each side that a line takes: the window's lobe

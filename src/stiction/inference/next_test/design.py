@@ -231,7 +231,10 @@ def expectations(
     refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST_RIGS)
     truth, rows = scores[complete], features[complete]
     groups = [
-        [*group_ratios(trial, tests, truth[some], rows[some])]
+        [
+            ratio_of(trial, truth[some], errors)
+            for errors in errors_of(trial, tests, truth[some], rows[some], FEWEST_RIGS // GROUPS)
+        ]
         for some in np.array_split(np.arange(len(truth)), GROUPS)
     ]
     each = errors_of(trial, tests, truth, rows, FEWEST_RIGS)
@@ -240,14 +243,6 @@ def expectations(
         added = len(test.channels) - len(tests[0].channels) + (test.record is not None)
         by_group = np.array([its[done - 1] for its in groups])
         yield expectation(trial, test.name, truth, errors, added=added, by_group=by_group)
-
-
-def group_ratios(
-    trial: Plan, tests: Sequence[Further], truth: Floats, rows: Floats
-) -> Iterator[Floats]:
-    """Yield the ratios (p,) of the tests that a group of the rigs finds by itself."""
-    for errors in errors_of(trial, tests, truth, rows, FEWEST_RIGS // GROUPS):
-        yield ratio_of(trial, truth, errors)
 
 
 def errors_of(

@@ -91,22 +91,11 @@ def expectation(
 ) -> Expected:  # fmt: skip
     """Return what a test leaves open.
 
-    Parameters
-    ----------
-    trial : Plan
-        With the priors of the parameters.
-    test : str
-        Its name.
-    truth : ndarray
-        (n, p), normal scores of the parameters.
-    errors : sequence of ndarray
-        (n, p), left-out errors of the present test, of tests of which this one is more, and of
-        itself. A rig that shows too few cycles in it is known by the present one alone; and where a
-        regression learns less from more features, by what a part of the test tells.
-    added : int, optional
-        How many channels and records the test adds.
-    by_group : ndarray, optional
-        (g, p), the ratios that groups of the rigs find by themselves.
+    Of parameters `truth` (n, p), as normal scores, with left-out `errors` (n, p) of the present
+    test, of tests of which this one is more, and of itself. A rig that shows too few cycles in it
+    is known by the present one alone; and where a regression learns less from more features, by
+    what a part of the test tells. The test adds so many channels and records to the present one;
+    groups of the rigs find ratios `by_group` (g, p) by themselves.
     """
     each = fill_in(errors)
     sizes = np.stack([np.abs(in_si(trial, truth, its)) for its in each])

@@ -113,7 +113,7 @@ class Simulate(NamedTuple):
             self.report(block, len(rows))
         found = np.array([row[0] for row in rows]), np.array([row[1] for row in rows])
         if self.folder is not None:
-            write_block(self.folder, block, *found)
+            write_arrays(self.folder / f"{block:05d}.npz", scores=found[0], features=found[1])
         return block, found
 
     def __reduce__(self) -> tuple[type[Simulate], tuple[Plan, Path | None, int]]:
@@ -142,11 +142,6 @@ def refuse_too_few(
     `which` tells what is asked of the cycles, `check` what decides about them. Where most of
     them are usable, but all would be too few, only their number is at fault; where fewer than a
     tenth of those that are needed are usable, more of them would not help.
-
-    Raises
-    ------
-    ResultError
-        If fewer than `fewest` have cycles.
     """
     if usable >= fewest:
         return
@@ -177,11 +172,6 @@ def library_folder(library: str | Path | None) -> Path | None:
         return None
     folder = Path(library)
     return folder if folder == cache_folder() else prepare_folder(folder)
-
-
-def write_block(folder: Path, block: int, scores: Floats, found: Floats) -> None:
-    """Write a block of simulations."""
-    write_arrays(folder / f"{block:05d}.npz", scores=scores, features=found)
 
 
 def read_block(folder: Path, block: int) -> tuple[Floats, Floats] | None:

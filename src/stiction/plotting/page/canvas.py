@@ -95,13 +95,7 @@ class PlainNumbers(ScalarFormatter):
 
 
 def panels_by_name(axes: Any) -> dict[str, Axes]:
-    """Return the axes that a user gives for a figure of several panels, by the panels' names.
-
-    Raises
-    ------
-    DescriptionError
-        If the axes have no names.
-    """
+    """Return the axes that a user gives for a figure of several panels, by the panels' names."""
     if not isinstance(axes, Mapping):
         remedy = "name those to draw, such as {'force': ax}"
         said = f"is {echo(axes)}, but the figure has several panels: {remedy}"
@@ -110,13 +104,7 @@ def panels_by_name(axes: Any) -> dict[str, Axes]:
 
 
 def find_drawing(drawings: Mapping[str, Drawing], name: str) -> Drawing:
-    """Return the function that draws a panel.
-
-    Raises
-    ------
-    StictionError
-        If there is no such panel.
-    """
+    """Return the function that draws a panel."""
     if name not in drawings:
         raise StictionError(unknown_name("panel", name, drawings))
     return drawings[name]

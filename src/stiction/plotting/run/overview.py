@@ -82,7 +82,7 @@ def plot_run(
     with style():
         panels = _panels(part, words) if axes is None else panels_by_name(axes)
         drawings: dict[str, Callable[[Axes, Trajectory], Any]] = {
-            "system": _system,
+            "system": lambda ax, run: draw_schematic(ax, run.slider),
             "words": lambda ax, _: _write(ax, words),
             "law": _law,
             **_series(part),
@@ -113,10 +113,6 @@ def _panels(run: Trajectory, words: Words) -> dict[str, Axes]:
     series = right.subplots(len(heights), 1, sharex=True, height_ratios=heights)
     fix_ticks([*panels.values(), *series])
     return {**panels, **dict(zip((*imposed, *SERIES), series, strict=True))}
-
-
-def _system(ax: Axes, run: Trajectory) -> None:
-    draw_schematic(ax, run.slider)
 
 
 def _law(ax: Axes, run: Trajectory) -> None:

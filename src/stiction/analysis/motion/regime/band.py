@@ -12,12 +12,12 @@ import numpy as np
 
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
+from stiction.analysis.signals.hum import PERIODS
 from stiction.analysis.signals.robust import uniform_mean
 from stiction.analysis.signals.spectrum import spectrum
 from stiction.arrays import TINY, Floats
 from stiction.recording.noise import rounding_error
 
-PERIODS = 16  # of the vibration that a record has at least
 SUSPECTED = 5  # periods from which on a vibration is suspected, but not known
 SAMPLES = 4  # at least, of a period
 WIDE = 1.4  # times its frequency, and as far below, reaches a hump

@@ -43,39 +43,27 @@ STARTS = 2  # of these from which a fit begins at most: until one goes through t
 
 
 class Inversion(NamedTuple):
-    """A fitted law.
+    """A fitted law."""
 
-    Attributes
-    ----------
-    a, b, D_c : float
-        m for D_c; NaN where they are not known.
-    a_error, b_error, D_c_error : float
-        Standard errors.
-    square, variance : float
-        Sum of squared residuals, and their variance; NaN without a fit.
-    misses : bool
-        Whether the curve misses the samples by more than they scatter; of parameters that are NaN,
-        whether they are so for that.
-    fit : ndarray
-        (n,), the curve at the samples; NaN without it.
-    delay, delay_error : float
-        Travel by which the step comes later than stated, m, and its standard error; 0 for a run.
-    stiffer, stiffer_error : float
-        Logarithm of the rig's stiffness over that stated; 0 for a run.
-    """
-
+    # m for D_c; NaN where they are not known
     a: float
+    # standard errors
     a_error: float
     b: float
     b_error: float
     D_c: float
     D_c_error: float
+    # sum of squared residuals, and their variance; NaN without a fit
     square: float
     variance: float
+    # whether the curve misses the samples by more than they scatter; of parameters that are NaN,
+    # whether they are so for that
     misses: bool
-    fit: Floats
+    fit: Floats  # (n,), the curve at the samples; NaN without it
+    # travel by which the step comes later than stated, m, and its standard error; 0 for a run
     delay: float = 0.0
     delay_error: float = 0.0
+    # logarithm of the rig's stiffness over that stated; 0 for a run
     stiffer: float = 0.0
     stiffer_error: float = 0.0
 

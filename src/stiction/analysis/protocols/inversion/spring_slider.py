@@ -37,34 +37,19 @@ AT_V = SimpleNamespace(V_star=1.0)  # of a law in these units, whose log_theta i
 
 
 class SpringSlider(NamedTuple):
-    """What a step of the drive meets: parameters over which nothing is fitted.
+    """What a step of the drive meets: parameters over which nothing is fitted."""
 
-    Attributes
-    ----------
-    ratio : float
-        Of the speeds after and before the step.
-    stiffness, damping : float
-        k/W, 1/m, and c V/W, 1.
-    """
-
-    ratio: float
+    ratio: float  # of the speeds after and before the step
+    # k/W, 1/m, and c V/W, 1
     stiffness: float
     damping: float
 
 
 class FrictionCourse(NamedTuple):
-    """Spring force over load after a step, less that of steady sliding afterwards.
+    """Spring force over load after a step, less that of steady sliding afterwards."""
 
-    Attributes
-    ----------
-    friction : ndarray
-        (n,), 1.
-    slope : ndarray
-        (n,), its change with the travel of the drive, 1/m.
-    """
-
-    friction: Floats
-    slope: Floats
+    friction: Floats  # (n,), 1
+    slope: Floats  # (n,), its change with the travel of the drive, 1/m
 
 
 def course_after_a_step(

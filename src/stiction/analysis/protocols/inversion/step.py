@@ -35,45 +35,23 @@ NEAR = 1e-4  # of a parameter, for a derivative
 
 
 class StepData(NamedTuple):
-    """A step of the drive as it is fitted.
+    """A step of the drive as it is fitted."""
 
-    Attributes
-    ----------
-    time : float
-        s.
-    rig : SpringSlider
-        What is known of it.
-    slip : ndarray
-        (n,), travel of the drive since the step, m; negative before it, at the speed after it.
-    mu : ndarray
-        (n,), spring force over load.
-    before : ndarray
-        (l,), the same in steady sliding before the step.
-    after : float
-        Where it is steady after the step, or its mean in the end of the data.
-    noise : float
-        What all samples may be off by together: rounding, or the tolerance of a run.
-    travel_before : float
-        Mean travel of the drive, since the step, of the samples before it, m: negative.
-    trend_error : float
-        Standard error of the trend over the travel that `mu` and `before` are freed of, 1/m.
-    speed : float
-        Of the drive after the step, m/s.
-    clock : float
-        Travel by which the step may come earlier or later than `slip` has it, m. 0 for a run: then
-        its stiffness is right, too.
-    """
-
-    time: float
-    rig: SpringSlider
+    time: float  # s
+    rig: SpringSlider  # what is known of it
+    # (n,), travel of the drive since the step, m; negative before it, at the speed after it
     slip: Floats
-    mu: Floats
-    before: Floats
-    after: float
-    noise: float
+    mu: Floats  # (n,), spring force over load
+    before: Floats  # (l,), the same in steady sliding before the step
+    after: float  # where it is steady after the step, or its mean in the end of the data
+    noise: float  # what all samples may be off by together: rounding, or the tolerance of a run
+    # mean travel of the drive, since the step, of the samples before it, m: negative
     travel_before: float = 0.0
+    # standard error of the trend over the travel that `mu` and `before` are freed of, 1/m
     trend_error: float = 0.0
-    speed: float = nan
+    speed: float = nan  # of the drive after the step, m/s
+    # travel by which the step may come earlier or later than `slip` has it, m. 0 for a run: then
+    # its stiffness is right, too
     clock: float = 0.0
 
     @property
