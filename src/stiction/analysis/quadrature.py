@@ -231,13 +231,7 @@ def _budget(run: Trajectory) -> int:
 
 
 def states_at(run: Trajectory, times: Floats) -> Floats:
-    """Return rows as in `stiction.solver.exact.sampling` at `times` (ascending, s) within the run.
-
-    Raises
-    ------
-    ResultError
-        If the repeated run ends earlier: the run does not match its file.
-    """
+    """Return rows as in `stiction.solver.exact.sampling` at `times` (ascending, s) of the run."""
     blocks: list[Floats] = []
     go_through(run, times, lambda rows: blocks.append(rows.copy()))
     return np.concatenate(blocks)

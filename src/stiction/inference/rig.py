@@ -352,13 +352,7 @@ def read_priors(unit_at: Callable[[str], str], stated: Mapping[str, Any]) -> dic
 
 
 def in_the_middle(slider: Slider, priors: Mapping[str, Prior]) -> Slider:
-    """Return the slider with every uncertain value in the middle of its prior.
-
-    Raises
-    ------
-    DescriptionError
-        If the description refuses these values together.
-    """
+    """Return the slider with every uncertain value in the middle of its prior."""
     middles = {name: middle(prior) for name, prior in priors.items()}
     given = {name: quantity(slider, name, value) for name, value in middles.items()}
     return change_parameters(slider, given) if given else slider
@@ -382,13 +376,7 @@ def within_ranges(slider: Slider, priors: Mapping[str, Prior]) -> dict[str, Prio
 
 
 def within_range(slider: Slider, path: str, prior: Prior, others: Mapping[str, Prior]) -> Prior:
-    """Return a prior that ends where a value would be impossible.
-
-    Raises
-    ------
-    DescriptionError
-        If an end of a uniform prior is impossible, whatever values the others have.
-    """
+    """Return a prior that ends where values become impossible; refuse one whose end is so."""
     if isinstance(prior, Uniform):
         for end in (prior.low, prior.high):
             try:

@@ -130,17 +130,8 @@ def mean_creep_velocity(run: Trajectory, width: float = 0.02) -> xr.DataArray:
     between. Distance over time from one rest to another averages over whole steps. Where there are
     no rests, intervals of equal length are used.
 
-    Parameters
-    ----------
-    run : Trajectory
-        Sampled several times each transverse period.
-    width : float, optional
-        Shortest averaging time, s; many transverse periods.
-
-    Returns
-    -------
-    DataArray
-        Over ``time`` (s), the middle of each interval; empty if slip comes before two of them.
+    The `width` is the shortest averaging time, s: many transverse periods. A DataArray over
+    ``time`` (s), the middle of each interval, is returned: empty if slip comes before two of them.
     """
     times, X = run.samples["time"], run.samples["X"]
     end = first_slip_time(run)

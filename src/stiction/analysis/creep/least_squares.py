@@ -65,11 +65,6 @@ def best_fit(
     """Return the best of the fits of a model of some parameters from several starts.
 
     Parameters are varied in units of their `sizes`: the optimiser's steps have no unit.
-
-    Raises
-    ------
-    ResultError
-        If a fit does not converge.
     """
 
     def fit_from(start: tuple[float, ...]) -> CreepFit:

@@ -49,11 +49,6 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     Quasistatic creep has no memory: its velocity depends on the force alone. Therefore cycles that
     begin at different forces can be averaged at equal ones. Each cycle's force is scaled by its
     peak, because the whole curve varies with the friction from cycle to cycle.
-
-    Raises
-    ------
-    ResultError
-        If the record lacks stiffness or drive velocity, or the rises have too few samples.
     """
     if not record.loading_rate:
         raise ResultError("the record states no stiffness and drive_velocity; give both")

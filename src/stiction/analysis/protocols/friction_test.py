@@ -198,18 +198,9 @@ class FrictionTest(NamedTuple):
 def friction_test(source: Trajectory | Record, program: DriveProgram | None = None) -> FrictionTest:
     """Return a run, or a record of a test by a program, as a friction test.
 
-    Parameters
-    ----------
-    source : Trajectory or Record
-        A record needs its normal load.
-    program : DriveProgram, optional
-        The program by which a record was taken, with t = 0 as in its time; by default its measured
-        `drive_position` tells, whenever the record begins. That of the run is known.
-
-    Raises
-    ------
-    ResultError
-        If the program or the load is unknown.
+    A record needs its normal load, and the `program` by which it was taken, with t = 0 as in its
+    time; by default its measured `drive_position` tells, whenever the record begins. That of a run
+    is known.
     """
     if isinstance(source, Trajectory):
         return of_run(source, source.slider.motion)

@@ -88,13 +88,7 @@ class Rotation(NamedTuple):
 
 
 def rotation_of(record: Record, cycles: xr.Dataset) -> Rotation:
-    """Return how the force on the mass changes in the loadings of cycles.
-
-    Raises
-    ------
-    ResultError
-        If there are too few samples, or the force along hardly rises.
-    """
+    """Return how the force on the mass changes in the loadings of cycles."""
     forces = np.stack([record.force, np.asarray(record.force_across)])
     its = loadings(record.time, forces, cycles)
     found = _rotation(its.mean(), (record.sensors or {}).get("force_across"))

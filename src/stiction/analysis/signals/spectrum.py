@@ -226,11 +226,6 @@ def even_rate(run: Trajectory) -> float:
     """Return the sample rate of a run, Hz.
 
     A run that was given up has its last sample where it ended, too soon after the one before.
-
-    Raises
-    ------
-    ResultError
-        If it is sampled once, or at uneven times.
     """
     steps = np.diff(run.samples["time"])
     usual = steps[:-1] if len(steps) > 1 else steps

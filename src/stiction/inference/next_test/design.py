@@ -218,13 +218,7 @@ def learn_or_read(
 def expectations(
     trial: Plan, tests: Sequence[Further], scores: Floats, features: Floats, progress: Progress
 ) -> Iterator[Expected]:
-    """Yield what each test leaves open, the present one first.
-
-    Raises
-    ------
-    ResultError
-        If too few of the simulated rigs stick and slip in the present test.
-    """
+    """Yield what each test leaves open, the present one first."""
     width = features.shape[1] // len(trial.conditions)
     columns = features_from(tests[0].channels, trial.conditions[0], trial.slider)
     complete = have_cycles(features[:, :width][:, columns])

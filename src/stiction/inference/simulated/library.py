@@ -61,11 +61,6 @@ def simulate_all(
 
     Features of a record with too few cycles are NaN. What a folder holds already is not simulated
     again: simulation number i is the same whatever the number of others.
-
-    Raises
-    ------
-    DescriptionError
-        If there is to be none.
     """
     if count < 1:
         raise DescriptionError.of("simulations", f"must be at least 1, is {count}")

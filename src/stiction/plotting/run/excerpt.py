@@ -65,13 +65,7 @@ def excerpt(run: Trajectory, window: Sequence[Quantity] | None) -> Trajectory:
 def excerpts(
     runs: Mapping[str, Trajectory], window: Sequence[Quantity] | None
 ) -> dict[str, Trajectory]:
-    """Return the `excerpt` of each run; the error names the run that has none.
-
-    Raises
-    ------
-    ResultError
-        If one of them ended before, or has fewer than two samples there.
-    """
+    """Return the `excerpt` of each run; the error names the run that has none."""
     found = {}
     for label, run in runs.items():
         try:
