@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.motion.changes.free_swings import RingingCell
 from stiction.analysis.motion.cycles import OWN_HARMONICS, Swings, swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.record import Record, as_record
@@ -28,6 +29,7 @@ from stiction.inference.suitability import (
     changes_within,
     refuse_far,
     refuse_few,
+    refuse_hidden,
     refuse_other_motion,
     refuse_other_sign,
 )
@@ -78,6 +80,9 @@ class Noise(NamedTuple):
     lasting, lasts : float
         Standard deviation of noise that lasts, beside the white, and the time (s) within which its
         correlation falls by a factor of e.
+    cell : RingingCell or None
+        The load cell, where it rings: the force to which it answered is restored, which smooths it
+        and amplifies the noise.
     """
 
     level: float
@@ -89,6 +94,7 @@ class Noise(NamedTuple):
     stop_bands: tuple[Band, ...] = ()
     lasting: float = 0.0
     lasts: float = 0.0
+    cell: RingingCell | None = None
 
     @property
     def error(self) -> float:
@@ -228,8 +234,10 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
     step, lineless = float(f"{grid.step:.{DIGITS}g}"), without_lines(record, grid, seen)
     noise = {each: noise_of(record, each, *its) for each, its in lineless.items()}
-    found = slip_cycles(lineless["force"].values, noise["force"].error)
-    refuse_few(name, len(found.peak))
+    found = slip_cycles(
+        lineless["force"].values, amplification(noise["force"], step) * noise["force"].error
+    )
+    refuse_hidden(name, len(found.peak), len(seen.lasting))
     refuse_other_sign(name, lineless["force"].values, found)
     lasts = float(np.mean(found.after - found.before)) * step
     if seen.cell is not None:  # before means are taken, amplified noise makes cycles, too
@@ -237,7 +245,8 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     cycle = near(lasts)
     block = max(round(cycle / step / PER_CYCLE), 1)
     thin, thin_noise, found = thin_out(lineless, noise, step, block)
-    number = max(each for each in LADDER if each <= max(len(found.peak), LADDER[0]))
+    refuse_hidden(name, len(found.peak), len(seen.lasting))  # noise had made some
+    number = max(each for each in LADDER if each <= len(found.peak))
     found = Cycles(*(each[:number] for each in found))
     drifts = any(each.drift for each in noise.values())
     conditions = Conditions(
@@ -268,14 +277,12 @@ def grid_of(record: Record, name: str) -> EvenGrid:
 class Lineless(NamedTuple):
     """A channel on an even grid, less its lines, and the bands (Hz) in which these lay.
 
-    `noise` and `step` are those of its readings, as stated or as they show; 0 where they are not
-    known, nor of the force to which a load cell answered that rings: all of that is amplified.
+    Of the force also the load cell that rings, if this is the force to which it answered.
     """
 
     values: Floats
     bands: tuple[Band, ...]
-    noise: float
-    step: float
+    cell: RingingCell | None = None
 
 
 def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lineless]:
@@ -289,17 +296,9 @@ def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lin
             lines = lines_like(lines, grid, values, least)
         less = seen.force if name == "force" else values - sum(line.values for line in lines)
         bands = tuple(band for line in lines for band in line.bands)
-        restored = name == "force" and seen.cell is not None
-        of_readings = (0.0, 0.0) if restored else noise_and_step(record, name)
-        found[name] = Lineless(grid.on(less), bands, *of_readings)
+        cell = seen.cell if name == "force" else None
+        found[name] = Lineless(grid.on(less), bands, cell)
     return found
-
-
-def noise_and_step(record: Record, channel: str) -> tuple[float, float]:
-    """Return the noise that a sensor states of its readings, or 0, and the step between them."""
-    sensor = (record.sensors or {}).get(channel)
-    step = sensor.quantisation if sensor else 0.0
-    return sensor.noise if sensor else 0.0, step or lattice(getattr(record, channel))
 
 
 class Thinned(NamedTuple):
@@ -365,23 +364,27 @@ def noise_of(
     record: Record,
     channel: str,
     values: Floats,
-    bands: tuple[Band, ...],
-    noise: float,
-    step: float,
+    bands: tuple[Band, ...] = (),
+    cell: RingingCell | None = None,
 ) -> Noise:
     """Return the noise of a channel, as its sensor states it or as its samples show it.
 
     `values` are its samples on an even grid, between which they are interpolated, less lines in
-    some bands: rounding is noise where a line was rounded, too.
+    some bands: rounding is noise where a line was rounded, too, and behind a `cell` that rings. The
+    noise is then that of its readings.
     """
     sensor = (record.sensors or {}).get(channel)
-    level = noise or resolved_noise(values, step)
-    if bands or level > DITHER * step:
+    stated = (0.0, 0.0) if sensor is None else (sensor.noise, sensor.quantisation)
+    readings = getattr(record, channel)
+    step = stated[1] or lattice(readings)
+    level = stated[0] or resolved_noise(values if cell is None else readings, step)
+    if bands or cell or level > DITHER * step:
         level, step = hypot(level, ROUNDING_SPREAD * step), 0.0
     if sensor is None:
-        return Noise(level, quantisation=step, stop_bands=bands)
+        return Noise(level, quantisation=step, stop_bands=bands, cell=cell)
     errors = sensor.gain_uncertainty, sensor.zero_uncertainty
-    return Noise(level, *errors, sensor.filters, sensor.zero_drift_uncertainty, step, bands)
+    drift = sensor.zero_drift_uncertainty
+    return Noise(level, *errors, sensor.filters, drift, step, bands, cell=cell)
 
 
 def readings_to_simulate(block: int, noise: Mapping[str, Noise]) -> int:
@@ -393,14 +396,22 @@ def readings_to_simulate(block: int, noise: Mapping[str, Noise]) -> int:
 def noise_of_means(noise: Noise, block: int, step: float) -> Noise:
     """Return the noise of means of blocks of samples, rounded so that many records share it.
 
-    Of bands that means cannot resolve, so little is left that they need not be left out.
+    Not where a force is restored: then noise is large beside a slip, and no other record has it. Of
+    bands that means cannot resolve, so little is left that they need not be left out.
     """
-    fastest = 0.5 / (step * block)
+    fastest, level = 0.5 / (step * block), noise.level / block**0.5
+    if noise.cell is not None:
+        level *= noise.cell.amplification(step, block)
     return noise._replace(
-        level=round_up(noise.level / block**0.5),
+        level=round_up(level) if noise.cell is None else float(f"{level:.{DIGITS}g}"),
         quantisation=float(f"{noise.quantisation:.{DIGITS}g}"),
         stop_bands=tuple(to_tenths(band) for band in noise.stop_bands if band.high < fastest),
     )
+
+
+def amplification(noise: Noise, step: float, block: int = 1) -> float:
+    """Return by how much means of blocks of samples are noisier where a force is restored."""
+    return 1.0 if noise.cell is None else noise.cell.amplification(step, block)
 
 
 def to_tenths(band: Band) -> Band:

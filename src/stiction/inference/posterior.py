@@ -28,6 +28,7 @@ from stiction.system.parameter import unit
 from stiction.text.paths import last_part, short_names
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Report, Section, Table
+from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, span
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
@@ -277,7 +278,9 @@ class Fit(Report):
                 f"At an end of its prior, beyond which the records point: {names}; "
                 "correct the rig's description, or widen its prior."
             )
-        if self.drifts:
+        if self.trend.drops < TREND:
+            found.append(friction_drifts(self.trend.drops))
+        elif self.drifts:
             found.append(
                 "The peaks have a trend from cycle to cycle, the drops show none, as where a zero "
                 f"drifts: friction coefficients are then uncertain by more. {STATE_DRIFT}"
@@ -305,6 +308,12 @@ class Fit(Report):
         if times:
             named = ", ".join(in_words(time, "s") for time in times)
             found.append(f"Noise that is not white but lasts is simulated as seen: for {named}.")
+        for cell in sorted({noise.cell for noise in noises if noise.cell is not None}):
+            found.append(
+                f"The load cell rings at {in_words(cell.frequency, 'Hz')} after each slip: what is "
+                "compared is the force to which it answers, in record and simulations alike up to "
+                f"about {in_words(cell.highest, 'Hz', 2)}."
+            )
         return found
 
     def plot(self, axes: Any = None) -> Any:
@@ -363,6 +372,14 @@ def estimate(
     narrower = deviation / wide
     return Estimate(
         name, unit_of(plan, name), middle, low, high, mid, bottom, top, narrower, coverage
+    )
+
+
+def friction_drifts(p_value: float) -> str:
+    """Return that friction has a trend in a record, as it may have with this probability."""
+    return (
+        f"Friction drifts: peaks or drops have a trend from cycle to cycle (p = {p_value:.1g}), "
+        f"which is not simulated. Take cycles after running in ({Suggestion('begin')})."
     )
 
 

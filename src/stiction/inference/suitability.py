@@ -78,6 +78,16 @@ def refuse_few(name: str, count: int) -> None:
         )
 
 
+def refuse_hidden(name: str, count: int, of: int) -> None:
+    """Refuse a record of which too few of its cycles stand out of all that its force does."""
+    if count < LEAST_CYCLES:
+        raise ResultError(
+            f"of the {of} cycles of {name} only {count} stand out of what else the force does, as "
+            f"where it drifts or has a slower wave; a fit needs {LEAST_CYCLES}: fit a part in "
+            f"which the force keeps its level ({begin_and_end()})"
+        )
+
+
 def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
     """Refuse a force that is recorded with the other sign: most cycles rise within QUICKLY."""
     shares = (cycles.peak - cycles.before) / (cycles.after - cycles.before)

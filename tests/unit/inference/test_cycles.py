@@ -246,6 +246,20 @@ def test_simulations_leave_out_the_same_bands():
     assert power[inside].max() > 0.1 * np.median(power)
 
 
+@pytest.mark.parametrize("seed", [0, 8, 16, 21, 37])
+def test_cycles_of_which_means_show_too_few_are_refused(seed):
+    """Noise on a slow wave made six cycles, of which means had two: six were taken all the same."""
+    random = np.random.default_rng(seed)
+    rise = 0.2 * np.append(np.linspace(0.0, 1.0, 2000), np.linspace(1.0, 0.0, 50))
+    force = 2.0 + np.concatenate([size * rise for size in random.uniform(0.8, 1.2, 24)])
+    turns, height, noise = random.integers(2, 6), *random.uniform((0.3, 0.02), (1.0, 0.06))
+    force += height * np.cos(np.linspace(0.0, 2.0 * np.pi * turns, len(force)))
+    force += noise * random.normal(size=len(force))
+    record = st.Record(time=5e-4 * np.arange(len(force)), force=force)
+    with pytest.raises(ResultError, match=r"of the 2\d cycles of the record only \d stand out"):
+        observe(record, slider_of(0.6))
+
+
 @pytest.mark.parametrize("stated", [None, st.Sensor(noise="4 mN")])
 @pytest.mark.parametrize(("frequency", "quality"), [(8.0, 10.0), (5.0, 8.0)])
 def test_behind_a_load_cell_that_rings_are_the_cycles_to_which_it_answered(

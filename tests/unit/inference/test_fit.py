@@ -519,8 +519,11 @@ def test_a_trend_that_may_be_of_the_zero_is_named(found):
     rising = replace(found, trend=Trend(1e-3, 0.5))
     for said in (rising.doubts, replace(rising, farther=0.02).doubts):
         assert 'under [sensors.force]: zero_drift = "0 +- 5 mN/min"' in said[-1]
-    for other in (found.trend, Trend(1e-3, 1e-3)):  # no trend, or one of the friction
-        assert len(replace(found, farther=0.02, trend=other).doubts) == 1
+    assert len(replace(found, farther=0.02, trend=found.trend).doubts) == 1
+    for peaks in (1e-3, 0.5):
+        (said,) = replace(found, trend=Trend(peaks, 1e-3)).doubts
+        assert said.startswith("Friction drifts")
+        assert "running in" in said
     (conditions,) = found.plan.conditions
     stated = conditions._replace(noise={"force": Noise(0.004, drift=1e-4)})
     plan = found.plan._replace(conditions=(stated,))

@@ -9,7 +9,13 @@ import numpy as np
 
 from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.changes.few_slips import FEW, few_slips
-from stiction.analysis.motion.changes.free_swings import FreeSwing, free_swing, without_free_swings
+from stiction.analysis.motion.changes.free_swings import (
+    FreeSwing,
+    RingingCell,
+    free_swing,
+    ringing_cell,
+    without_free_swings,
+)
 from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
@@ -158,8 +164,8 @@ class Swings(NamedTuple):
         `find_cycles`; the first is loaded from where its loading is even.
     driven : int
         Number of swings that were left out because jumps of the drive's velocity make them.
-    cell : FreeSwing or None
-        How a load cell swings whose swings would count as cycles; `force` is without them.
+    cell : RingingCell or None
+        The load cell whose swings would count as cycles; `force` is without them.
     """
 
     table: CycleTable
@@ -174,7 +180,7 @@ class Swings(NamedTuple):
     over: bool = False
     few: CycleTable | None = None
     driven: int = 0
-    cell: FreeSwing | None = None
+    cell: RingingCell | None = None
 
     @property
     def lasting(self) -> CycleTable:
@@ -275,10 +281,11 @@ def _cycles_of_ringing_cell(record: Record, grid: EvenGrid, found: Swings) -> Sw
         return None
     fall = float(np.median(its["trough_time"] - its["peak_time"]))
     periods = [*np.quantile(its["period"], (0.2, 0.5)), fall, 2.0 * fall, 4.0 * fall]
-    cell = free_swing(grid, record.force, periods)
-    if cell is None or _is_hum(cell, narrow_lines(grid, record.force)):
+    swing = free_swing(grid, record.force, periods)
+    if swing is None or _is_hum(swing, narrow_lines(grid, record.force)):
         return None
-    force = without_free_swings(grid, record.force, cell, its.median("drop"))
+    cell = ringing_cell(record.force, swing, its.median("drop"))
+    force = without_free_swings(grid, record.force, cell)
     left = own_swings(record.with_force(force))
     most = len(its) if is_stick_slip(its) else FAR_FEWER * len(its)
     enough = FEWEST_CYCLES <= len(left.table) <= most and not left.dying

@@ -20,12 +20,11 @@ from stiction.inference.mechanism.rivals import (
     STATIC,
 )
 from stiction.inference.observation import TREND
-from stiction.inference.posterior import RARE, STATE_DRIFT
+from stiction.inference.posterior import RARE, STATE_DRIFT, friction_drifts
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.names import draw
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Report, Section, Table
-from stiction.text.suggestion import Suggestion
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
 BY_HALF = 0.6  # by each half of the simulations: a claim is not a matter of their draw
@@ -168,11 +167,7 @@ class Odds(Report):
         if self.explanation and (its.farther < UNLIKE or its.larger < BENT):
             found.append(self.explanation)
         if self.steady < TREND:
-            found.append(
-                "Friction drifts: peaks or drops have a trend from cycle to cycle (p = "
-                f"{self.steady:.1g}), which is not simulated. Take cycles after running in "
-                f"({Suggestion('begin')}). {STATE_DRIFT}"
-            )
+            found.append(f"{friction_drifts(self.steady)} {STATE_DRIFT}")
         if self.rest is not None and not self.rest.known:
             found.append(
                 f"Whether the mass creeps or is held is not known: of {ALIKE} simulations of "

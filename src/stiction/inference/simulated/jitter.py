@@ -49,11 +49,14 @@ class Jitter(NamedTuple):
         Correlation between the coefficients, 0 to 1.
     drift : float, optional
         Change of the logarithm of all coefficients from each cycle to the next.
+    alternation : float, optional
+        Difference of the logarithm of all coefficients between odd and even cycles.
     """
 
     spread: float
     common: float
     drift: float = 0.0
+    alternation: float = 0.0
 
 
 class SampledMotion(NamedTuple):
@@ -76,9 +79,8 @@ def laws(law: Any, jitter: Jitter, random: np.random.Generator) -> Iterator[Any]
     for number in count():
         common, *own = random.standard_normal(1 + len(names))
         share, rest = jitter.common**0.5, (1.0 - jitter.common) ** 0.5
-        factors = np.exp(
-            jitter.spread * (share * common + rest * np.array(own)) + number * jitter.drift
-        )
+        trend = number * jitter.drift + (0.5 - number % 2) * jitter.alternation
+        factors = np.exp(jitter.spread * (share * common + rest * np.array(own)) + trend)
         pairs = zip(names, factors.tolist(), strict=True)  # NumPy's numbers take Python longer
         yield law._replace(**{name: getattr(law, name) * factor for name, factor in pairs})
 

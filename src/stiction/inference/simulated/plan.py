@@ -30,7 +30,8 @@ class Plan(NamedTuple):
     priors : dict of str to Normal or Uniform
         Of its parameters, by path; and of ``jitter``, ``gain`` and ``zero`` (N) of the force, the
         drift of this zero in the first record, ``zero_drift`` (N/s), and ``drift``, the change of
-        the coefficients' logarithm over a record.
+        the coefficients' logarithm over a record, and ``alternation``, its difference between odd
+        and even cycles.
     conditions : tuple of Conditions
         Of each record.
     basis : Slider, optional

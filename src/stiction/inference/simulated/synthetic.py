@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.changes.free_swings import RingingCell, through
 from stiction.analysis.signals.hum import without_bands
 from stiction.analysis.signals.robust import block_means
 from stiction.arrays import Floats
@@ -22,7 +23,8 @@ from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 
 LONGEST_CYCLE = 4.0  # of the measured cycles: simulations with longer ones end without
-NOT_OF_THE_SLIDER = {"jitter", "drift", "gain", "zero", "zero_drift"}  # names of priors
+# names of priors
+NOT_OF_THE_SLIDER = {"jitter", "drift", "alternation", "gain", "zero", "zero_drift"}
 
 
 class Synthetic(NamedTuple):
@@ -55,7 +57,8 @@ def synthesise(
             slider = change_unchecked(slider, path, value)
     spread, common = values["jitter"], float(random.uniform())
     for conditions in plan.conditions:
-        jitter = Jitter(spread, common, values.get("drift", 0.0) / conditions.cycles)
+        drift, alternation = (values.get(each, 0.0) for each in ("drift", "alternation"))
+        jitter = Jitter(spread, common, drift / conditions.cycles, alternation)
         rig = conditions.slider_of(slider)
         wanted, noise = conditions.cycles, conditions.noise["force"].error
         most = LONGEST_CYCLE * (wanted + SPARE) * conditions.cycle + first_loading(rig)
@@ -101,13 +104,27 @@ def measure(
         values_of = gain * low_pass(exact[name], shown, 1.0 / step) + zero
         more = ceil(conditions.block / places) if noise.quantisation else 1
         readings, block = refine(values_of, more), places * more
-        readings = readings + noise.level * block**0.5 * random.standard_normal(len(readings))
+        white = noise.level * block**0.5 * random.standard_normal(len(readings))
+        readings = restore(readings, white, conditions.step / block, block, noise.cell)
         if noise.lasting:
             lasts = noise.lasts / conditions.step * block
             readings += draw_lasting(len(readings), noise.lasting, lasts, random)
         means = block_means(digitise(readings, noise.quantisation), block)
         found[name] = without_bands(means, conditions.step, noise.stop_bands)
     return found
+
+
+def restore(
+    values: Floats, white: Floats, step: float, block: int, cell: RingingCell | None
+) -> Floats:
+    """Return values, a step (s) apart, with noise; restored where the cell rings.
+
+    Means of blocks have as much noise as those of the white one.
+    """
+    if cell is None:
+        return values + white
+    noise = through(white, step, cell.restoration) / cell.amplification(step, block)
+    return through(values, step, cell.smoothing) + noise
 
 
 def refine(values: Floats, times: int) -> Floats:

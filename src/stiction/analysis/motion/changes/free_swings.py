@@ -8,11 +8,12 @@ tell the force to which it answered.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from math import inf, log, pi
-from typing import NamedTuple
+from collections.abc import Callable, Iterable
+from math import hypot, inf, log, pi
+from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.robust import block_means
@@ -30,6 +31,7 @@ LEAST_QUALITY, MOST_QUALITY = 3.0, 60.0  # a swing that fades at once, and a lin
 # Noise is amplified by the square of the highest frequency that is restored, over the cell's: up to
 # a share of a drop, within a range of frequencies
 LOUD, RESTORED = 0.1, (2.0, 6.0)
+POINTS = 4097  # of a spectrum, over which noise is summed
 
 
 class FreeSwing(NamedTuple):
@@ -44,6 +46,39 @@ class FreeSwing(NamedTuple):
     def rings(self) -> bool:
         """Whether it is that of a load cell which rings after each slip."""
         return self.share > OFTEN and LEAST_QUALITY < self.quality < MOST_QUALITY
+
+
+class RingingCell(NamedTuple):
+    """A load cell that rings, and up to where its readings tell the force to which it answered.
+
+    Parameters
+    ----------
+    frequency, quality : float
+        Undamped, Hz; and Q of the resonance.
+    highest : float
+        Frequency (Hz) above which readings are amplified no more: noise hides the force there.
+    """
+
+    frequency: float
+    quality: float
+    highest: float
+
+    def restoration(self, frequency: Floats) -> Complex:
+        """Return what readings are multiplied by to give the force."""
+        at = frequency / self.frequency
+        found = (1.0 - at**2 + 1j * at / self.quality) * self.smoothing(frequency)
+        return np.asarray(found)
+
+    def smoothing(self, frequency: Floats) -> Floats:
+        """Return what is left of the force."""
+        return np.asarray(1.0 / (1.0 + (frequency / self.highest) ** 2))
+
+    def amplification(self, step: float, block: int) -> float:
+        """Return the noise of means over that of means of white noise, both of readings."""
+        frequency = np.linspace(0.0, 0.5 / step, POINTS)
+        means = np.sinc(frequency * step * block) / np.sinc(frequency * step)
+        power = np.abs(self.restoration(frequency) * means) ** 2
+        return float((block * power.mean()) ** 0.5)
 
 
 def free_swing(grid: EvenGrid, force: Floats, periods: Iterable[float]) -> FreeSwing | None:
@@ -78,14 +113,18 @@ def _free_swing(even: Floats, step: float, period: float) -> FreeSwing | None:
 
 
 def _amplitude(values: Floats, turns: float) -> Complex:
-    """Return the complex amplitude around each value, of which a straight line has none."""
+    """Return the complex amplitude around each value, of which a straight line has none.
+
+    Nor has a swing that turns the other way: each real one is half of it.
+    """
     half = max(round(0.5 * WINDOW / turns), 2)
     away = np.arange(-half, half + 1)
-    window = np.hanning(len(away) + 2)[1:-1]
-    turned = window * np.exp(-2j * pi * turns * away)
-    lines, along = np.stack([np.ones(len(away)), away]), np.stack([window, window * away])
-    turned -= np.linalg.solve(lines @ along.T, lines @ turned) @ along
-    return np.asarray(np.convolve(values, turned[::-1], "valid"))
+    window, turned = np.hanning(len(away) + 2)[1:-1], np.exp(-2j * pi * turns * away)
+    others = np.stack([np.ones(len(away)), away, turned])
+    weighted = window * others.conj()
+    kernel = window * turned
+    kernel -= np.linalg.solve(others @ weighted.T, others @ kernel) @ weighted
+    return np.asarray(np.convolve(values, kernel[::-1], "valid"))
 
 
 def _usual(factors: Complex) -> complex:
@@ -99,20 +138,29 @@ def _usual(factors: Complex) -> complex:
     return middle
 
 
-def without_free_swings(grid: EvenGrid, force: Floats, its: FreeSwing, drop: float) -> Floats:
-    """Return the force (N) to which a cell answered that swings so; slips are about `drop` (N).
+def ringing_cell(force: Floats, its: FreeSwing, drop: float) -> RingingCell:
+    """Return the cell that swings so, of a force (N) whose slips are about `drop` (N).
 
-    Far above the cell's frequency it shows little of it, and noise hides that: there the force is
-    amplified no more.
+    Damping slows its swing down. Far above the cell's frequency it shows little of the force, and
+    noise hides that.
     """
-    from scipy.fft import irfft, rfft, rfftfreq
-
-    even = grid.on(force)
-    ramp = np.linspace(even[0], even[-1], len(even))
-    swings = np.append(even - ramp, (ramp - even)[::-1])  # odd about both ends, which are 0
-    at = rfftfreq(len(swings), grid.step) / its.frequency
+    quality = hypot(its.quality, 0.5)
+    frequency = its.frequency * quality / its.quality
     loud = (LOUD * drop / max(white_noise(force), TINY)) ** 0.5
     highest = float(np.clip(loud, *RESTORED))
-    gain = (1.0 - at**2 + 1j * at / its.quality) / (1.0 + (at / highest) ** 2)
-    answered = irfft(gain * rfft(swings), len(swings))[: len(even)] + ramp
-    return grid.between(answered)
+    return RingingCell(frequency, quality, highest * frequency)
+
+
+def without_free_swings(grid: EvenGrid, force: Floats, cell: RingingCell) -> Floats:
+    """Return the force (N) to which a cell answered."""
+    return grid.between(through(grid.on(force), grid.step, cell.restoration))
+
+
+def through(values: Floats, step: float, gain: Callable[[Floats], NDArray[Any]]) -> Floats:
+    """Return values, a step (s) apart, whose spectrum is multiplied by a gain of frequency (Hz)."""
+    from scipy.fft import irfft, rfft, rfftfreq
+
+    ramp = np.linspace(values[0], values[-1], len(values))
+    swings = np.append(values - ramp, (ramp - values)[::-1])  # odd about both ends, which are 0
+    found = irfft(gain(rfftfreq(len(swings), step)) * rfft(swings), len(swings))
+    return np.asarray(found[: len(values)] + ramp)

@@ -7,7 +7,7 @@ from math import log10, pi
 
 import numpy as np
 
-from stiction.analysis.motion.changes.free_swings import FreeSwing
+from stiction.analysis.motion.changes.free_swings import RingingCell
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.doubts.clipping import doubt_clipping
@@ -106,7 +106,7 @@ def warnings(
 
 
 def subtracted_lines(
-    lines: tuple[Line, ...], ringing: Ringing | None, cell: FreeSwing | None = None
+    lines: tuple[Line, ...], ringing: Ringing | None, cell: RingingCell | None = None
 ) -> tuple[str, ...]:
     """Return a sentence for each line, ringing, and load cell taken out of the force."""
     found = []
