@@ -30,6 +30,7 @@ from stiction.inference.suitability import (
     refuse_far,
     refuse_few,
     refuse_hidden,
+    refuse_no_mean,
     refuse_other_motion,
     refuse_other_sign,
 )
@@ -239,6 +240,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     )
     refuse_hidden(name, len(found.peak), len(seen.lasting))
     refuse_other_sign(name, lineless["force"].values, found)
+    refuse_no_mean(name, lineless["force"].values, found)
     lasts = float(np.mean(found.after - found.before)) * step
     if seen.cell is not None:  # before means are taken, amplified noise makes cycles, too
         lasts = seen.lasting.median("period")

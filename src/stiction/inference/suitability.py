@@ -16,9 +16,11 @@ from stiction.analysis.motion.doubts.cycles import (
     doubt_mean_period,
 )
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
+from stiction.analysis.motion.doubts.zero import ABOUT_ZERO, ZERO
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK, UNDETERMINED
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import Floats
 from stiction.errors import Instruction, ResultError
 from stiction.inference.cycles import LEAST_CYCLES, Cycles
@@ -85,6 +87,24 @@ def refuse_hidden(name: str, count: int, of: int) -> None:
             f"of the {of} cycles of {name} only {count} stand out of what else the force does, as "
             f"where it drifts or has a slower wave; a fit needs {LEAST_CYCLES}: fit a part in "
             f"which the force keeps its level ({begin_and_end()})"
+        )
+
+
+def refuse_no_mean(name: str, force: Floats, cycles: Cycles) -> None:
+    """Refuse a force whose mean is about zero, within the standard error of that of its cycles.
+
+    The bends of its loadings are those of an amplifier, and a fit would take them for creep.
+    """
+    peaks, troughs = force[cycles.peak], force[cycles.after]
+    error = ERRORS_95 * float(np.std(peaks + troughs)) / 2.0 / len(peaks) ** 0.5
+    swing = 0.5 * float(np.median(peaks - troughs))
+    mean = float(np.mean(force[cycles.before[0] : cycles.after[-1]]))
+    if abs(mean) < ABOUT_ZERO * swing + error:
+        raise ResultError(
+            f"the mean force of {name} is about zero, as no friction is. Behind an amplifier that "
+            "lets no constant force through, loadings bend as if the mass crept, and a fit means "
+            f"nothing: measure without it. If only the zero is off, give {ZERO}, the reading "
+            "without load"
         )
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from benchmarks.explore.records import irregular_in_noise
+from scipy import signal
 
 import stiction as st
 from stiction.errors import ResultError
@@ -143,6 +144,19 @@ def test_the_odds_say_why_a_record_is_unlike():
     assert odds.objections()[-1] == "A pause."
     like = tuple(each._replace(farther=0.5) for each in likeness)
     assert replace(odds, likeness=like).objections() == []
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_behind_an_amplifier_without_constant_force_nothing_is_fitted(no_simulation, seed):
+    """It bends loadings as creep does: of 21 intervals of phi, none in doubt, 8 held the truth."""
+    random = np.random.default_rng(seed)
+    force = record(*(size * CYCLE for size in random.uniform(0.95, 1.05, 40))).force
+    time = float(np.exp(random.uniform(*np.log([30.0, 3000.0]))))  # of the amplifier, in samples
+    shown = signal.lfilter([1.0, -1.0], [1.0, 1.0 / time - 1.0], force - force.mean())
+    with pytest.raises(ResultError, match="Behind an amplifier that lets no constant force"):
+        st.fit(record(shown), RIG)
+    for zero in random.uniform(0.3, 1.5, 4):  # N, which may be off
+        assert observe(record(force - force.mean() + zero), RIG.slider).conditions.cycles == 34
 
 
 def test_too_few_cycles_ask_for_more_of_them():
