@@ -252,3 +252,32 @@ def test_hints_of_public_functions_can_be_evaluated(room):
     for each in functions:
         if each.__module__.startswith("stiction"):
             typing.get_type_hints(each)
+
+
+def test_a_finding_says_its_numbers_with_units_and_errors():
+    """A tuple of floats in SI shows neither: 0.0174608 for one degree."""
+    run = st.simulate(st.presets.nakano_popov_2020(), "10 s", sample_rate="2 kHz")
+    found = st.analyse(run)
+    phi = np.degrees(found.misalignment.phi)
+    said = re.fullmatch(
+        r"<Misalignment: (\S+) ± (\S+) deg, F_0 = (\S+) ± (\S+) N>", repr(found.misalignment)
+    )
+    assert abs(float(said[1]) - phi) <= 0.5 * float(said[2])
+    assert abs(float(said[3]) - found.misalignment.F_0) <= 0.5 * float(said[4])
+    assert (
+        repr(found.regime) == f"<Regime: stick-slip with confidence {found.regime.confidence:.2f}>"
+    )
+    said = re.search(r"static (\S+) ± \S+ N, coefficient (\S+) ±", repr(found.friction))
+    assert float(said[1]) == pytest.approx(found.friction.static.force, rel=1e-4)
+    assert float(said[2]) == pytest.approx(found.friction.static.coefficient, rel=1e-4)
+    assert repr(found.divergence).startswith("<Divergence: exponent 0.5 ±")
+    critical = st.linear_stability.critical(run.slider, "phi")
+    ends = ", ".join(f"{np.degrees(each):.4g} deg" for each in critical.values)
+    assert repr(critical) == f"<Critical phi: {ends}; sliding is unstable, stable, unstable>"
+
+
+def test_what_a_finding_does_not_know_is_not_a_number():
+    steady = st.simulate(st.presets.nakano_popov_2020().replace(phi="20 deg"), "4 s")
+    said = repr(st.analyse(steady).friction)
+    assert "static unknown" in said
+    assert "nan" not in said

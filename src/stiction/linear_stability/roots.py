@@ -18,7 +18,7 @@ from stiction.linear_stability.eigenvalues import (
 )
 from stiction.linear_stability.linear import BOUNDARY, disturbance, leading_mode, steady_sliding
 from stiction.system.slider import Slider
-from stiction.text.units import Quantity
+from stiction.text.units import Quantity, in_words
 from stiction.text.validation import equal
 
 POINTS = 65  # in the first scan of a range
@@ -59,6 +59,12 @@ class Critical(NamedTuple):
     frequencies: Floats
     stable: tuple[bool, ...]
     neutral: bool = False
+
+    def __repr__(self) -> str:
+        """Return where stability changes, and the kinds of sliding below and above."""
+        at = ", ".join(in_words(each, self.unit) for each in self.values) or "no value"
+        kinds = ", ".join("stable" if each else "unstable" for each in self.stable)
+        return f"<Critical {self.path}: {at}; sliding is {kinds}>"
 
     def __eq__(self, other: object) -> bool:
         """Compare the fields, of arrays the values."""

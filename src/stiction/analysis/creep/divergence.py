@@ -9,6 +9,7 @@ import numpy as np
 from stiction.analysis.creep.least_squares import UNLIKE, best_fit, used_bins
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
+from stiction.text.units import with_error
 
 EDGE = 0.01  # an exponent so near to the end of its range is none
 LAG = 1e-3  # of the loading time: a typical delay of the divergence after the slip
@@ -39,6 +40,10 @@ class Divergence(NamedTuple):
     lag: float
     lag_error: float
     loading_time: float
+
+    def __repr__(self) -> str:
+        """Return the exponent with its error."""
+        return f"<Divergence: exponent {with_error(self.exponent, self.exponent_error, '1')}>"
 
     def velocity(self, to_slip: Floats) -> Floats:
         """Return the fitted velocity (m/s) at times before slip (s); NaN after the divergence."""

@@ -15,7 +15,7 @@ from stiction.analysis.creep.presliding import fit_presliding
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
-from stiction.text.units import Radians
+from stiction.text.units import Radians, with_error
 
 # Starts of fits: phi, rad, and excess over the peak
 STARTS: tuple[tuple[float, float], ...] = (0.02, 0.02), (0.05, 0.005), (0.01, 0.1)
@@ -55,6 +55,11 @@ class Misalignment(NamedTuple):
     weakening: float = np.nan
     contact: float = np.nan
     worse: float = np.nan
+
+    def __repr__(self) -> str:
+        """Return angle and force with their errors."""
+        phi = with_error(self.phi, self.phi_error, "rad")
+        return f"<Misalignment: {phi}, F_0 = {with_error(self.F_0, self.F_0_error, 'N')}>"
 
     @property
     def interval(self) -> tuple[float, float]:

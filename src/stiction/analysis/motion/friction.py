@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import hypot
+from math import hypot, isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -31,6 +31,7 @@ from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import TINY, Floats
 from stiction.recording.noise import rounding_error, white_noise
 from stiction.text.quantity_text import percent
+from stiction.text.units import with_error
 
 LOADING_MEANS = 16  # at least, before the first cycle: a shorter loading is not resolved
 FEWEST_SAMPLES = COURSE_PARTS  # with fewer the kind of motion is not known, either
@@ -61,6 +62,17 @@ class Measured(NamedTuple):
     coefficient: float = np.nan
     coefficient_error: float = np.nan
     coefficient_spread: float = np.nan
+
+    def __repr__(self) -> str:
+        """Return force and coefficient with their errors."""
+        return f"<Measured: {self.in_words()}>"
+
+    def in_words(self) -> str:
+        """Return force and coefficient with their errors, in words."""
+        force = with_error(self.force, self.error, "N")
+        if not isfinite(self.coefficient):
+            return force
+        return f"{force}, coefficient {with_error(self.coefficient, self.coefficient_error, '1')}"
 
     def with_error(self, further: float) -> Measured:
         """Return the same with a `further` error of the force, N."""
@@ -96,6 +108,12 @@ class Friction(NamedTuple):
     static: Measured | None
     kinetic: Measured | None
     missing: dict[str, str]
+
+    def __repr__(self) -> str:
+        """Return each force and coefficient with its error."""
+        of = ((name.replace("_", "-"), getattr(self, name)) for name in self._fields[:3])
+        known = (f"{name} {each.in_words() if each else 'unknown'}" for name, each in of)
+        return f"<Friction: {'; '.join(known)}>"
 
     def without_kinetic(self, reason: str) -> Friction:
         """Return the same without kinetic friction, for a reason."""

@@ -187,6 +187,11 @@ class Regime(NamedTuple):
     evidence: dict[str, float]
     runner_up: str = ""
 
+    def __repr__(self) -> str:
+        """Return the kind and its confidence; ``str(regime)`` tells why."""
+        other = f", perhaps {self.runner_up}" if self.runner_up else ""
+        return f"<Regime: {self.kind} with confidence {self.confidence:.2f}{other}>"
+
     @property
     def loads(self) -> bool:
         """Whether the mass rests, or creeps, for most of the time in which its spring is loaded.
