@@ -164,6 +164,10 @@ class Description(NamedTuple):
         faults.refuse()
         return cls(slider, start, read)
 
+    def replace(self, **changes: Any) -> Self:
+        """Return the same with another slider, initial state or settings, by their names."""
+        return type(self)(**{**self._asdict(), **changes})
+
     def _repr_html_(self) -> str:
         table = as_html([Section("Description", [], parameter_table(self._tables()))])
         return table + picture("plot_slider", self.slider)

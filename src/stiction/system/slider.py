@@ -99,7 +99,6 @@ def _are_several(springs: Any) -> bool:
     return springs is not None and not (isinstance(springs, Sequence) and not springs)
 
 
-ANGLES = ("phi", "mass_angle", "damping_angle", "cell_angle")
 FROM_SPRINGS = ("k_x", "k_y")  # follow from the springs in series, where there are several
 DRIVE = "ConstantVelocity | DriveProgram"
 CONSTANT = "st.ConstantVelocity('1 mm/s')"
@@ -120,8 +119,8 @@ class Apparatus(Described):
     c_x: Damping = 0.0
     c_y: Damping = 0.0
     mass_y: Mass | None = None
-    mass_angle: Angle = 0.0
-    damping_angle: Angle = 0.0
+    mass_angle: Angle = Radians(0.0)
+    damping_angle: Angle = Radians(0.0)
     cell_angle: Angle | None = None
     driven: Literal["plate", "spring"] = "plate"
     springs: Springs = ()
@@ -406,7 +405,6 @@ class Slider(Apparatus):
                 found += error.faults
             raise DescriptionError(found)
         values = {name: getattr(self, name) for name in self.own_fields()}
-        values |= {name: f"{values[name]!r} rad" for name in ANGLES if values[name] is not None}
         if _are_several(changes.get("springs")):
             values = {name: each for name, each in values.items() if name not in FROM_SPRINGS}
         return type(self)(**(values | changes))

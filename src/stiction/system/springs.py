@@ -21,7 +21,7 @@ from stiction.errors import DescriptionError, Fault, echo
 from stiction.system.tensors import ROUND, principal
 from stiction.text.paths import slug
 from stiction.text.quantity_text import RIGID, angle_text
-from stiction.text.units import Angle, Kind, Mass, Read, fault, reader, to_si
+from stiction.text.units import Angle, Kind, Mass, Radians, Read, fault, reader, to_si
 from stiction.text.validation import faulty, make, validate
 
 LETTER = r"[^\W\d_]"
@@ -79,7 +79,7 @@ class Spring(NamedTuple):
     name: Name
     k_x: Stiffness | None = None
     k_y: Stiffness | None = None
-    angle: Angle = 0.0
+    angle: Angle = Radians(0.0)
     mass: Mass | None = None
     compliance_x: Compliance | None = None
     compliance_y: Compliance | None = None

@@ -107,9 +107,7 @@ class Described(BaseModel, metaclass=_Presented):
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuse to change a field: what was derived from it would remain."""
         if name in type(self).model_fields:
-            remedy = "make another object"
-            if hasattr(self, "replace"):
-                remedy = f"write {type(self).__name__.lower()}.replace({name}={echo(value)})"
+            remedy = f"write {type(self).__name__.lower()}.replace({name}={echo(value)})"
             raise DescriptionError.of(f"{type(self).__name__}.{name}", f"is frozen; {remedy}")
         super().__setattr__(name, value)
 
@@ -119,6 +117,18 @@ class Described(BaseModel, metaclass=_Presented):
         return type(self) is type(other) and all(
             equal(getattr(self, name), getattr(other, name)) for name in names
         )
+
+    def replace(self, **changes: Any) -> Self:
+        """Return the same with some fields changed: ``settings.replace(rtol=1e-4)``.
+
+        Raises
+        ------
+        DescriptionError
+            As if it was made anew.
+        """
+        stated = {name: getattr(self, name) for name in self.own_fields()}
+        stated = {name: value for name, value in stated.items() if name in self.model_fields_set}
+        return type(self)(**(stated | changes))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with other fields, without what was derived from the old ones."""

@@ -81,3 +81,33 @@ def test_axes_with_a_fault_hide_no_fault_of_others() -> None:
         st.Study(base=BASE, axes=axes, measures=["bogus"])
     told = [fault.path.removeprefix("Study.") for fault in error.value.faults]
     assert told == ["axes.mass", "axes.k_x.1", "axes.nope", "measures"]
+
+
+def test_each_part_of_a_description_is_replaced_in_one_way():
+    slider = st.presets.nakano_popov_2020()
+    whole = st.Description.of(slider, "20 ms", initial=st.Initial(u_x="1 mm"))
+    program = st.protocols.DriveProgram(velocity=1e-3, program=[st.protocols.Hold("2 s")])
+    parts = [
+        slider.replace(damping_angle="3 deg", c_x=2.0),
+        whole,
+        whole.initial,
+        whole.run,
+        program,
+        st.Study(base=whole, axes={"phi": st.Grid("1 deg", "3 deg", 3)}, measures=["period"]),
+        st.Grid("1 deg", "3 deg", 3),
+        st.Sensor(noise="1 mN", bandwidth="1 kHz"),
+        st.Record(time=[0.0, 1.0, 2.0], force=[0.0, 1.0, 3.0], force_unit="mN", turned="3 deg"),
+    ]
+    for part in parts:
+        assert part.replace() == part
+    assert whole.run.replace(rtol=1e-4) == st.Settings(duration=0.02, rtol=1e-4)
+    assert whole.replace(run=whole.run.replace(duration="1 s")).run.duration == 1.0
+    # what was not stated stays so: a file holds only what is stated
+    assert whole.replace(initial=st.Initial().replace(time=1.0)).to_dict()["initial"] == {
+        "time": 1.0
+    }
+    with pytest.raises(st.DescriptionError) as caught:
+        whole.run.replace(rtoll=3, duration="x")
+    assert [fault.path for fault in caught.value.faults] == ["Settings.duration", "Settings.rtoll"]
+    with pytest.raises(st.DescriptionError, match=r"write settings\.replace\(rtol=3\)"):
+        whole.run.rtol = 3

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, Field
 
 from stiction.errors import DescriptionError, echo
 from stiction.friction.law import FrictionLaw, Law, has_state
-from stiction.text.units import Angle, Read, reader
+from stiction.text.units import Angle, Radians, Read, reader
 from stiction.text.validation import validate
 
 
@@ -56,7 +56,7 @@ class Anisotropic(NamedTuple):
 
     law: Annotated[Any, AfterValidator(_is_set_valued), "set-valued friction law"]
     ratio: Ratio
-    angle: Angle = 0.0
+    angle: Angle = Radians(0.0)
 
     @property
     def mu_static(law) -> float:
