@@ -13,8 +13,10 @@ import numpy as np
 from stiction.arrays import Floats, Indices
 from stiction.study.variables.zigzag import zigzag
 
-# of the span of the force once it is loaded: a larger fall is a slip, without noise and with much
-DROP = 0.3, 0.5
+# of the usual fall: a larger one is a slip. The force rises by 0.16 of a fall after it behind a
+# filter of eighth order, and irregular slips of a third of the usual one would be missed by 0.3
+SLIP = 0.2
+MOST = 0.5  # of the span of the force once it is loaded: noise is taken for no more
 TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
 OF_NOISE = 8.0  # standard deviations of noise: white noise in a cycle does not reach so far
 LEAST_CYCLES = 6  # in a record that is fitted
@@ -32,9 +34,14 @@ def slip_cycles(force: Floats, noise: float = 0.0) -> Cycles:
     """Return the whole cycles of a force, from trough over peak to trough.
 
     The first begins at the end of a slip: a least force after no slip is where the record begins,
-    as at an unloaded spring, whose loading is longer than that of any cycle. How high a fall must
-    be to be a slip does not depend on this loading either. Samples are equally spaced; `noise` is
-    the standard deviation of theirs.
+    as at an unloaded spring, whose loading is longer than that of any cycle.
+
+    Parameters
+    ----------
+    force : ndarray
+        (n,), of equally spaced samples.
+    noise : float, optional
+        Standard deviation of its noise.
 
     Examples
     --------
@@ -44,9 +51,7 @@ def slip_cycles(force: Floats, noise: float = 0.0) -> Cycles:
     >>> slip_cycles(np.r_[-9.0:0.0:100j, saw]).peak
     array([121, 133])
     """
-    low, high = np.percentile(force[end_of_loading(force) :], TAILS)
-    least, most = np.multiply(DROP, high - low)
-    height = min(max(least, OF_NOISE * noise), most)
+    height = least_slip(force[end_of_loading(force) :], noise)
     turns = zigzag(force, height)
     if len(turns) and np.ptp(force[: turns[0] + 1]) <= height:
         turns = turns[1:]
@@ -55,6 +60,49 @@ def slip_cycles(force: Floats, noise: float = 0.0) -> Cycles:
     count = max((len(turns) - 1) // 2, 0)
     whole = turns[: 2 * count + 1]
     return Cycles(whole[:-1:2], whole[1::2], whole[2::2])
+
+
+def least_slip(force: Floats, noise: float) -> float:
+    """Return how high a fall must be to be a slip: above noise, and a share of the usual fall.
+
+    The span of the force is no measure of it: that grows where the mean drifts, and where peaks
+    and troughs scatter. A small fall may interrupt a large one, or the rise before it: falls are
+    measured again between reversals that are slips.
+
+    Parameters
+    ----------
+    force : ndarray
+        (n,), once it is loaded.
+    noise : float
+        Standard deviation of its noise.
+
+    Examples
+    --------
+    >>> saw = np.tile(np.r_[0.0:1.0:9j, 0.5], 4)
+    >>> least_slip(saw, 0.0), round(least_slip(saw + 0.1 * np.arange(40.0), 0.0), 2)
+    (0.2, 0.16)
+    >>> least_slip(saw, 0.04), least_slip(saw, 0.3)
+    (0.32, 0.5)
+    """
+    low, high = np.percentile(force, TAILS)
+    height = min(OF_NOISE * noise, MOST * float(high - low))
+    while (more := SLIP * usual_fall(force[zigzag(force, height)])) > height:
+        height = more
+    return height
+
+
+def usual_fall(turns: Floats) -> float:
+    """Return the fall that larger ones exceed which make up half of the squares of all falls.
+
+    However many small ones noise makes, they hardly count.
+
+    >>> usual_fall(np.array([3.0, 2.9, 3.0, 2.0, 3.0, 1.9, 2.0, 1.9, 2.1, 0.8]))
+    1.1
+    """
+    falls = np.sort(-np.diff(turns))
+    falls = falls[falls > 0.0]
+    squares = np.cumsum(falls * falls)
+    return float(falls[np.searchsorted(squares, 0.5 * squares[-1])]) if len(falls) else 0.0
 
 
 def end_of_loading(force: Floats) -> int:
