@@ -31,7 +31,7 @@ from stiction.inference.mechanism import likeness
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
 from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
-from stiction.inference.mechanism.odds import BENT, CLAIM, UNLIKE, surely
+from stiction.inference.mechanism.odds import CLAIM, surely
 from stiction.inference.mechanism.rest import ALIKE, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.mechanism.static_check import StaticCheck
@@ -159,7 +159,7 @@ def call(
         for label, each in zip(likeliest, zip(scores, records.bends, strict=True), strict=True)
     ]
     sure = surely(probabilities, classifier.probabilities_by_halves(records.features))
-    usual = [its.farther >= UNLIKE and its.larger >= BENT for its in found]
+    usual = [not its.unlike for its in found]
     claimed = sure & np.array(usual)
     for place, name in enumerate(names):
         its = np.nonzero(claimed & (likeliest == place))[0]

@@ -18,10 +18,11 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
 from stiction.inference.mechanism.comparison import SHARE, mechanism
-from stiction.inference.mechanism.odds import BENT, TURNING, UNDECIDED, UNLIKE, Odds, near_one
+from stiction.inference.mechanism.likeness import BENT
+from stiction.inference.mechanism.odds import TURNING, UNDECIDED, Odds, near_one
 from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
-from stiction.inference.posterior import RARE, Estimate, Fit
+from stiction.inference.posterior import RARE, Estimate, Fit, middle
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.progress import silent
 from stiction.inference.rig import Rig
@@ -33,7 +34,7 @@ from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
-from stiction.text.units import in_words
+from stiction.text.units import in_words, interval
 
 DESCRIBED = (
     "The sections after the fit are of the apparatus as it is described, with uncertain values in "
@@ -103,7 +104,7 @@ class RecordComparison:
         if self.fit is None or self.predictive is None:
             return False
         usual = self.fit.farther >= RARE and self.predictive.larger >= RARE
-        return usual and not self.fit.beyond
+        return usual and not self.fit.beyond and not self.fit.disputed
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
@@ -219,8 +220,9 @@ def sections(found: RecordComparison) -> list[Section]:
         Section(GROUNDS, grounds(found, found.fit)),
         Section(CHANGES, changes(found, found.fit)),
     ]
-    parts += [*(found.odds.tables() if found.odds else ()), *found.fit.tables()]
-    shared = found.fit.explanation, found.fit.narrow_priors
+    fitted = found.fit.tables() if rotates(found) else [found.fit.without_values()]
+    parts += [*(found.odds.tables() if found.odds else ()), *fitted]
+    shared = found.fit.explanation, found.fit.narrow_priors, found.fit.disputed
     return say_once(parts, [words.strip() for words in shared if words])
 
 
@@ -251,6 +253,8 @@ def rotates(found: RecordComparison) -> bool:
 
 def verdict(found: RecordComparison) -> str:
     """Return the verdict in one sentence."""
+    if found.fit is not None and found.fit.disputed:
+        return f"No verdict. {found.fit.disputed}"
     claimed = "" if found.odds is None else found.odds.decision
     if found.odds is not None and claimed not in (*TURNING, UNDECIDED):
         probability = near_one(found.odds.probabilities.max())
@@ -258,14 +262,14 @@ def verdict(found: RecordComparison) -> str:
             f"Friction, not misalignment: this record is like simulations of {claimed} "
             f"(probability {probability} among the mechanisms compared), not of a friction vector "
             "that rotates on the rig as described: a stated stiffness k_y, mass or load that is "
-            "wrong speaks against rotation too. The fit below, which assumes that it rotates, "
-            "means nothing."
+            "wrong speaks against rotation too. The fit, which assumes that it rotates, means "
+            "nothing."
         )
     if not found.like:
         why = "" if found.fit is None else found.fit.explanation
         return (
             "No verdict: this record is not like those of the rig as described, whatever the "
-            "uncertain values are within their priors; the fitted values below mean nothing until "
+            "uncertain values are within their priors; the fitted values mean nothing until "
             f"that is explained. {why}".rstrip()
         )
     return f"{explanation(found)}; {alternatives(found.odds)}."
@@ -300,7 +304,7 @@ def alternatives(odds: Odds | None) -> str:
     if odds is not None and odds.decision in TURNING:
         others = (its for name, its in zip(odds.names, odds.likeness, strict=True)
                   if name != ROTATION)  # fmt: skip
-        excluded = all(its.farther < UNLIKE or its.larger < BENT for its in others)
+        excluded = all(its.unlike for its in others)
         probability = near_one(odds.probabilities.max())
         return (
             "the other mechanisms compared do not explain it"
@@ -320,8 +324,7 @@ def angle(found: RecordComparison) -> Estimate | None:
 
 def describe(x: Estimate) -> str:
     """Return an estimate with its interval."""
-    low, high = in_words(x.low, x.unit), in_words(x.high, x.unit)
-    return f"{in_words(x.median, x.unit)} (95 %: {low} to {high})"
+    return f"{middle(x)} (95 %: {interval(x.low, x.high, x.median, x.unit)})"
 
 
 def grounds(found: RecordComparison, fit: Fit) -> list[str]:

@@ -65,7 +65,7 @@ def slip_cycles(force: Floats, noise: float = 0.0) -> Cycles:
 def least_slip(force: Floats, noise: float) -> float:
     """Return how high a fall must be to be a slip: above noise, and a share of the usual fall.
 
-    The span of the force is no measure of it: that grows where the mean drifts, and where peaks
+    The span of the force does not tell it: that grows where the mean drifts, and where peaks
     and troughs scatter. A small fall may interrupt a large one, or the rise before it: falls are
     measured again between reversals that are slips.
 

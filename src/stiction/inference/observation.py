@@ -27,6 +27,7 @@ from stiction.inference.features import USED, FeatureScale, features
 from stiction.inference.priors import JITTER, Uniform, jitter_of
 from stiction.inference.suitability import (
     changes_within,
+    dispute,
     refuse_far,
     refuse_few,
     refuse_hidden,
@@ -166,7 +167,8 @@ class Observation(NamedTuple):
     """A record's cycles as a fit uses them: conditions, features, thinned force and its cycles.
 
     `changes` are sentences on how cycles differ within the record, as an analysis finds it;
-    `averaged` the number of its samples of which each thinned one is the mean.
+    `averaged` the number of its samples of which each thinned one is the mean; `disputed` says
+    where an analysis counts other cycles, and is empty where it does not.
     """
 
     conditions: Conditions
@@ -175,6 +177,7 @@ class Observation(NamedTuple):
     cycles: Cycles
     changes: tuple[str, ...] = ()
     averaged: int = 1
+    disputed: str = ""
 
     @property
     def trend(self) -> Trend:
@@ -259,9 +262,10 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
         jitter=jitter_of(thin["force"][found.peak]),
     )  # fmt: skip
     its = features(step * block, thin, conditions.scale(slider), found)
-    until = float(record.time[0]) + step * block * float(found.after[-1] + 1)
-    changes = changes_within(seen, regime, until)
-    return Observation(conditions, its, thin["force"], found, changes, block)
+    troughs = float(record.time[0]) + step * block * np.array([found.before[0], *found.after])
+    changes = changes_within(seen, regime, float(troughs[-1]) + step * block)
+    disputed = dispute(seen, troughs, name)
+    return Observation(conditions, its, thin["force"], found, changes, block, disputed)
 
 
 def grid_of(record: Record, name: str) -> EvenGrid:

@@ -29,7 +29,7 @@ from stiction.text.paths import last_part, short_names
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Report, Section, Table
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words, span
+from stiction.text.units import in_words, interval, span, to_error
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95
@@ -42,6 +42,10 @@ NARROWER = 0.75  # of the prior's standard deviation, as normal scores: what cou
 STATE_DRIFT = (
     "A zero of the load cell that drifts can be stated, as a record without contact shows it, in "
     'the file beside the record, under [sensors.force]: zero_drift = "0 +- 5 mN/min".'
+)
+WITHHELD = (
+    "The values, which mean nothing, are not listed; the file of the fit, and fit.estimates in "
+    "Python, have them."
 )
 ALONG_X = (
     "The force is taken as that of the spring along x, k_x u_x. A load cell along the drive reads "
@@ -112,6 +116,8 @@ class Fit(Report):
         The parameter of which several records say most clearly something else, if there are any.
     explanation : str
         What may explain that records are not like the simulated ones, as sentences; may be empty.
+    disputed : str
+        In which records an analysis counts other cycles, as sentences; may be empty.
     """
 
     plan: Plan
@@ -125,6 +131,7 @@ class Fit(Report):
     trend: Trend = field(compare=False)
     disagreement: Disagreement | None = field(compare=False)
     explanation: str = field(default="", compare=False)
+    disputed: str = field(default="", compare=False)
 
     @classmethod
     def of(
@@ -159,10 +166,15 @@ class Fit(Report):
         blocks = [each.features for each in seen]
         apart = disagreement([*plan.priors], library.scores, alone, blocks) if alone else None
         why = explain_unlike([each.changes for each in seen])
-        return cls(plan, after, prior, estimates, count, ranks, scores, farther, trend, apart, why)
+        other = " ".join(each.disputed for each in seen if each.disputed)
+        return cls(
+            plan, after, prior, estimates, count, ranks, scores, farther, trend, apart, why, other
+        )
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
+        if self.meaningless:
+            return "<Fit: in doubt, see print(fit)>"
         said = ", ".join(f"{x.name} {words(x)}" for x in self.known) or "nothing is identified"
         return f"<Fit: {said}{'; in doubt, see print(fit)' if self.doubts else ''}>"
 
@@ -187,6 +199,14 @@ class Fit(Report):
 
     def tables(self) -> list[Section]:
         """Return the report: what is known, and what the records do not say."""
+        return [self.without_values() if self.meaningless else self._with_values()]
+
+    def without_values(self) -> Section:
+        """Return the report of a fit whose values mean nothing: what speaks against them."""
+        compared = f"Compared with {self.simulations} simulated records."
+        return Section("Fit", [*self.doubts, WITHHELD, compared, *self.disturbances])
+
+    def _with_values(self) -> Section:
         sentences = self.doubts
         if self.unidentified:
             sentences.append(
@@ -211,7 +231,7 @@ class Fit(Report):
         short = short_names(x.name for x in self.estimates)  # the sentences have the whole name
         rows = [row(x, short[x.name], remarks.get(x.name, "")) for x in self.estimates]
         headings = ("parameter", "posterior", "its 95 %", "95 % of prior", "width", "coverage")
-        return [Section("Fit", sentences, Table(headings, rows))]
+        return Section("Fit", sentences, Table(headings, rows))
 
     @property
     def rig(self) -> Rig:
@@ -261,15 +281,15 @@ class Fit(Report):
     @property
     def doubts(self) -> list[str]:
         """What speaks against the estimates, in sentences; none if nothing does."""
-        found = []
+        found = [self.disputed] * bool(self.disputed)
         if self.farther < RARE:
             found.append(unlike(self.farther, f"{self.narrow_priors}{self.explanation}"))
-        if self.disagreement is not None and self.disagreement.p_value < CONTRADICTS:
+        if self.contradictory and self.disagreement is not None:
             found.append(
                 "The records contradict each other, most clearly about "
                 f"{self.disagreement.name}: {percent(self.disagreement.p_value)} of the simulated "
                 f"rigs have records that differ as far, {percent(CONTRADICTS)} are needed. The "
-                "values below mean nothing until that is explained: are they of one rig, under "
+                "values mean nothing until that is explained: are they of one rig, under "
                 "the conditions stated? Fit each by itself."
             )
         if self.beyond:
@@ -286,6 +306,16 @@ class Fit(Report):
                 f"drifts: friction coefficients are then uncertain by more. {STATE_DRIFT}"
             )
         return found
+
+    @property
+    def contradictory(self) -> bool:
+        """Whether several records say something else of one parameter."""
+        return self.disagreement is not None and self.disagreement.p_value < CONTRADICTS
+
+    @property
+    def meaningless(self) -> bool:
+        """Whether the values mean nothing: of other cycles, unlike records, or contradictory."""
+        return bool(self.disputed) or self.farther < RARE or self.contradictory
 
     @property
     def drifts(self) -> bool:
@@ -388,7 +418,7 @@ def unlike(farther: float, why: str) -> str:
     return (
         "The records are not like those of the rig as described, whatever the uncertain values are "
         f"within their priors: {percent(farther)} of the simulated records are less like the "
-        f"others, {percent(RARE)} are needed. The values below mean nothing until that is "
+        f"others, {percent(RARE)} are needed. The values mean nothing until that is "
         "explained: is it this rig's record, are drive and load as stated, does the load cell lie "
         f"along the axis that the rig states? {why}"
     ).rstrip()
@@ -422,11 +452,17 @@ def dataset(plan: Plan, scores: Floats) -> xr.Dataset:
 
 def words(x: Estimate) -> str:
     """Return an estimate in a few words."""
-    return f"{in_words(x.median, x.unit)} ({span(x.low, x.high, x.unit)})"
+    return f"{middle(x)} ({interval(x.low, x.high, x.median, x.unit)})"
+
+
+def middle(x: Estimate) -> str:
+    """Return the median of an estimate, to two digits of its distance from an end."""
+    return to_error(x.median, 0.1 * min(x.median - x.low, x.high - x.median), x.unit)
 
 
 def row(x: Estimate, short: str, remark: str) -> tuple[str, ...]:
     """Return a row of the report; a remark stands in place of the value, if there is one."""
-    after = remark or in_words(x.median, x.unit)
-    between, before = span(x.low, x.high, x.unit), span(x.prior_low, x.prior_high, x.unit, PRIOR)
-    return short, after, between, before, percent(x.narrower), percent(x.coverage)
+    after, between = remark or middle(x), interval(x.low, x.high, x.median, x.unit)
+    before = span(x.prior_low, x.prior_high, x.unit, PRIOR)
+    width = percent(x.narrower) if x.narrower < 1.0 else "as wide as the prior"
+    return short, after, between, before, width, percent(x.coverage)

@@ -33,6 +33,7 @@ from stiction.text.units import in_words
 ANALYSE = Instruction("stiction analyse", "st.analyse")
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
 IN_NOISE = {"hidden", "quick_falls"}  # evidence of swings that noise hides
+OTHERWISE = 4.0 / 3.0  # times as many cycles, and one more that an end may cut, are others
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
 
 
@@ -131,6 +132,24 @@ def changes_within(seen: Swings, regime: Regime, until: float) -> tuple[str, ...
         *doubt_mean_period(used),
         *doubt_loading(used),
         *doubt_cycles_apart(used),
+    )
+
+
+def dispute(seen: Swings, troughs: Floats, name: str) -> str:
+    """Return that an analysis counts clearly more or fewer cycles than a fit, or ''.
+
+    `troughs` (m + 1,) are the ends of the fit's cycles, s, first that before them. Counted are
+    those that end in the time in which both see some.
+    """
+    theirs = np.append(seen.lasting["start"][:1], seen.lasting["trough_time"])
+    begin, end = max(troughs[0], theirs[0]), min(troughs[-1], theirs[-1])
+    counts = [int(((each > begin) & (each <= end)).sum()) for each in (theirs, troughs)]
+    if max(counts) <= OTHERWISE * (min(counts) + 1):
+        return ""
+    return (
+        f"In {in_words(float(end - begin), 's')} of {name} an analysis counts {counts[0]} cycles, "
+        f"and the fit {counts[1]}: slips of different sizes merge, or noise splits them, and "
+        f"nothing is concluded; fit a part whose slips are alike ({begin_and_end()})."
     )
 
 

@@ -449,6 +449,29 @@ def span(low: float, high: float, unit: str, digits: int = DIGITS) -> str:
     return f"{number if end.endswith(f' {name}') else begin} to {end}"
 
 
+def interval(low: float, high: float, middle: float, unit: str) -> str:
+    """Return an interval in one unit, its ends to two digits of their distance from its middle.
+
+    >>> interval(2.257e-8, 0.03983, 0.018, "rad"), interval(2285.31, 2315.2, 2300.4, "N/m")
+    ('0 to 2.3 deg', '2.285 to 2.315 kN/m')
+    >>> interval(3.04e-3, 0.02987, 0.0101, "m/s"), interval(0.2, 0.3, 0.2, "")
+    ('3.0 to 30 mm/s', '0.2 to 0.3')
+    >>> interval(2252.71, 2261.44, 2260.0, "N/m"), interval(-1.2e-3, 4e-3, 1e-3, "N")
+    ('2.253 to 2.261 kN/m', '-1.2 to 4.0 mN')
+    """
+    errors = middle - low, high - middle
+    size, name = suited_unit(max(abs(low), abs(high)), unit)
+    if not all(0.0 < error < inf for error in errors) or max(abs(low), abs(high)) >= LARGE * size:
+        return span(low, high, unit)
+    ends = []
+    for end, error in zip((low, high), errors, strict=True):
+        digit = first_decimal(error / size) + 1
+        shown = round(float(f"{end / size:.{DIGITS}g}"), digit)
+        digit = min(digit, DIGITS - 1 - floor(log10(abs(shown)))) if shown else 0
+        ends.append(f"{shown + 0.0:.{max(digit, 0)}f}")  # no -0
+    return f"{' to '.join(ends)} {name}".rstrip()
+
+
 def times(ratio: float, digits: int = 2) -> str:
     """Return how many times something is another.
 

@@ -51,6 +51,18 @@ def test_a_record_of_the_rig_is_explained_and_its_misalignment_found(found):
     assert "as it is described" in described
 
 
+def test_an_audit_concludes_nothing_from_cycles_that_an_analysis_does_not_count(found):
+    said = "In 9 s of the record an analysis counts 3 cycles, and the fit 9."
+    fit = replace(found.measured.fit, disputed=said)
+    disputed = replace(found.measured, fit=fit, odds=replace(found.measured.odds, disputed=said))
+    first, *others = sections(disputed)
+    assert first.sentences[0] == f"No verdict. {said}"
+    assert said not in " ".join(str(part) for part in others)  # once is enough
+    assert disputed.odds.decision == UNDECIDED
+    (its,) = (part for part in others if part.title == "Fit")
+    assert its.table is None
+
+
 def test_the_report_says_what_it_rests_on_and_what_would_change_it(found):
     parts = {part.title: " ".join(part.sentences) for part in found.tables()}
     assert "simulated records" in parts["What that rests on"]

@@ -27,6 +27,7 @@ from stiction.inference.observation import (
     observe_all,
     trend,
 )
+from stiction.inference.posterior import WITHHELD, row
 from stiction.inference.priors import Normal, Uniform
 from stiction.inference.rig import Rig, load_of_records
 from stiction.inference.simulated.jitter import Jitter, move, stretch
@@ -229,6 +230,15 @@ def test_a_library_that_was_interrupted_is_completed(rig, record, copied):
     assert whole.wanted == SIMULATIONS
 
 
+def test_values_have_the_digits_of_their_errors(found):
+    """A misalignment was "1.293e-6 to 2.282 deg", its width 143 % of the prior's."""
+    phi = found["phi"]._replace(median=0.02, low=2.257e-8, high=0.03983, narrower=1.43)
+    values = row(phi, "phi", "")
+    assert values[1:3] == ("1.1 deg", "0 to 2.3 deg")
+    assert values[4] == "as wide as the prior"
+    assert row(phi._replace(narrower=0.99), "phi", "")[4] == "99 %"
+
+
 def test_what_the_record_does_not_say_is_not_identifiable(found):
     """k_y swings far above the sample rate."""
     assert not found["k_y"].identified
@@ -251,6 +261,13 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     assert "in doubt, see print(fit)" in repr(wrong)
     assert wrong.doubts[0] in str(wrong)
     assert "in doubt" not in repr(found)
+    (withheld,) = replace(found, farther=0.02).tables()
+    assert withheld.table is None  # values stood below a sentence that they mean nothing
+    assert WITHHELD in withheld.sentences
+    assert "not identifiable" not in str(withheld).lower()
+    (disputed,) = replace(found, disputed="An analysis counts others.").tables()
+    assert disputed.sentences[0] == "An analysis counts others."
+    assert disputed.table is None
     unlike = replace(found, farther=0.02, explanation="It paused.").tables()[0].sentences
     assert unlike[0].startswith("The records are not like those of the rig as described")
     assert unlike[0].endswith("the axis that the rig states? It paused.")

@@ -106,7 +106,12 @@ def test_the_confusion_matrix_is_of_shares(odds):
 
 def test_the_figure_shows_odds_confusion_and_loading(odds):
     bars, matrix, loading = plot_mechanism(odds)
-    assert [bar.get_width() for bar in bars.patches] == pytest.approx([*odds.probabilities])
+    shown = [
+        0.0 if its.unlike else p for p, its in zip(odds.probabilities, odds.likeness, strict=True)
+    ]
+    assert [bar.get_width() for bar in bars.patches] == pytest.approx(shown)
+    assert max(shown) == odds.probabilities.max()  # the record is like what it is called
+    assert len(bars.texts) == sum(its.unlike for its in odds.likeness)
     assert len(matrix.texts) == odds.confusion.size
     assert loading.lines[len(odds.names)].get_ydata() == pytest.approx(
         100.0 * odds.bend[: len(EDGES) - 1]
@@ -609,7 +614,7 @@ def test_the_share_at_rest_is_that_of_the_mass_whatever_the_sensor_shows(rig, ro
 def test_the_share_at_rest_is_what_the_stretch_across_says(rig, rotating, block):
     """k_y V sin(phi) t is the force of a mass at rest: by the measured force across."""
     quiet = dict.fromkeys(("force", "force_across"), Noise(0.0))
-    own = plan_with(rig, rotating, "60 kN/m", noise=quiet, block=block)
+    own = plan_with(rig, rotating, "90 kN/m", noise=quiet, block=block)
     seen, found = own.conditions[0], []
     for number in range(12):
         scores, (made,) = draw(own, number, 6)
@@ -759,6 +764,29 @@ def test_a_claim_needs_every_part_to_agree():
         assert reason in objection
         assert "No mechanism is claimed" in str(found.tables()[0])
     assert odds_with(likeness=(USUAL, far, bent)).decision == ROTATION  # of the others
+
+
+def test_the_probability_of_a_mechanism_that_the_record_is_unlike_is_not_shown():
+    """Above "rate and state | > 0.99 | 0 %" stood "The record is not like those"."""
+    far = USUAL._replace(farther=0.0)
+    sure = {"probabilities": np.array([0.995, 0.003, 0.002]), "likeness": (far, USUAL, USUAL)}
+    found = odds_with(**sure)
+    assert "> 0.99" not in f"{found}{found!r}"
+    rows = found.tables()[0].table.rows
+    assert [row[1] for row in rows] == ["unlike", "< 0.01", "< 0.01"]
+    assert f"{ROTATION} unlike" in repr(found)
+    assert found.data["unlike"].values.tolist() == [True, False, False]
+    improbable = odds_with(likeness=(far, USUAL, USUAL), probabilities=np.array([0.6, 0.3, 0.1]))
+    (objection,) = improbable.objections()
+    assert "are less like the others" in objection
+    bars, *_ = plot_mechanism(found)
+    assert bars.patches[0].get_width() == 0.0
+
+
+def test_nothing_is_claimed_where_an_analysis_counts_other_cycles():
+    found = odds_with(disputed="An analysis counts others.")
+    assert found.decision == UNDECIDED
+    assert found.sentences()[:2] == ["No mechanism is claimed.", "An analysis counts others."]
 
 
 FIRM, CREEPING = Rest(0.9, 0.96, 1.0), Rest(0.7, 0.96, 1.0)

@@ -1,5 +1,6 @@
 """Records that do not suit a fit are refused before anything is simulated; others are explained."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -131,6 +132,18 @@ def test_friction_differs_in_simulations_as_in_each_of_several_records():
 def test_what_comes_after_the_cycles_that_are_used_explains_nothing():
     late = record(*[CYCLE] * 45, np.full(1000, 1.4), *[CYCLE] * 5)
     assert observe(late, RIG.slider).changes == ()
+
+
+def test_where_an_analysis_counts_other_cycles_that_is_said_first():
+    """Of a record of paper on paper, a verdict stood on 20 cycles where an analysis saw 71."""
+    assert observe(record(*[CYCLE] * 20), RIG.slider).disputed == ""
+    two_sizes = [1.4 + height * (CYCLE - 1.4) for height in [1.0, 0.28] * 10]
+    seen = observe(record(*two_sizes), RIG.slider, "record 2")
+    counts = re.match(
+        r"In 1\d s of record 2 an analysis counts (\d+) cycles, and the fit (\d+): ", seen.disputed
+    )
+    assert sorted(map(int, counts.groups())) == [8, 17]
+    assert "nothing is concluded" in seen.disputed
 
 
 def test_the_odds_say_why_a_record_is_unlike():

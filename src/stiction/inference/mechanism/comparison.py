@@ -165,6 +165,7 @@ def compare(
         absent=simulated.absent,
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),
         explanation=explain_unlike([each.changes for each in seen]),
+        disputed=" ".join(each.disputed for each in seen if each.disputed),
         beside_static=beside_static,
         rest=rest,
     )

@@ -11,13 +11,18 @@ from stiction.inference.learning.expectation import Expectation
 from stiction.inference.learning.summary import Regression, as_arrays, estimate, from_arrays
 from stiction.inference.learning.typicality import Typicality
 from stiction.inference.mechanism.classifier import Simulations
+from stiction.inference.posterior import RARE
 from stiction.inference.predictive import departures
 from stiction.inference.progress import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
 # simulations with whose loading that of the record is compared: the fewest by which one in a
-# hundred can be told (`odds.BENT`), as more have other parameters
+# hundred can be told (`BENT`), as more have other parameters
 CURVES = 100
+# shares below which a record is unlike simulations by its features, and by its loading's bend, of
+# which the features tell too: a mechanism's own records are refused by both together in 5 % of
+# cases at most (O. J. Dunn, J. Am. Stat. Assoc. 56, 52 (1961))
+UNLIKE, BENT = 0.8 * RARE, 0.2 * RARE
 
 
 class Likeness(NamedTuple):
@@ -38,6 +43,11 @@ class Likeness(NamedTuple):
     farther: float
     bends: Floats
     larger: float
+
+    @property
+    def unlike(self) -> bool:
+        """Whether the record is not like the simulations, by its features or by its loading."""
+        return self.farther < UNLIKE or self.larger < BENT
 
 
 class Reference(NamedTuple):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,7 +11,7 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats, same_fields, xr
 from stiction.inference.features import MIDDLES
-from stiction.inference.mechanism.likeness import Likeness
+from stiction.inference.mechanism.likeness import BENT, UNLIKE, Likeness
 from stiction.inference.mechanism.rest import ALIKE, Rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
@@ -28,14 +29,11 @@ from stiction.text.sections import Report, Section, Table
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed
 BY_HALF = 0.6  # by each half of the simulations: a claim is not a matter of their draw
-# shares below which a record is unlike simulations by its features, and by its loading's bend, of
-# which the features tell too: a mechanism's own records are refused by both together in 5 % of
-# cases at most (O. J. Dunn, J. Am. Stat. Assoc. 56, 52 (1961))
-UNLIKE, BENT = 0.8 * RARE, 0.2 * RARE
 UNDECIDED = "undecided"
 EXPLAINED = (
-    "All mechanisms are taken to be equally probable beforehand. Farther: the share of the "
-    "mechanism's simulated records whose features are less like those of the others than this "
+    "All mechanisms are taken to be equally probable beforehand, and one of them to be true; the "
+    "share of one that the record is unlike means nothing. Farther: the share of the mechanism's "
+    "simulated records whose features are less like those of the others than this "
     "record's are. More bent: of its simulated records with this record's parameters, the share "
     "whose loading departs more from their mean. Experimental: a law that was not simulated may "
     "pass for one that was."
@@ -74,6 +72,8 @@ class Odds(Report):
         What was measured.
     explanation : str
         What may explain that the records are unlike simulations, as sentences; may be empty.
+    disputed : str
+        In which records an analysis counts other cycles, as sentences; may be empty.
     doubt : str
         What else speaks against a claim, found by other means, as a sentence; may be empty.
     beside_static : float
@@ -95,6 +95,7 @@ class Odds(Report):
     absent: tuple[str, ...]
     channels: tuple[str, ...]
     explanation: str = field(default="", compare=False)
+    disputed: str = field(default="", compare=False)
     doubt: str = field(default="", compare=False)
     beside_static: float = 1.0
     rest: Rest | None = field(default=None, compare=False)
@@ -136,24 +137,9 @@ class Odds(Report):
     def objections(self) -> list[str]:
         """Return why no mechanism is claimed, as sentences; none if one is."""
         name, its = self.names[self.likeliest], self.likeness[self.likeliest]
-        probability = float(self.probabilities[self.likeliest])
-        found = []
-        if probability < CLAIM:
-            found.append(
-                f"The most probable one, {name}, has a probability of {probability:.2f}; a claim "
-                f"needs {CLAIM}."
-            )
-        elif self.by_halves[:, self.likeliest].min() < BY_HALF:
-            halves = " and ".join(map(near_one, self.by_halves[:, self.likeliest]))
-            found.append(
-                f"Learned from either half of the simulations, {name} has a probability of "
-                f"{halves}; a claim needs {BY_HALF} by both: simulate more."
-            )
-        if self.beside_static < CLAIM:
-            found.append(
-                f"Beside {MISALIGNED_STATIC}, which may look the same, {name} "
-                f"has a probability of {near_one(self.beside_static)}; a claim needs {CLAIM}."
-            )
+        found = [self.disputed] * bool(self.disputed)
+        if not its.unlike:
+            found += self._improbable()
         if its.farther < UNLIKE:
             found.append(
                 f"The record is not like those of {name}: {percent(its.farther)} of the simulated "
@@ -164,7 +150,7 @@ class Odds(Report):
                 f"The loading curve is not like those of {name}: {percent(its.larger)} of the "
                 f"simulated ones depart as far from their mean; a claim needs {percent(BENT)}."
             )
-        if self.explanation and (its.farther < UNLIKE or its.larger < BENT):
+        if self.explanation and its.unlike:
             found.append(self.explanation)
         if self.steady < TREND:
             found.append(f"{friction_drifts(self.steady)} {STATE_DRIFT}")
@@ -176,11 +162,32 @@ class Odds(Report):
             )
         return [*found, self.doubt] if self.doubt else found
 
+    def _improbable(self) -> Iterator[str]:
+        """Yield by which probability the most probable mechanism falls short of a claim."""
+        name, probability = self.names[self.likeliest], float(self.probabilities[self.likeliest])
+        halves = self.by_halves[:, self.likeliest]
+        if probability < CLAIM:
+            yield (
+                f"The most probable one, {name}, has a probability of {probability:.2f}; a claim "
+                f"needs {CLAIM}."
+            )
+        elif halves.min() < BY_HALF:
+            yield (
+                f"Learned from either half of the simulations, {name} has a probability of "
+                f"{' and '.join(map(near_one, halves))}; a claim needs {BY_HALF} by both: simulate "
+                "more."
+            )
+        if self.beside_static < CLAIM:
+            yield (
+                f"Beside {MISALIGNED_STATIC}, which may look the same, {name} "
+                f"has a probability of {near_one(self.beside_static)}; a claim needs {CLAIM}."
+            )
+
     def tables(self) -> list[Section]:
         """Return the odds, what they rest on, and how often such odds are right."""
         numbered = [f"{number} {name}" for number, name in enumerate(self.names, 1)]
         rows = [
-            (name, near_one(p), percent(its.farther), percent(its.larger), str(count))
+            (name, odds_text(p, its), percent(its.farther), percent(its.larger), str(count))
             for name, p, its, count in zip(
                 numbered, self.probabilities, self.likeness, self.counts, strict=True
             )
@@ -280,6 +287,7 @@ class Odds(Report):
         """Probabilities and confusion as a dataset over ``mechanism`` and ``called``."""
         columns: dict[str, Any] = {
             "probability": ("mechanism", self.probabilities),
+            "unlike": ("mechanism", [its.unlike for its in self.likeness]),
             "confusion": (("mechanism", "called"), self.confusion),
             "farther": ("mechanism", [its.farther for its in self.likeness]),
             "more_bent": ("mechanism", [its.larger for its in self.likeness]),
@@ -296,8 +304,8 @@ class Odds(Report):
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        pairs = zip(self.names, self.probabilities, strict=True)
-        said = ", ".join(f"{name} {near_one(p)}" for name, p in pairs)
+        pairs = zip(self.names, self.probabilities, self.likeness, strict=True)
+        said = ", ".join(f"{name} {odds_text(p, its)}" for name, p, its in pairs)
         return f"<Odds: {self.decision}; {said}>"
 
     def plot(self, axes: Any = None) -> Any:
@@ -317,6 +325,11 @@ def surely(probabilities: Floats, by_halves: Floats) -> NDArray[np.bool_]:
     best = probabilities.argmax(axis=1)[None, :, None]
     least = np.take_along_axis(by_halves, best, axis=2).min(axis=(0, 2))
     return np.asarray((probabilities.max(axis=1) >= CLAIM) & (least >= BY_HALF))
+
+
+def odds_text(probability: float, likeness: Likeness) -> str:
+    """Return the probability of a mechanism; of one that the record is unlike, only that."""
+    return "unlike" if likeness.unlike else near_one(probability)
 
 
 def near_one(probability: float) -> str:

@@ -170,7 +170,9 @@ def answer(
     path = None if folder is None else folder / f"tests-{count}-{'-'.join(measured)}.npz"
     every = [Further("the present test", measured), *tests]
     found = learn_or_read(trial, every, scores, features, path, learning)
-    doubt = "" if seen is None else doubts(trial, seen, scores, features, wanted, path)
+    doubt = ""
+    if seen is not None:
+        doubt = seen.disputed or doubts(trial, seen, scores, features, wanted, path)
     whole(1.0)
     assumed = assumptions(() if seen is None else measured, present, wanted, averaged)
     columns = features.shape[1] // len(trial.conditions)

@@ -53,11 +53,14 @@ def plot_mechanism(odds: Odds, axes: Sequence[Axes] | None = None) -> NDArray[np
 
 
 def draw_odds(ax: Axes, odds: Odds, names: Sequence[str]) -> None:
-    """Draw a bar for each mechanism, and the line from which a claim is made."""
+    """Draw the probability of each mechanism that the record is like, and the one a claim needs."""
     places = np.arange(len(names))
     claimed = None if odds.objections() else odds.likeliest
     colors = [BLUE if place == claimed else GREY for place in range(len(names))]
-    ax.barh(places, odds.probabilities, color=colors, height=0.6)
+    unlike = [its.unlike for its in odds.likeness]  # whose probability means nothing
+    ax.barh(places, np.where(unlike, 0.0, odds.probabilities), color=colors, height=0.6)
+    for place in places[unlike]:
+        ax.text(0.02, place, "unlike this record", va="center", fontsize=6.5)
     ax.axvline(odds.needed, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
     ax.set_yticks(places, names)
     ax.invert_yaxis()
