@@ -32,6 +32,7 @@ from stiction.system.slider import Slider
 
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
+FIRST = 96  # simulations that tell whether all of them will be too few, except once in a thousand
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
 
@@ -94,10 +95,37 @@ def fit(
     plan_of = plan_for(known, [each.conditions for each in seen])
     folder = None if place is None else place / f"{plan_of.key}-{seed}"
     whole = progress or silent
+    refuse_early(plan_of, simulations, folder, seed)
     simulated = build(plan_of, simulations, folder, seed=seed, progress=part(whole, 0, 10, of=7))
     found = compare(simulated, seen, folder, part(whole, 7, 10, of=3))
     whole(1.0)
     return found
+
+
+def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int) -> None:
+    """Refuse so many simulations as soon as the first of them tell that too few will have cycles.
+
+    By the bound of Clopper and Pearson (Biometrika 26, 404 (1934)) on the share that has some.
+    """
+    from scipy.special import betaincinv
+
+    if simulations <= FIRST:
+        return
+    first = build(plan_of, FIRST, folder, seed=seed)
+    usable = len(first.scores)
+    share = float(betaincinv(usable + 1, FIRST - usable, 0.999)) if usable < FIRST else 1.0
+    if share * simulations < FEWEST_SIMULATIONS:
+        refuse_few_of(first)
+
+
+def refuse_few_of(library: Library) -> None:
+    """Refuse a library of which too few simulations have cycles."""
+    refuse_too_few(
+        "simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS,
+        f" no longer than {LONGEST_CYCLE:g} times the record's",
+        "the priors, and stiffness and velocity, which decide how long a cycle lasts, and whether "
+        f"the record is stick-slip at all: `{ANALYSE}` tells",
+    )  # fmt: skip
 
 
 def check(rig: Rig, simulations: int = FEWEST_SIMULATIONS) -> None:
@@ -195,12 +223,7 @@ def compare(
     ResultError
         If too few of its simulations have cycles.
     """
-    refuse_too_few(
-        "simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS,
-        f" no longer than {LONGEST_CYCLE:g} times the record's",
-        "the priors, and stiffness and velocity, which decide how long a cycle lasts, and whether "
-        f"the record is stick-slip at all: `{ANALYSE}` tells",
-    )  # fmt: skip
+    refuse_few_of(library)
     observed = np.concatenate([each.features for each in seen])
     count = 1 + len(seen)
     learned = learn_or_read(

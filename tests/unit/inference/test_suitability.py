@@ -16,6 +16,7 @@ from stiction.inference.mechanism.likeness import Likeness
 from stiction.inference.mechanism.odds import Odds
 from stiction.inference.observation import observe
 from stiction.inference.priors import Normal, Uniform
+from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import plan
 from stiction.inference.suitability import explain_unlike, refuse_few
 
@@ -183,3 +184,28 @@ def test_cycles_that_noise_hides_ask_for_less_noise():
     hidden, _, _ = irregular_in_noise(np.random.default_rng([5, 5]))
     with pytest.raises(ResultError, match=r"noise hides the cycles .* measure with less noise"):
         observe(hidden, RIG.slider)
+
+
+@pytest.mark.parametrize(("usable", "refused"), [(0, True), (20, True), (60, False), (96, False)])
+def test_too_few_simulations_are_refused_after_the_first(monkeypatch, usable, refused):
+    """Of 300 simulations 100 had cycles: that was said when all of them were done, and drawn.
+
+    Of 400, three quarters are needed: 20 of 96 are too few for that but for one draw in a thousand,
+    and 60 may just be enough.
+    """
+    asked = []
+
+    def build(of, count, *_, **__):
+        asked.append(count)
+        return Library(of, np.zeros((usable, 1)), np.zeros((usable, 1)), count)
+
+    monkeypatch.setattr(fits, "build", build)
+    of = plan(RIG.slider, {}, [observe(record(*[CYCLE] * 20), RIG.slider).conditions])
+    if refused:
+        with pytest.raises(ResultError, match=f"{usable} of 96 simulated records have cycles"):
+            fits.refuse_early(of, 400, None, 0)
+    else:
+        fits.refuse_early(of, 400, None, 0)
+    assert asked == [fits.FIRST]
+    fits.refuse_early(of, fits.FIRST, None, 0)
+    assert asked == [fits.FIRST]
