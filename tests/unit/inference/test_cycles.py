@@ -293,18 +293,27 @@ def test_simulations_leave_out_the_same_bands():
     assert power[inside].max() > 0.1 * np.median(power)
 
 
-@pytest.mark.parametrize("seed", [0, 8, 16, 21, 37])
-def test_cycles_of_which_means_show_too_few_are_refused(seed):
-    """Noise on a slow wave made six cycles, of which means had two: six were taken all the same."""
+def on_a_wave(seed):
+    """24 rises on a larger, slower wave, with noise of which means are taken."""
     random = np.random.default_rng(seed)
     rise = 0.2 * np.append(np.linspace(0.0, 1.0, 2000), np.linspace(1.0, 0.0, 50))
     force = 2.0 + np.concatenate([size * rise for size in random.uniform(0.8, 1.2, 24)])
     turns, height, noise = random.integers(2, 6), *random.uniform((0.3, 0.02), (1.0, 0.06))
     force += height * np.cos(np.linspace(0.0, 2.0 * np.pi * turns, len(force)))
     force += noise * random.normal(size=len(force))
-    record = st.Record(time=5e-4 * np.arange(len(force)), force=force)
+    return st.Record(time=5e-4 * np.arange(len(force)), force=force)
+
+
+@pytest.mark.parametrize("seed", [0, 8, 16, 21])
+def test_cycles_of_which_means_show_too_few_are_refused(seed):
+    """Noise on a slow wave made six cycles, of which means had two: six were taken all the same."""
     with pytest.raises(ResultError, match=r"of the 2\d cycles of the record only \d stand out"):
-        observe(record, slider_of(0.6))
+        observe(on_a_wave(seed), slider_of(0.6))
+
+
+@pytest.mark.parametrize("seed", [26, 37, 52])
+def test_of_cycles_that_are_several_rises_each_nothing_is_concluded(seed):
+    assert "nothing is concluded" in observe(on_a_wave(seed), slider_of(0.6)).disputed
 
 
 @pytest.mark.parametrize("stated", [None, st.Sensor(noise="4 mN")])
