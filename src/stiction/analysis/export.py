@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.parts import functions
 from stiction.arrays import xr
-from stiction.storage.files import placeable, whole
+from stiction.storage.files import placeable, whole, write_text
 from stiction.storage.table_files import with_units, write_tables
 
 if TYPE_CHECKING:
@@ -32,9 +32,7 @@ def numbers(found: Analysis) -> dict[str, Any]:
 
 def write(found: Analysis, folder: Path) -> list[Path]:
     """Write all tables into a folder, ``analysis.json`` first; return the paths."""
-    paths = [placeable(folder / "analysis.json")]
-    with whole(paths[0]) as part:
-        part.write_text(json.dumps(numbers(found), indent=2) + "\n", encoding="utf-8")
+    paths = [write_text(json.dumps(numbers(found), indent=2) + "\n", folder / "analysis.json")]
     for name, table in tables(found).items():
         path = placeable(folder / f"{name}.csv")
         with whole(path) as part:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import copysign, inf, isfinite, nan, radians, sqrt
+from math import copysign, degrees, inf, isfinite, nan, radians, sqrt
 from typing import NamedTuple
+
+import numpy as np
 
 from stiction.auditing.chain import softest_path
 from stiction.auditing.prediction import predict
@@ -29,6 +31,11 @@ MORE = {
 LEVERS = ("phi", "drive.velocity", "c_x", "k_x")  # of springs in series, the softest one's
 MOST_TURNED = 80.0  # degrees: near a right angle the soft spring no longer acts along the drive
 STRONGEST = 10.0  # times critical damping: the strongest damper tried
+DIGITS = 2  # of advised values, if the margin is that wide: who turns a rig needs no more
+OF_MARGIN = 0.2  # rounding takes at most this share of the distance to an unstable value
+# A smaller value counts as this one in a factor of change, since a rig is aligned no better, and
+# has that damping anyway: degrees, share of critical damping
+ALIGNED, LIGHT = 1.0, 0.01
 
 
 class Remedy(NamedTuple):
@@ -70,6 +77,13 @@ class Remedy(NamedTuple):
     def growth(self) -> float:
         """Growth rate of a small disturbance of steady sliding at the advised value, 1/s."""
         return self.tried.growth if self.tried else nan
+
+    @property
+    def factor(self) -> float:
+        """The factor of change, see `change_factor`; infinite where nothing was tried."""
+        if self.tried is None:
+            return inf
+        return change_factor(self.tried.run.slider, self.path, self.now, self.then)
 
 
 def holds(tried: SimulatedTest | None) -> bool:
@@ -113,7 +127,7 @@ def advise_one(
     if found is None:
         ways = list(further(slider, path))
     else:
-        ways = [nearest(found, now, beyond) for beyond in BEYOND]
+        ways = [inside(found, nearest(found, now, beyond)) for beyond in BEYOND]
         if ways[0] == now:  # on the boundary at zero, of which no share leads away
             ways = list(further(slider, path))
     for number, then in enumerate(ways):
@@ -136,12 +150,44 @@ def further(slider: Slider, path: str) -> Iterator[float]:
     for more in MORE[lever(path)]:
         if path == "phi":
             then = now + copysign(radians(more), slider.misalignment)
-            if abs(then) <= radians(MOST_TURNED):
-                yield then
+            if abs(then) > radians(MOST_TURNED):
+                continue
         elif path == "c_x":
-            yield now + more * 2.0 * sqrt(slider.k_x * slider.masses[0])
+            then = now + more * critical_damping(slider)
         else:
-            yield now / more if is_compliance(path) else now * more
+            then = now / more if is_compliance(path) else now * more
+        yield few_digits(then, OF_MARGIN * abs(then - now), unit(slider, path))
+
+
+def few_digits(value: float, off: float, unit: str) -> float:
+    """Return a value in the fewest digits, at least two, by which it is no more than `off` wrong.
+
+    >>> few_digits(229.338, 30.0, "m/s"), few_digits(229.338, 0.1, "m/s")
+    (230.0, 229.3)
+    """
+    shown = degrees(value) if unit == "rad" else value
+    for digits in range(DIGITS, 17):
+        rounded = float(f"{shown:.{digits}g}")
+        rounded = radians(rounded) if unit == "rad" else rounded
+        if abs(rounded - value) <= off:
+            return rounded
+    return value
+
+
+def change_factor(slider: Slider, path: str, now: float, then: float) -> float:
+    """Return the factor by which a change raises or lowers a parameter, at least 1.
+
+    Angles count from the axis of the springs. Of a value near zero, see `ALIGNED`.
+    """
+    least = {"phi": radians(ALIGNED), "c_x": LIGHT * critical_damping(slider)}.get(path, 0.0)
+    origin = slider.turn if path == "phi" else 0.0
+    low, high = sorted(max(abs(value - origin), least) for value in (now, then))
+    return high / low
+
+
+def critical_damping(slider: Slider) -> float:
+    """Return the damping at which the mass on the soft spring no longer swings, N s/m."""
+    return 2.0 * sqrt(slider.k_x * slider.masses[0])
 
 
 def is_compliance(path: str) -> bool:
@@ -162,8 +208,14 @@ def try_change(slider: Slider, most_steps: int, progress: Progress) -> Simulated
 def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
     """Return the range of a parameter; None for the default range of `critical`."""
     if path == "c_x":
-        return 0.0, max(STRONGEST * 2.0 * sqrt(slider.k_x * slider.masses[0]), 2.0 * slider.c_x)
+        return 0.0, max(STRONGEST * critical_damping(slider), 2.0 * slider.c_x)
     return None
+
+
+def inside(found: Critical, value: float) -> float:
+    """Return a stable value in few digits, which keep most of its distance to unstable ones."""
+    distance = np.min(np.abs(found.values - value), initial=inf)
+    return few_digits(value, OF_MARGIN * float(distance), found.unit)
 
 
 def nearest(found: Critical, now: float, beyond: float) -> float:

@@ -9,6 +9,8 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from stiction.analysis.creep.curve import creep_curves, mean_creep
+from stiction.auditing.advice import Remedy
+from stiction.auditing.pairs import Pair
 from stiction.auditing.words.changes import in_symbols, name_of
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.auditing.words.verdict import short_motion
@@ -68,20 +70,18 @@ def damping(found: Audit) -> Figure | None:
 def trials(found: Audit) -> Figure | None:
     """Draw the force of the test, now and with each change."""
     tried = [
-        Trial(
-            f"{name_of(found, each.path)} = {in_words(each.then, each.unit)}: "
-            f"{short_motion(each.tried)}",
-            each.tried.record,
-        )
-        for each in found.advices
-        if each.tried is not None
-    ]
-    tried += [
-        Trial(f"{in_symbols(each)}: {short_motion(each.tried)}", each.tried.record)
-        for each in found.pairs
+        Trial(f"{_change(found, each)}: {short_motion(each.tried)}", each.tried.record)
+        for each in found.remedies
         if each.tried is not None
     ]
     return figure_of(plot_trials, found.observation.record, tried) if tried else None
+
+
+def _change(found: Audit, each: Remedy | Pair) -> str:
+    """Return a change for the title of a figure."""
+    if isinstance(each, Pair):
+        return in_symbols(each)
+    return f"{name_of(found, each.path)} = {in_words(each.then, each.unit)}"
 
 
 def record(found: Audit) -> Figure | None:

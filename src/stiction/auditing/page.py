@@ -15,7 +15,7 @@ from stiction.auditing import figures, tolerance
 from stiction.auditing.words.verdict import AS_DESCRIBED, RECORD, VERDICT
 from stiction.plotting.page.save import png
 from stiction.plotting.page.style import PAGE
-from stiction.storage.files import placeable, whole
+from stiction.storage.files import placeable, write_text
 from stiction.text.sections import html, table_html
 
 if TYPE_CHECKING:
@@ -79,11 +79,8 @@ def write(found: Audit, path: str | Path, name: str) -> Path:
     ResultError
         If it cannot be written there.
     """
-    target = placeable(path, SUFFIXES)
-    text = page(found, name)
-    with whole(target) as part:
-        part.write_text(text, encoding="utf-8")
-    return target
+    placeable(path, SUFFIXES)  # before it is drawn
+    return write_text(page(found, name), path)
 
 
 def page(found: Audit, name: str) -> str:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from itertools import islice
-from math import copysign, radians
+from math import copysign, inf, radians
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from stiction.auditing.advice import holds, try_change
+from stiction.auditing.advice import change_factor, few_digits, holds, try_change
 from stiction.auditing.simulated_test import LEAST_WORK, SimulatedTest
 from stiction.inference.progress import Progress, part, silent
 from stiction.linear_stability.linear import growth_at
@@ -19,10 +19,10 @@ from stiction.system.parameter import change_parameter, change_unchecked, quanti
 from stiction.system.slider import Slider
 
 PARTNERS = ("drive.velocity", "k_y")  # of the misalignment
-# Steady sliding must be stable for all neighbours, too: a quarter away in angle and in the partner
+# Steady sliding must be stable for all neighbours, too: a quarter away in angle and in the partner,
+# so that two digits suffice
 ANGLES = np.geomspace(1.0, 45.0, 16)  # degrees; beyond, more of the drive goes across the spring
 FACTORS = np.geomspace(1.0, 1e3, 28)
-DIGITS = 2  # of advised values: who turns a rig needs no more, and neighbours are stable
 MOST_TRIED = 3  # where it is stable, but not reached from rest
 FARTHER = 1.5  # times the factor of the last try
 
@@ -63,6 +63,14 @@ class Pair(NamedTuple):
     def works(self) -> bool:
         """Whether the simulation from rest reaches steady sliding, and keeps to it."""
         return holds(self.tried)
+
+    @property
+    def factor(self) -> float:
+        """The larger factor of both changes, see `change_factor`; infinite without a simulation."""
+        if self.tried is None:
+            return inf
+        slider = self.tried.run.slider
+        return max(change_factor(slider, of.path, of.now, of.then) for of in self.changes)
 
 
 def advise_pairs(slider: Slider, work: int, progress: Progress = silent) -> Iterator[Pair]:
@@ -116,17 +124,9 @@ def nearest_pairs(slider: Slider, path: str) -> Iterator[tuple[Change, Change]]:
             continue
         last = FACTORS[number - 1]
         turned = np.abs(ANGLES[fit] - abs(np.degrees(slider.misalignment)))
-        angle = slider.turn + side * radians(_few_digits(ANGLES[fit[np.argmin(turned)]]))
+        angle = few_digits(side * radians(ANGLES[fit[np.argmin(turned)]]), inf, "rad")
+        its = unit(slider, path)
         yield (
-            Change("phi", "rad", slider.phi, angle),
-            Change(path, unit(slider, path), now, _few_digits(now * last)),
+            Change("phi", "rad", slider.phi, slider.turn + angle),
+            Change(path, its, now, few_digits(now * last, inf, its)),
         )
-
-
-def _few_digits(value: float) -> float:
-    """Return a value with the digits that are advised.
-
-    >>> _few_digits(0.0028731)
-    0.0029
-    """
-    return float(f"{value:.{DIGITS}g}")

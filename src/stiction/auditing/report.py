@@ -28,6 +28,7 @@ from stiction.auditing.simulated_test import (
 )
 from stiction.auditing.words.chain import chain_sections
 from stiction.auditing.words.changes import changes
+from stiction.auditing.words.data import data
 from stiction.auditing.words.load_cell import TITLE as LOAD_CELL
 from stiction.auditing.words.load_cell import load_cell
 from stiction.auditing.words.numbers import numbers, violated_assumptions
@@ -125,6 +126,15 @@ class Audit(NamedTuple):
         rest, sliding = self.observation.comes_to, self.sliding_on.comes_to
         return rest == OSCILLATES and sliding == SLIDES and self.sliding.stable
 
+    @property
+    def remedies(self) -> list[Remedy | Pair]:
+        """All changes of one and of two parameters: those that work first, the mildest at the head.
+
+        Milder is what changes by a smaller factor, see `stiction.auditing.advice.change_factor`.
+        """
+        every: list[Remedy | Pair] = [*self.advices, *self.pairs]
+        return sorted(every, key=lambda each: (not each.works, each.factor))
+
     def __str__(self) -> str:
         """Return the report as text."""
         return as_text(self.tables())
@@ -135,8 +145,7 @@ class Audit(NamedTuple):
     @property
     def ok(self) -> bool:
         """Whether every simulation reached its end."""
-        advices: list[Remedy | Pair] = [*self.advices, *self.pairs]
-        tried = (each.tried for each in advices if each.tried)
+        tried = (each.tried for each in self.remedies if each.tried)
         replaced = self.chain.replacements if self.chain else ()
         stiffer = (each.tried for each in replaced if each.tried)
         runs = [self.observation, self.sliding_on, *tried, *stiffer]
@@ -155,6 +164,10 @@ class Audit(NamedTuple):
 
             parts.append(section(self.budget))
         return parts
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the numbers with their units, as ``stiction audit --json`` writes them."""
+        return data(self)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""

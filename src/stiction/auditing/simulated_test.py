@@ -112,6 +112,22 @@ class SimulatedTest:
         return final_state(self.run, self.growth)
 
     @cached_property
+    def settled(self) -> float:
+        """When steady sliding is reached, s: its speed stays within 2 % of the drive's thereafter.
+
+        NaN where that takes longer than the test.
+        """
+        times = self.run.samples["time"]
+        differs = np.flatnonzero(np.abs(relative_speed(self.run) - 1.0) >= CALM)
+        after = int(differs[-1]) + 1 if len(differs) else 0
+        return float(times[after] - times[0]) if after < len(times) else nan
+
+    @property
+    def travel(self) -> float:
+        """How far the drive goes until steady sliding is reached, m; NaN if it is not."""
+        return self.run.slider.drive_speed * self.settled
+
+    @cached_property
     def slip_time(self) -> float:
         """When the first slip begins, s; NaN if there is none."""
         slip = first_slip_time(self.run)

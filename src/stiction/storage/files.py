@@ -153,6 +153,20 @@ def whole(target: Path) -> Iterator[Path]:
         raise ResultError(f"{target}: cannot be written: {reason(error)}") from None
 
 
+def write_text(text: str, path: str | Path, suffixes: Collection[str] = ()) -> Path:
+    """Write a text into a file, whole or not at all; return its path. `suffixes` as of `placeable`.
+
+    Raises
+    ------
+    ResultError
+        If it cannot be written there.
+    """
+    target = placeable(path, suffixes)
+    with whole(target) as part:
+        part.write_text(text, encoding="utf-8")
+    return target
+
+
 def place(made: Mapping[Path, Path]) -> None:
     """Move files and folders out of a workshop, each after its content is on the disk.
 

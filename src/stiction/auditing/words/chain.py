@@ -9,7 +9,7 @@ from stiction.auditing.chain import SMALL, Chain, Part, Replacement
 from stiction.auditing.prediction import Prediction
 from stiction.auditing.simulated_test import SimulatedTest
 from stiction.auditing.words.numbers import apparent_stiffness, peak
-from stiction.auditing.words.verdict import final_motion
+from stiction.auditing.words.verdict import final_motion, motion_and_travel
 from stiction.errors import echo
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
@@ -124,7 +124,7 @@ def _row(name: str, slider: Slider, p: Prediction, seen: SimulatedTest | None) -
     motion = "not tried"
     if seen is not None:
         status = seen.run.status
-        motion = final_motion(seen) if status.ok else f"not known: {status.value}"
+        motion = motion_and_travel(seen) if status.ok else f"not known: {status.value}"
     return (
         name,
         in_words(apparent_stiffness(slider), "N/m"),

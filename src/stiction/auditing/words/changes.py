@@ -5,10 +5,23 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING
 
-from stiction.auditing.advice import Remedy, is_compliance
+from stiction.auditing.advice import Remedy, critical_damping, is_compliance
 from stiction.auditing.pairs import ANGLES, FACTORS, Pair
-from stiction.auditing.simulated_test import MOST_WORK, OSCILLATES, UNSETTLED, SimulatedTest
-from stiction.auditing.words.verdict import final_motion, where
+from stiction.auditing.simulated_test import (
+    CALM,
+    MOST_WORK,
+    OSCILLATES,
+    UNSETTLED,
+    SimulatedTest,
+)
+from stiction.auditing.words.verdict import (
+    ROUGHLY,
+    final_motion,
+    motion_and_travel,
+    travel,
+    where,
+)
+from stiction.text.quantity_text import percent
 from stiction.text.sections import Table
 from stiction.text.units import in_words
 
@@ -29,20 +42,26 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
     """Return changes that make it slide steadily, each with its simulation from rest."""
     if not found.advices:
         return ["Nothing: it slides steadily after the start."], None
-    rows = [_change(found, advice) for advice in found.advices]
-    rows += [_change_of_two(found, pair) for pair in found.pairs]
+    every = found.remedies
+    rows = [
+        _change(found, each) if isinstance(each, Remedy) else _change_of_two(found, each)
+        for each in every
+    ]
     goal = "take away the oscillation from rest" if found.bistable else "slide steadily"
     remedies = [
-        f"{name_of(found, each.path)} of {in_words(each.then, each.unit)}"
-        for each in found.advices
-        if each.works
+        f"{' with '.join(settings(found, each))} ({travel(each.tried)})"
+        for each in every
+        if each.works and each.tried
     ]
-    remedies += [" with ".join(settings(found, each)) for each in found.pairs if each.works]
-    every: list[Remedy | Pair] = [*found.advices, *found.pairs]
     undecided = any(each.tried and each.tried.comes_to == UNSETTLED for each in every)
     none = f"None of these {'is seen to make' if undecided else 'makes'} it {goal}"
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else none
     lines = [f"{what}. Each change was simulated from rest; the last column shows the result."]
+    if remedies:
+        lines.append(
+            "The mildest change, by the factor, stands first. The travel is the way of the drive "
+            f"until the speed stays within {percent(CALM)} of the drive's: a rig needs that much."
+        )
     cut = [name_of(found, each.path) for each in every if each.cut]
     if cut:
         lines.append(
@@ -80,15 +99,25 @@ def _change(found: Audit, advice: Remedy) -> tuple[str, ...]:
             tried = " to ".join(in_words(end, advice.unit) for end in advice.critical.between)
         return name, now, "nowhere", tried, "no value in that range"
     stable = where(advice.critical, True) if advice.critical else "now"
-    then = in_words(advice.then, advice.unit)
+    then = value_of(found, advice.path, advice.then, advice.unit)
     return name, now, stable, then, _result(found, advice.tried, advice.works)
 
 
-def settings(found: Audit, pair: Pair) -> list[str]:
-    """Return the two advised settings in words."""
+def settings(found: Audit, each: Remedy | Pair) -> list[str]:
+    """Return the advised settings in words."""
     return [
-        f"{name_of(found, each.path)} of {in_words(each.then, each.unit)}" for each in pair.changes
+        f"{name_of(found, of.path)} of {value_of(found, of.path, of.then, of.unit)}"
+        for of in (each.changes if isinstance(each, Pair) else (each,))
     ]
+
+
+def value_of(found: Audit, path: str, value: float, unit: str) -> str:
+    """Return a value of a parameter in words; that of a damper as a damping ratio, too."""
+    said = in_words(value, unit)
+    if path != "c_x":
+        return said
+    ratio = in_words(value / critical_damping(found.slider), "", ROUGHLY)
+    return f"{said}, a damping ratio of {ratio}"
 
 
 def in_symbols(pair: Pair) -> str:
@@ -115,7 +144,7 @@ def _change_of_two(found: Audit, pair: Pair) -> tuple[str, ...]:
 def _result(found: Audit, seen: SimulatedTest, works: bool) -> str:
     """Return what the simulation with a change shows."""
     if works:
-        return final_motion(seen)
+        return motion_and_travel(seen)
     if not seen.run.status.ok:
         return f"not known: the simulation was cut at {in_words(float(seen.record.time[-1]), 's')}"
     if seen.comes_to == UNSETTLED:

@@ -29,6 +29,7 @@ RECORD = "What the record says"  # title of the verdict on a measured record
 # and of that on the apparatus: beside a record, the verdict is what the record says
 VERDICT, AS_DESCRIBED = "Verdict", "The rig as it is described"
 MEANS = ("period", "s"), ("drop", "N")  # over the cycles
+ROUGHLY = 2  # digits of a travel, and of the time that it takes
 SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
 SEEN = {  # kinds of motion, in a sentence
     TRANSITIONAL: f"a {TRANSITIONAL} between stick-slip and harmonic vibration",
@@ -69,7 +70,11 @@ def motions(found: Audit) -> list[str]:
                 "In the time of the test it slides steadily, but that does not last: small "
                 "disturbances grow, more slowly than the test shows."
             )
-        return [what, f"Started from rest, the load cell shows {describe_motion(rest)}."]
+        cell = f"the load cell shows {describe_motion(rest)}"
+        return [
+            what,
+            f"Started from rest, {cell}. Steady sliding is reached {time_and_travel(rest)}.",
+        ]
     if rest.comes_to == OSCILLATES and sliding.comes_to == OSCILLATES:
         lines = [f"It does not slide steadily: started from rest or sliding, it comes to {name}."]
         if rest.motion != sliding.motion:
@@ -97,6 +102,27 @@ def final_motion(seen: SimulatedTest) -> str:
     if seen.motion in (SETTLING, STEADY):  # as far as the load cell sees it
         return "a motion that still changes when the test ends"
     return f"{name} (still growing or dying out when the test ends)"
+
+
+def motion_and_travel(seen: SimulatedTest) -> str:
+    """Return the final motion of a test and, of steady sliding, when and where it is reached."""
+    motion = final_motion(seen)
+    return f"{motion}, reached {time_and_travel(seen)}" if seen.comes_to == SLIDES else motion
+
+
+def time_and_travel(seen: SimulatedTest) -> str:
+    """Return when steady sliding is reached, and how far the drive goes until then, in words."""
+    whole = float(seen.run.samples["time"][-1])
+    time = in_words(seen.settled if isfinite(seen.settled) else whole, "s", ROUGHLY)
+    return f"after {'' if isfinite(seen.settled) else 'more than '}{time}, {travel(seen)}"
+
+
+def travel(seen: SimulatedTest) -> str:
+    """Return how far the drive goes until steady sliding is reached, in words."""
+    if isfinite(seen.travel):
+        return f"on {in_words(seen.travel, 'm', ROUGHLY)} of travel"
+    whole = seen.run.slider.drive_speed * float(seen.run.samples["time"][-1])
+    return f"on more than {in_words(whole, 'm', ROUGHLY)} of travel"
 
 
 def short_rest(seen: SimulatedTest) -> str:

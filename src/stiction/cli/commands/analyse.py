@@ -127,7 +127,7 @@ def import_(
     from stiction.analysis.measurement.reading import read_records
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
-    from stiction.storage.files import NETCDF, placeable, whole
+    from stiction.storage.files import NETCDF, placeable, write_text
 
     if output is not None:
         placeable(output, NETCDF)
@@ -150,9 +150,8 @@ def import_(
     for record, target in zip(records, targets, strict=False):
         say(f"wrote {record.save(target)}")
     if json is not None:
-        with whole(placeable(json)) as part:
-            guesses = ",\n".join(x.origin.to_json() for x in records if x.origin is not None)
-            part.write_text(f"[{guesses}]\n", encoding="utf-8")
-        say(f"wrote {json}")
+        guesses = ",\n".join(x.origin.to_json() for x in records if x.origin is not None)
+        text = f"[{guesses}]\n"
+        say(f"wrote {write_text(text, json)}")
     if output is None:
         say("nothing is stored: -o record.nc stores it; an option corrects the guess, see --help")

@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+from json import dumps
 from pathlib import Path
+from typing import Annotated
+
+from cyclopts import Parameter
 
 from stiction.cli.options import (
     Changes,
@@ -26,6 +30,7 @@ def audit(
     /,
     *,
     output: MaybeOutput = None,
+    json: Annotated[Path | None, Parameter(name="--json")] = None,
     preset: FromPreset = None,
     trust: Trust = False,
     set: Changes = None,
@@ -39,9 +44,10 @@ def audit(
     Prints theoretical predictions beside the results of a simulated test: damping number, critical
     misalignment and the margin to it, true rest and creep in apparent stick, apparent friction
     coefficients, period, the frequency of the transverse oscillation and the sampling rate that
-    shows it; and, if it does not slide steadily, advice, each tried in a simulation. Of springs in
-    series: which is the softest, and what each replaced by a stiffer one changes. Where values are
-    uncertain in CONFIG, as in phi = "2 +- 1 deg": what that does to a test, and how well to align.
+    shows it; and, if it does not slide steadily, advice, the mildest change first, each tried in a
+    simulation, with the travel that it needs to reach steady sliding. Of springs in series: which
+    is the softest, and what each replaced by a stiffer one changes. Where values are uncertain in
+    CONFIG, as in phi = "2 +- 1 deg": what that does to a test, and how well to align.
 
     For example, with what `stiction init my.toml` writes:
 
@@ -60,6 +66,8 @@ def audit(
         A description in TOML; `stiction init` writes one to start from.
     output
         An HTML page to write: the same report with figures, in one file. Example: -o my.html.
+    json
+        Write the numbers as JSON, too, each with its unit. Example: --json my.json.
     record
         A measured record of the apparatus, of any format that `stiction import` reads; CONFIG
         states what is uncertain, as for `stiction fit`. The report begins with what it says:
@@ -70,6 +78,7 @@ def audit(
     from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.simulated import SIMULATIONS
+    from stiction.storage.files import placeable, write_text
 
     faults, rig = Faults(), None
     given = changes(set, faults)
@@ -78,10 +87,12 @@ def audit(
     title = str(config or preset)
     if output is not None:
         from stiction.auditing.page import SUFFIXES
-        from stiction.storage.files import placeable
 
         with faults.of_part():
             placeable(output, SUFFIXES)
+    if json is not None:
+        with faults.of_part():
+            placeable(json)
     with faults.of_part():
         seen = record_or_none(
             record, measured, trust, rig=rig, simulations=simulations, library=library
@@ -97,4 +108,7 @@ def audit(
         with progress("drawing"):
             written = found.write_html(output, title if config is None else config.name)
         say(f"wrote {written}")
+    if json is not None:
+        text = dumps(found.to_dict(), indent=2) + "\n"
+        say(f"wrote {write_text(text, json)}")
     return 0 if found.ok else 1
