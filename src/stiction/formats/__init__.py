@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import os
+import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from importlib import import_module
 from math import inf
 from pathlib import Path
@@ -14,7 +16,9 @@ from stiction.formats.table import FileTable
 from stiction.storage.foreign import opening
 from stiction.storage.kinds import HDF5, RECORD, RESULT, use_of
 
+ZIP = b"PK\x03\x04"  # before each part of an archive
 HEAD = 512  # bytes by which a file is recognised
+SEARCHED = 1 << 20  # bytes of a damaged archive in which names are sought
 
 
 class TextLayout(NamedTuple):
@@ -39,7 +43,7 @@ FORMATS = (
     Format("MATLAB 7.3", "hdf5", lambda head: head.startswith(b"MATLAB 7.3")),
     Format("MATLAB 5", "matlab", lambda head: head.startswith(b"MATLAB 5.0")),
     Format("NetCDF 3", "netcdf3", lambda head: head.startswith((b"CDF\x01", b"CDF\x02"))),
-    Format("NumPy", "arrays", lambda head: head.startswith((b"\x93NUMPY", b"PK\x03\x04"))),
+    Format("NumPy", "arrays", lambda head: head.startswith((b"\x93NUMPY", ZIP))),
     Format("Parquet", "parquet", lambda head: head.startswith(b"PAR1")),
     Format("TDMS", "tdms", lambda head: head.startswith((b"TDSm", b"TDSh"))),
     Format("LabVIEW measurement", "labview", lambda head: head[:64].find(b"LabVIEW Meas") >= 0),
@@ -52,6 +56,13 @@ OTHERS = {
     b"\x7fELF": "a program",
     b"BZh": "compressed with bzip2; unpack it first",
     b"\xfd7zXZ": "compressed with xz; unpack it first",
+}
+# Documents that are zip archives, by what a name in the archive begins with
+PACKED = {
+    "xl/": "an Excel workbook; save it as CSV",
+    "word/": "a Word document; save the numbers as CSV",
+    "content.xml": "an OpenDocument file, as of LibreOffice; save it as CSV",
+    "Index/": "an Apple Numbers file; export it as CSV",
 }
 
 
@@ -77,6 +88,11 @@ def format_of(path: Path) -> Format:
     for magic, what in OTHERS.items():
         if head.startswith(magic):
             raise ResultError(f"{path}: is {what}")
+    if head.startswith(ZIP):
+        names = _packed_names(path)
+        for begin, what in PACKED.items():
+            if any(name.startswith(begin) for name in names):
+                raise ResultError(f"{path}: is {what}")
     return next(each for each in FORMATS if each.matches(head))
 
 
@@ -100,3 +116,14 @@ def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
             raise ResultError(f"{path}: is not a record; {use}") from None
         raise
     return [table for table in tables if len(table)]
+
+
+def _packed_names(path: Path) -> list[str]:
+    """Return the names in a zip archive; of a damaged one, those that still stand before parts."""
+    with suppress(zipfile.BadZipFile, OSError), zipfile.ZipFile(path) as archive:
+        return archive.namelist()
+    with open(path, "rb") as file:
+        parts = file.read(SEARCHED).split(ZIP)[1:]
+    sizes = [int.from_bytes(part[22:24], "little") for part in parts]
+    found = [part[26 : 26 + size] for part, size in zip(parts, sizes, strict=True)]
+    return [name.decode("utf-8", "replace") for name in found]

@@ -22,6 +22,8 @@ def read(path: Path, layout: TextLayout) -> list[FileTable]:
         values = np.load(path, mmap_mode="r", allow_pickle=False)  # bounded by the file's size
         refuse_size(path, 3.0 * values.nbytes)
         return tables_of([Member("", "array", np.array(values))], "NumPy")
+    if not zipfile.is_zipfile(path):
+        raise ResultError(f"{path}: is a damaged zip archive, or a part of one; copy it again")
     with zipfile.ZipFile(path) as archive:
         names = archive.namelist()
         if not any(name.endswith(".npy") for name in names):

@@ -2,6 +2,8 @@
 
 import codecs
 import gzip
+import re
+import zipfile
 
 import numpy as np
 import pytest
@@ -750,12 +752,46 @@ def test_a_bad_cell_is_named_by_line_and_column(write, rows, said):
         (b"\x1f\x8b\x08\x00junk", "gzip says"),
         (b"%PDF-1.4", "is a PDF"),
         (b"\xd0\xcf\x11\xe0", "Excel"),
-        (b"PK\x03\x04" + bytes(60), "is not a file of NumPy"),
+        (b"PK\x03\x04" + bytes(60), "is a damaged zip archive, or a part of one; copy it again"),
     ],
 )
 def test_files_that_are_none(write, content, said):
     with pytest.raises(st.ResultError, match=said):
         st.read_record(write(content))
+
+
+@pytest.mark.parametrize("cut", [False, True])
+@pytest.mark.parametrize(
+    ("names", "said"),
+    [
+        (
+            ["[Content_Types].xml", "_rels/.rels", "xl/workbook.xml"],
+            "an Excel workbook; save it as",
+        ),
+        (["docProps/app.xml", "xl/worksheets/sheet1.xml"], "an Excel workbook; save it as CSV"),
+        (["mimetype", "content.xml"], "an OpenDocument file, as of LibreOffice; save it as CSV"),
+        (["Index/Document.iwa"], "an Apple Numbers file; export it as CSV"),
+        (["[Content_Types].xml", "word/document.xml"], "a Word document"),
+    ],
+)
+def test_a_spreadsheet_is_named_with_its_remedy_whole_or_damaged(tmp_path, names, said, cut):
+    """It was "a zip archive without NumPy arrays; unpack it first"."""
+    path = tmp_path / "test.xlsx"
+    with zipfile.ZipFile(path, "w") as archive:
+        for name in names:
+            archive.writestr(name, "<x/>")
+    if cut:
+        path.write_bytes(path.read_bytes()[:-30])  # what an archive ends with
+    with pytest.raises(st.ResultError, match=re.escape(f"is {said}")):
+        st.read_record(path)
+
+
+def test_a_zip_of_something_else_is_to_be_unpacked(tmp_path):
+    path = tmp_path / "data.zip"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("data.csv", "t,F")
+    with pytest.raises(st.ResultError, match="zip archive without NumPy arrays; unpack it first"):
+        st.read_record(path)
 
 
 def test_a_header_that_looks_like_a_description_is_read(write):
