@@ -14,6 +14,7 @@ import hashlib
 import logging
 import os
 import pickle
+import re
 import shutil
 import stat
 import sys
@@ -49,6 +50,10 @@ log = logging.getLogger(__name__)
 
 CHECKSUM = 32  # bytes of a SHA-256 digest, before the code itself
 ROOMS = ("drive", "friction", "solver")  # whose parts are compiled into many functions
+WAYS = {  # the solver of a room, where it needs a name beside the one that takes each step
+    "multiscale": " over many periods at once",
+    "smooth": " with internal states",
+}
 FOLDERS = 6  # versions of the package whose code is kept, the last used ones
 IMPORTED = time.time()  # s: later edits of the sources are not in what this process compiles
 
@@ -86,7 +91,7 @@ class Shelf:
         path = self._path(signature, context.codegen())
         code = _read_code(path)
         if code is None:
-            if solver := _in_words(signature):  # other functions take less than a second
+            if solver := _in_words(self._name, signature):  # others take less than a second
                 _inform(f"compiling {solver}, once")
             take_turn(path)
             code = _read_code(path)
@@ -135,6 +140,16 @@ def _read_code(path: Path) -> bytes | None:
     return None
 
 
+def _in_words(name: str, signature: Any) -> str:
+    """Return a solver with the drive and load of its signature in words; "" for other functions."""
+    names = dict.fromkeys(each for kind in signature for each in _class_names(kind))
+    if not names:
+        return ""
+    way = next((words for room, words in WAYS.items() if room in name.split(".")), "")
+    drives = (re.sub(r"(?<=[a-z])(?=[A-Z])", " ", each).lower() for each in names)
+    return f"the solver{way} for {' and '.join(drives)}"
+
+
 def _inform(text: str) -> None:
     """Log a text, and print it for a user who waits for the first run, and has set no level.
 
@@ -146,12 +161,6 @@ def _inform(text: str) -> None:
         return
     if hasattr(builtins, "__IPYTHON__") or (sys.stderr is not None and sys.stderr.isatty()):
         print(f"stiction: {text}", file=sys.stderr, flush=True)
-
-
-def _in_words(signature: Any) -> str:
-    """Return the drive and load of a solver's signature in words; "" for other functions."""
-    names = dict.fromkeys(name for kind in signature for name in _class_names(kind))
-    return f"the solver for {', '.join(names)}" if names else ""
 
 
 def _class_names(kind: Any) -> Iterator[str]:

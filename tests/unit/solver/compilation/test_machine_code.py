@@ -209,7 +209,19 @@ def test_compiling_a_solver_is_said_once(root, caplog):
         for _ in range(2):
             jit._entry(speed, Shelf(speed))(drive)
     said = [each.getMessage() for each in caplog.records]
-    assert said == ["compiling the solver for ConstantVelocity, once"]
+    assert said == ["compiling the solver for constant velocity, once"]
+
+
+def test_two_solvers_of_one_drive_are_told_apart(root, caplog, monkeypatch):
+    """The line stood twice in one audit, word for word."""
+    drive = st.ConstantVelocity(1.0)
+    with caplog.at_level(logging.INFO, logger="stiction"):
+        for room in ("exact", "multiscale", "smooth"):
+            monkeypatch.setattr(speed, "__module__", f"stiction.solver.{room}.loop")
+            jit._entry(speed, Shelf(speed))(drive)
+    said = [each.getMessage() for each in caplog.records]
+    assert len({*said}) == 3
+    assert said[1] == "compiling the solver over many periods at once for constant velocity, once"
 
 
 @pytest.mark.parametrize("place", ["terminal", "notebook", "script", "quiet"])
