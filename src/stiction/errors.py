@@ -264,7 +264,8 @@ class Faults:
         if len(lines) > LISTED:
             lines = [*lines[:LISTED], f"and {len(lines) - LISTED} more faults"]
         if lines:
-            raise ResultError("\n".join(lines))
+            kinds = {type(error) for error in self.found} - {DescriptionError}
+            raise (kinds.pop() if len(kinds) == 1 else ResultError)("\n".join(lines))
 
 
 class Status(Enum):

@@ -129,6 +129,31 @@ def test_an_incomplete_command_is_answered_with_an_example(arguments, message, c
     assert message in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("stability", "give either the file of a description or --preset NAME"),
+        ("audit", "give either the file of a description or --preset NAME"),
+        ("audit --preset leine-belt --time ms", "there is no record to which this could apply"),
+        ("stability --preset leine-belt --over phi --over V --over W", "give --over once or twice"),
+        ("sweep -o a.zarr", "give either a study's file or --preset NAME"),
+        ("sweep a.toml -o a.zarr --quiet --json-lines", "exclude each other; give one"),
+        (
+            "bogus",
+            "unknown command 'bogus'; known: analyse, animate, audit, check, compare, design",
+        ),
+        ("analize data.csv", "unknown command 'analize'; did you mean 'analyse'?"),
+        ("stabilty", "unknown command 'stabilty'; did you mean 'stability'?"),
+    ],
+)
+def test_a_fault_of_the_command_is_called_that(arguments, message, capsys):
+    """It was an "error file"; of unknown commands eight of twenty were listed."""
+    assert inside(*arguments.split()) == 2
+    said = " ".join(capsys.readouterr().err.split())
+    assert message in said
+    assert said.startswith("error command line:") or "a.toml" in said
+
+
 def test_paper_says_that_a_file_is_not_a_folder(tmp_path, capsys):
     (tmp_path / "file").write_text("")
     assert inside("paper", "-o", tmp_path / "file") == 2

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
     from stiction.system.slider import Slider
     from stiction.trajectory import Trajectory
 
+
+class CommandError(StictionError):
+    """Arguments that a command cannot take together, or lacks."""
+
+
 Output = Annotated[Path, Parameter(name=("--output", "-o"))]
 MaybeOutput = Annotated[Path | None, Parameter(name=("--output", "-o"))]
 Trust = Annotated[
@@ -255,7 +260,7 @@ def record_or_none(
     further = {name: value for name, value in others.items() if value is not None}
     if said := (measured or RecordOptions()).arguments() | further:
         named = ", ".join(f"--{name.replace('_', '-')}" for name in said)
-        raise StictionError(f"{named}: there is no record to which this could apply; {give}")
+        raise CommandError(f"{named}: there is no record to which this could apply; {give}")
     return None
 
 
@@ -314,7 +319,7 @@ def rig_from(config: Path | None, preset: str | None, given: dict[str, Any], tru
 def choose(config: Path | None, preset: str | None) -> Preset | None:
     """Return the requested preset, None for a file; one of both must be given."""
     if (config is None) == (preset is None):
-        raise StictionError(
+        raise CommandError(
             "give either the file of a description or --preset NAME; "
             "`stiction init my.toml` writes one, `stiction presets` lists the others"
         )

@@ -6,9 +6,10 @@ import logging
 import re
 from inspect import getdoc
 
-from cyclopts import CycloptsError, MissingArgumentError, UnknownOptionError
-from cyclopts.exceptions import UnusedCliTokensError
+from cyclopts import App, CycloptsError, MissingArgumentError, UnknownOptionError
+from cyclopts.exceptions import UnknownCommandError, UnusedCliTokensError
 
+from stiction.cli.options import CommandError
 from stiction.cli.terminal import note
 from stiction.cli.tokens import is_negative
 from stiction.errors import DescriptionError, ResultError, StictionError, echo
@@ -25,6 +26,10 @@ def message_of(error: CycloptsError) -> str:
             return _missing(error)
         case UnusedCliTokensError(unused_tokens=[first, *_]):
             return f"{echo(first)} is one argument too many; {BLANKS}"
+        case UnknownCommandError(unused_tokens=[first, *_], app=App() as app):
+            from stiction.text.validation import unknown_name
+
+            return unknown_name("command", first, [x for x in app if not x.startswith("-")])
         case UnknownOptionError(token=token) if is_negative(token.value or token.keyword or ""):
             return (
                 f"{echo(token.value or token.keyword)} begins with a hyphen, as an option does; "
@@ -41,6 +46,8 @@ def subject_of(error: StictionError) -> str:
     >>> subject_of(ResultError("a.csv: no such file")), subject_of(StictionError("give either"))
     ('file', 'stiction')
     """
+    if isinstance(error, CommandError):
+        return "command line"
     if isinstance(error, DescriptionError):
         return "description"
     return "file" if isinstance(error, ResultError) else "stiction"

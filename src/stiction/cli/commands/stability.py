@@ -7,7 +7,15 @@ from typing import Annotated, Any
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, FromPreset, MaybeOutput, Trust, changes, slider_from
+from stiction.cli.options import (
+    Changes,
+    CommandError,
+    FromPreset,
+    MaybeOutput,
+    Trust,
+    changes,
+    slider_from,
+)
 from stiction.cli.terminal import say
 from stiction.errors import Faults
 
@@ -67,9 +75,11 @@ def stability(
     paths, ranges = over or OVER, [tuple(map(number, each)) for each in between or []]
     if len(paths) > 2 or len(ranges) not in (0, len(paths)):
         counts = f"{len(paths)} and {len(ranges)}"
-        faults.add(
-            f"give --over once or twice, and --between as often or not at all, not {counts} times"
-        )
+        with faults.of_part():
+            raise CommandError(
+                "give --over once or twice, and --between as often or not at all, not "
+                f"{counts} times"
+            )
     if output is not None:
         from stiction.plotting.page.save import drawable
 

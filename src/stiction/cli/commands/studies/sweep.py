@@ -10,7 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 from cyclopts import Parameter
 
-from stiction.cli.options import Changes, Output, Trust, changes, parse_assignment, trust_in
+from stiction.cli.options import (
+    Changes,
+    CommandError,
+    Output,
+    Trust,
+    changes,
+    parse_assignment,
+    trust_in,
+)
 from stiction.cli.terminal import say
 from stiction.errors import DescriptionError, Faults, StictionError, argument
 
@@ -121,9 +129,11 @@ def sweep(
     with faults.of_part():
         means = engine(threads, workers, scheduler, dashboard)
     if refine is None and apart is not None:
-        faults.add("--apart needs --refine; give both")
+        with faults.of_part():
+            raise CommandError("--apart needs --refine; give both")
     if quiet and json_lines:
-        faults.add("--quiet and --json-lines exclude each other; give one")
+        with faults.of_part():
+            raise CommandError("--quiet and --json-lines exclude each other; give one")
     faults.refuse()
     if not (quiet or json_lines):  # before the first of many runs, too
         for doubt in doubts(study):
@@ -179,7 +189,7 @@ def read_study(
 
     if (config is None) == (preset is None):
         known = ", ".join(presets.PRESETS)
-        raise StictionError(f"give either a study's file or --preset NAME; known: {known}")
+        raise CommandError(f"give either a study's file or --preset NAME; known: {known}")
     if config is not None:
         return Study.from_toml(config, given, trust=trust)
     study = presets.preset(str(preset))
@@ -194,12 +204,12 @@ def engine(
 ) -> Engine:
     """Return the requested engine."""
     if sum(each is not None for each in (threads, workers, scheduler)) > 1:
-        raise StictionError("--threads, --workers and --scheduler exclude each other; give one")
+        raise CommandError("--threads, --workers and --scheduler exclude each other; give one")
     for name, count in (("threads", threads), ("workers", workers)):
         if count is not None and count < 1:
-            raise StictionError(f"--{name} must be at least 1, is {count}")
+            raise CommandError(f"--{name} must be at least 1, is {count}")
     if dashboard and workers is None:
-        raise StictionError("--dashboard needs --workers; give both")
+        raise CommandError("--dashboard needs --workers; give both")
     from stiction.study.execution.cores import Cores
     from stiction.study.execution.engines import Processes, Scheduler, Threads
 
