@@ -120,6 +120,12 @@ def own_picture(what: Any) -> str:
     return str(shown.picture(door.plot, what))
 
 
+def page_of(what: Any, path: str | Path, name: str) -> Path:
+    """Write an analysis as a page in HTML; return its path."""
+    written: Path = import_module("stiction.plotting.analysis.page").write(what, path, name)
+    return written
+
+
 def session_name(kind: type) -> str:
     """Return a class as one writes it in a session: ``st.laws.LuGre``; others by their name.
 

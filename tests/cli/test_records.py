@@ -2,8 +2,10 @@
 
 import json
 import re
+from html import unescape
 
 import numpy as np
+import pandas as pd
 import pytest
 from tests.measured import FOLDER
 
@@ -37,6 +39,167 @@ def test_analyse_takes_a_record_with_its_units(data, capsys):
     assert "sticks and slips" in said
     numbers = json.loads((data.parent / "data-analysis" / "analysis.json").read_text())
     assert numbers["friction"]["static"]["coefficient"] == pytest.approx(0.24, abs=0.001)
+
+
+UNITS = ("--time", "ms", "--force", "mN")
+
+
+def test_a_page_of_an_analysis_holds_its_report_and_figures_in_one_file(data, capsys):
+    """`-o rep.html` made a folder of that name, without a word."""
+    page = data.with_name("rep.html")
+    rig = ("--stiffness", "1 N/m", "--drive-velocity", "0.1 m/s", "--normal-load", "5 N")
+    assert inside("analyse", data, *UNITS, *rig, "-o", page) == 0
+    said = capsys.readouterr().out
+    assert f"wrote {page}" in said.replace("\n", "")
+    assert sorted(data.parent.iterdir()) == [data, page]
+    text = page.read_text("utf-8")
+    assert "<title>Analysis of data.csv</title>" in text
+    titles = [unescape(each) for each in re.findall(r"<h2>(.*?)</h2>", text)]
+    at = [re.search(rf"^{title}$", said, re.M).start() for title in titles]
+    assert at == sorted(at)
+    assert {"In short", "Cycle by cycle", "Read as"} <= {*titles}
+    assert text.count("data:image/png;base64,") == text.count("<figure") > 0
+    assert not re.findall(r'(?:src|href)="(?!data:)(?!https://arxiv)', text)
+    found = st.analyse(st.read_record(data, time="ms", force="mN"))
+    again = found.write_html(data.with_name("python.html"), "data.csv").read_text("utf-8")
+    assert "<title>Analysis of data.csv</title>" in again
+
+
+def test_a_run_s_page_has_a_figure_of_each_part_and_its_apparatus(tmp_path):
+    slider = st.presets.nakano_popov_2020()
+    st.simulate(slider, "5 s", sample_rate="10 kHz").save(tmp_path / "a.nc")
+    assert inside("analyse", tmp_path / "a.nc", "-o", tmp_path / "a.html") == 0
+    text = (tmp_path / "a.html").read_text("utf-8")
+    for title in ("In short", "Creep", "Oscillation", "Energy"):
+        assert "<figure" in text.partition(f"<h2>{title}</h2>")[2].partition("</section>")[0], title
+    assert (
+        st.Slider.from_toml(unescape(text.partition("<pre>")[2].partition("</pre>")[0])) == slider
+    )
+
+
+def test_a_test_s_figure_stands_in_its_own_section(tmp_path):
+    time = np.arange(0.0, 62.0, 0.02)
+    travel = np.interp(time, [0.0, 60.0, 62.0], [0.0, 0.6e-3, 0.8e-3])
+    slip = np.maximum(travel - 0.6e-3, 0.0)
+    mu = 0.6 + (time > 60.0) * (0.014 * np.log1p(9.0 * np.exp(-slip / 20e-6)) - 0.01)
+    known = {"normal_load": "1 kN", "stiffness": "1 GN/m"}
+    found = st.analyse(st.Record(time=time, force=1e3 * mu, drive_position=travel, **known))
+    title = found.parts["procedure"].section.title
+    text = found.write_html(tmp_path / "a.html").read_text("utf-8")
+    assert "<figure" in text.partition(f"<h2>{title}</h2>")[2].partition("</section>")[0]
+
+
+def test_a_folder_of_an_analysis_holds_what_was_printed(data, capsys):
+    assert inside("analyse", data, *UNITS, "-o", data.with_name("rep")) == 0
+    printed, text = capsys.readouterr().out, data.with_name("rep") / "report.txt"
+    assert "wrote report.txt, analysis.json" in printed
+    lines = text.read_text("utf-8").splitlines()
+    assert lines[0] == str(data)
+    assert max(map(len, lines[1:])) <= 100
+    assert {"In short", "Cycles", "Cycle by cycle", "Read as"} <= {*lines}
+    words = [re.findall(r"[\w.]+", each) for each in (" ".join(lines[1:]), printed)]
+    assert not {*words[0]} - {*words[1]}
+    assert len(words[0]) > 200
+
+
+@pytest.mark.parametrize(
+    ("name", "remedy"),
+    [
+        ("rep.pdf", "name a folder, such as rep, or write rep.html"),
+        ("rep.csv", "name a folder, such as rep, or write rep.html"),
+        ("none/rep.html", "does not exist; make it first"),
+        ("data.csv/rep", "does not exist"),
+    ],
+)
+def test_an_analysis_goes_to_a_folder_or_a_page(data, name, remedy, capsys):
+    assert inside("analyse", data, *UNITS, "-o", data.parent / name) == 2
+    assert remedy in " ".join(capsys.readouterr().err.split())
+    assert sorted(data.parent.iterdir()) == [data]
+
+
+@pytest.mark.parametrize("name", ["rig.2", "v1.5", "old.results"])
+def test_a_folder_may_have_a_point_in_its_name(data, name):
+    if name == "old.results":  # such a one has to be there
+        data.with_name(name).mkdir()
+    assert inside("analyse", data, *UNITS, "-o", data.with_name(name)) == 0
+    assert (data.with_name(name) / "report.txt").is_file()
+
+
+@pytest.fixture
+def three(data):
+    """Records of one period, of half of it, and a run, in a folder each or together."""
+    time = np.arange(0.0, 20.0, 0.01)
+    fast = st.Record(time=time, force=1.0 + 0.2 * (time % 1.0), normal_load="4 N")
+    run = st.simulate(st.presets.nakano_popov_2020(), "8 s", sample_rate="500 Hz")
+    return [data, fast.save(data.with_name("fast.nc")), run.save(data.with_name("run.nc"))]
+
+
+def test_several_records_are_a_row_each(three, capsys):
+    """`analyse a.csv b.csv` was one argument too many."""
+    csv = three[0]
+    csv.with_suffix(".toml").write_text('[columns]\ntime = "ms"\nforce = "mN"\n')
+    assert inside("analyse", *three) == 0
+    said = capsys.readouterr().out
+    assert "3 records: stick-slip (3)." in said
+    folder = csv.with_name("records-analysis")
+    assert sorted(each.name for each in folder.iterdir()) == ["records.csv", "report.txt"]
+    table = pd.read_csv(folder / "records.csv", index_col="record")
+    assert list(table.index) == ["data.csv", "fast.nc", "run.nc"]
+    for path, known in zip(three, ({"time": "ms", "force": "mN"}, {}, None), strict=True):
+        one = st.analyse(path if known is None else st.read_record(path, **known))
+        row, mean = table.loc[path.name], one.summary["mean"]
+        assert row["period [s]"] == pytest.approx(float(mean.sel(quantity="period")))
+        assert row["drop [N]"] == pytest.approx(float(mean.sel(quantity="drop")))
+        assert row["cycles"] == one.cycles.sizes["cycle"]
+        assert row["static_force [N]"] == pytest.approx(one.friction.static.force)
+        mu = one.friction.static.coefficient
+        assert row["mu_static"] == pytest.approx(mu, nan_ok=True)
+        phi = one.misalignment.phi if one.misalignment else np.nan
+        assert row["misalignment [rad]"] == pytest.approx(phi, nan_ok=True)
+        assert str(one.regime.kind) == row["motion"]
+    text = (folder / "report.txt").read_text("utf-8")
+    assert all(f"\n{path.name}\n" in text for path in three)
+
+
+@pytest.mark.parametrize("target", ["all.csv", "all.html"])
+def test_several_records_go_into_a_table_or_a_page_alone(three, target, capsys):
+    names = three[1:]
+    assert inside("analyse", *names, "-o", three[0].with_name(target)) == 0
+    written = three[0].with_name(target).read_text("utf-8")
+    assert all(path.name in written for path in names)
+    before = {*three, three[0].with_name(target)}
+    assert {*three[0].parent.iterdir()} == before
+    if target == "all.html":
+        assert written.count("<figure") >= 2
+        assert "<h2>fast.nc: Cycles</h2>" in written
+
+
+def test_the_faults_of_several_records_are_told_at_once_and_nothing_is_written(three, capsys):
+    csv, fast, _ = three
+    missing = csv.with_name("gone.csv")
+    before = sorted(csv.parent.iterdir())
+    assert inside("analyse", csv, fast, missing) == 2
+    said = capsys.readouterr().err
+    assert "gone.csv: no such file" in said
+    assert "states no unit of the force" in said
+    assert inside("analyse", fast, fast, "-o", csv.with_name("a.pdf")) == 2
+    assert "name a folder, such as a, or write a.html" in " ".join(capsys.readouterr().err.split())
+    assert sorted(csv.parent.iterdir()) == before
+
+
+def test_files_of_one_name_are_told_by_their_folders_and_blocks_by_numbers(tmp_path, capsys):
+    time = np.arange(0.0, 20.0, 0.01)
+    rows = "".join(f"{t:.2f},{1.0 + 0.2 * (t % 2.0):.4f}\n" for t in time)
+    for name in ("a", "b"):
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "test.csv").write_text(
+            f"t [s],F [N]\n{rows}{rows if name == 'b' else ''}"
+        )
+    target = tmp_path / "all.csv"
+    assert inside("analyse", tmp_path / "a", tmp_path / "b" / "test.csv", "-o", target) == 0
+    b = tmp_path / "b" / "test.csv"
+    named = [str(tmp_path / "a" / "test.csv"), f"{b}, block 1", f"{b}, block 2"]
+    assert list(pd.read_csv(target)["record"]) == named
 
 
 def test_a_doubt_of_a_unit_names_the_option(data, capsys):

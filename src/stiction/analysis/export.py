@@ -7,9 +7,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.parts import functions
+from stiction.analysis.parts.cycles import each_cycle
+from stiction.analysis.record import Record
 from stiction.arrays import xr
 from stiction.storage.files import placeable, whole, write_text
 from stiction.storage.table_files import with_units, write_tables
+from stiction.text.columns import rows_left_out
+from stiction.text.sections import Section
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
@@ -28,6 +32,18 @@ def numbers(found: Analysis) -> dict[str, Any]:
     """Return the numbers of an analysis, in SI and rad, for JSON; null for unknown ones."""
     known = {name: each for _, of in functions("numbers") for name, each in of(found).items()}
     return known | {"warnings": list(found.warnings), "missing": found.missing}
+
+
+def full_report(found: Analysis) -> list[Section]:
+    """Return the report with the first cycles, and with how a record was read from its file."""
+    parts, count = found.tables(), found.cycles.sizes["cycle"]
+    if count:
+        at = [part.title for part in parts].index("Cycles") + 1
+        more = rows_left_out(count, "cycles", "cycles.csv")
+        parts.insert(at, Section("Cycle by cycle", more, each_cycle(found.cycles)))
+    if isinstance(found.source, Record) and found.source.origin is not None:
+        parts += found.source.origin.tables()
+    return parts
 
 
 def write(found: Analysis, folder: Path) -> list[Path]:

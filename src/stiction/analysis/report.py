@@ -28,7 +28,7 @@ from stiction.analysis.record import Record, as_record
 from stiction.analysis.rotation.findings import GROWING
 from stiction.arrays import TINY, xr
 from stiction.formats.table import number_of
-from stiction.names import draw, own_picture, warn_renamed
+from stiction.names import draw, own_picture, page_of, warn_renamed
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
 
@@ -142,6 +142,16 @@ class Analysis(NamedTuple):
     def export(self, path: str | Path) -> list[Path]:
         """Write its tables for another program, see `stiction.analysis.export.export`."""
         return export(self, path)
+
+    def write_html(self, path: str | Path, name: str = "a record") -> Path:
+        """Write the report as a self-contained page with figures; return the path.
+
+        Raises
+        ------
+        ResultError
+            If the file cannot be written.
+        """
+        return page_of(self, path, name)
 
     def plot(self, axes: Any = None) -> Any:
         """Draw the force with its cycles; see `stiction.plotting.plot_analysis`."""

@@ -2,35 +2,19 @@
 
 from __future__ import annotations
 
-from base64 import b64encode
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
-from jinja2 import Environment, PackageLoader
 from matplotlib.figure import Figure
 
-import stiction
 from stiction.auditing import figures, tolerance
 from stiction.auditing.words.verdict import AS_DESCRIBED, RECORD, VERDICT
-from stiction.plotting.page.save import png
-from stiction.plotting.page.style import PAGE
-from stiction.storage.files import placeable, write_text
-from stiction.text.sections import html, table_html
+from stiction.plotting.page.html import illustrations, page_path, write_page
+from stiction.plotting.page.html import page as html_page
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
-
-SUFFIXES = (".html", ".htm")
-
-
-class Illustration(NamedTuple):
-    """A figure as text, with its caption; its width is a share of the page's."""
-
-    image: str
-    caption: str
-    width: float
-
 
 # figures below each section, with captions
 TEST = (figures.test, "The simulated test as its load cell records it.")
@@ -79,32 +63,14 @@ def write(found: Audit, path: str | Path, name: str) -> Path:
     ResultError
         If it cannot be written there.
     """
-    placeable(path, SUFFIXES)  # before it is drawn
-    return write_text(page(found, name), path)
+    page_path(path)  # before it is drawn
+    return write_page(page(found, name), path)
 
 
 def page(found: Audit, name: str) -> str:
     """Return the page as text; `name` is the name of the apparatus."""
-    environment = Environment(
-        loader=PackageLoader("stiction.auditing", "."), autoescape=True, trim_blocks=True
-    )
-    environment.filters.update(html=html, table=table_html)
-    return environment.get_template("page.html.jinja").render(
-        name=name,
-        version=stiction.__version__,
-        parts=found.tables(),
-        figures={title: illustrations(found, drawn) for title, drawn in DRAWN.items()},
-        description=found.to_toml(),
-    )
-
-
-def illustrations(
-    found: Audit, drawn: tuple[tuple[Callable[[Audit], Figure | None], str], ...]
-) -> list[Illustration]:
-    """Return the non-empty figures of a section."""
-    made = ((draw(found), caption) for draw, caption in drawn)
-    return [
-        Illustration(b64encode(png(figure)).decode("ascii"), caption, figure.get_figwidth() / PAGE)
-        for figure, caption in made
-        if figure is not None
-    ]
+    figures = {
+        title: illustrations((draw(found), caption) for draw, caption in drawn)
+        for title, drawn in DRAWN.items()
+    }
+    return html_page(f"Audit of {name}", found.tables(), figures, found.to_toml())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from io import StringIO
 from textwrap import wrap
 
 from rich.box import SIMPLE_HEAD
@@ -14,12 +15,13 @@ from rich.text import Text
 from stiction.errors import visible
 from stiction.text.sections import Section, Table, join_units
 
+WIDE = 100  # letters in a line of a file
 LONGEST_WORD = 24  # letters of the longest unbroken word
 
 
-def print_sections(title: str, parts: Iterable[Section]) -> None:
+def print_sections(title: str, parts: Iterable[Section], console: Console | None = None) -> None:
     """Print sections below a title."""
-    console = Console(highlight=False, emoji=False)
+    console = console or Console(highlight=False, emoji=False)
     console.print(plain(title, style="bold"))
     for part in parts:
         console.print()
@@ -28,6 +30,13 @@ def print_sections(title: str, parts: Iterable[Section]) -> None:
             console.print(Padding(in_lines(sentence, console.width - 2), (0, 0, 0, 2)))
         if part.table is not None:
             console.print(table(part.table, console.width))
+
+
+def as_file(title: str, parts: Iterable[Section]) -> str:
+    """Return sections below a title as they stand in a terminal, for a text file."""
+    text = StringIO()
+    print_sections(title, parts, Console(file=text, width=WIDE, highlight=False, emoji=False))
+    return "".join(f"{line.rstrip()}\n" for line in text.getvalue().splitlines())
 
 
 def plain(text: str, style: str = "") -> Text:

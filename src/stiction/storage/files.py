@@ -82,6 +82,29 @@ def usable_folder(folder: Path) -> None:
     _refuse_unwritable(folder, folder if folder.exists() else folder.parent)
 
 
+def folder_or_file(path: Path, suffixes: Collection[str]) -> Path:
+    """Return a path to which either a folder or a file with one of some suffixes can be written.
+
+    A folder with a suffix has to exist, so that a format that is not written makes no folder.
+
+    Raises
+    ------
+    ResultError
+        As of `placeable` or `usable_folder`; also if the name has another suffix.
+    """
+    suffix = path.suffix.lower()
+    if suffix in suffixes:
+        return placeable(path, suffixes)
+    if suffix[1:2].isalpha() and not path.is_dir():
+        named = " or ".join(f"{path.stem}{each}" for each in suffixes)
+        raise ResultError(
+            f"{path}: unknown format {echo(path.suffix)}; name a folder, such as {path.stem}, or "
+            f"write {named}"
+        )
+    usable_folder(path)
+    return path
+
+
 def _refuse_unwritable(target: Path, folder: Path) -> None:
     if not os.access(folder, os.W_OK | os.X_OK):
         raise ResultError(

@@ -162,17 +162,55 @@ def read_records(
     >>> [record.force.tolist() for record in st.read_records("strokes.csv")]
     [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]
     """
-    files = [Path(paths)] if isinstance(paths, str | Path) else [Path(each) for each in paths]
-    if not files:
-        raise ResultError("no file is given; name one or several")
-    listed = [each for file in files for each in (_files_of(file) if file.is_dir() else [file])]
     found: list[Record] = []
     faults = Faults()
-    for path in listed:
+    for path in _all_files([paths] if isinstance(paths, str | Path) else paths):
         with faults.of_part():
             found += [_record(path, each) for each in _measurements(path, sidecar, dict(said))]
     faults.refuse()
     return tuple(found)
+
+
+def _all_files(paths: Iterable[str | Path]) -> list[Path]:
+    """Return files, of a folder all files in it."""
+    files = [Path(each) for each in paths]
+    if not files:
+        raise ResultError("no file is given; name one or several")
+    return [each for file in files for each in (_files_of(file) if file.is_dir() else [file])]
+
+
+@suggest(as_argument_elsewhere)
+def read_sources(
+    paths: Iterable[str | Path],
+    *,
+    trust: bool = False,
+    sidecar: str | Path | None = None,
+    **said: Unpack[ReadArguments],
+) -> dict[str, Trajectory | Record]:
+    """Return the runs and records of several files by their names; of blocks, each a record.
+
+    Where two files of different folders have one name, the folders are named, too.
+
+    Raises
+    ------
+    ResultError, DescriptionError
+        As of `read_source` and `read_records`, the faults of all files at once.
+    """
+    found: dict[str, Trajectory | Record] = {}
+    faults = Faults()
+    listed = list(dict.fromkeys(_all_files(paths)))
+    alone = len({path.name for path in listed}) == len(listed)
+    for path in listed:
+        name = path.name if alone else str(path)
+        with faults.of_part():
+            if is_run(path):
+                found[name] = read_source(path, trust=trust, **said)
+                continue
+            blocks = read_records(path, sidecar=sidecar, **said)
+            for number, record in enumerate(blocks, 1):
+                found[f"{name}, block {number}" if len(blocks) > 1 else name] = record
+    faults.refuse()
+    return found
 
 
 @suggest(as_argument_elsewhere)

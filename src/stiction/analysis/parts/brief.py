@@ -31,7 +31,7 @@ def section(found: Analysis) -> Section:
         first_sentence(found.parts["motion"]),
         _friction(found),
         *_misalignment(found),
-        *_warnings(found.warnings),
+        *warnings_in_short(found.warnings),
         *_open_questions(found),
     ]
     return Section("In short", lines)
@@ -66,7 +66,7 @@ def _misalignment(found: Analysis) -> list[str]:
     return [f"Misalignment by the creep: {with_error(its.phi, its.phi_error, 'rad')}."]
 
 
-def _warnings(said: tuple[str, ...]) -> list[str]:
+def warnings_in_short(said: tuple[str, ...]) -> list[str]:
     """Return how many warnings there are, and the first, which is the most important, in short."""
     if not said:
         return []

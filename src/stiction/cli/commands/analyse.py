@@ -3,78 +3,139 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from cyclopts import Parameter
 
 from stiction.cli.options import MaybeOutput, RecordOptions, Trust, source_in
 from stiction.cli.terminal import say
 
+if TYPE_CHECKING:
+    from stiction.analysis.report import Analysis
+
 
 def analyse(
     result: Path,
     /,
-    *,
+    *results: Path,
     output: MaybeOutput = None,
     trust: Trust = False,
     measured: RecordOptions | None = None,
 ) -> None:
-    """Analyse a result or a measured record: kind of motion, cycles, creep, oscillation, energy.
+    """Analyse results or measured records: kind of motion, cycles, creep, oscillation, energy.
 
-    Prints a report, which begins with the answer in short, and writes tables: cycles.csv (a row for
-    each cycle), summary.csv, friction.csv, creep.csv, creep-phases.csv, oscillation.csv,
-    oscillation-phases.csv and energy.csv; of a test, velocity-steps.csv, healing.csv,
-    hysteresis.csv or load-dependence.csv; numbers in analysis.json; figures of the test, cycles,
-    creep, oscillation and energy. A quantity that is not determined has no file. Creep and
-    oscillation need several samples per transverse period.
+    Prints a report, which begins with the answer in short, and writes a folder or a page. The
+    folder holds the report as text, report.txt; tables: cycles.csv (a row for each cycle),
+    summary.csv, friction.csv, creep.csv, creep-phases.csv, oscillation.csv, oscillation-phases.csv
+    and energy.csv; of a test, velocity-steps.csv, healing.csv, hysteresis.csv or
+    load-dependence.csv; numbers in analysis.json; figures of the test, cycles, creep, oscillation
+    and energy. The page, .html, has the report with the figures in one file. A quantity that is not
+    determined has no file. Creep and oscillation need several samples per transverse period.
 
     For example, after `stiction run my.toml -o my.nc`:
 
         stiction analyse my.nc -o report
 
+        stiction analyse my.nc -o report.html
+
     A record of a load cell, as `stiction import` reads it:
 
         stiction analyse data.csv --time ms --force mN --stiffness 168N/m --drive-velocity 42um/s
+
+    Of several, a table is printed, with a row for each: motion, friction, means over cycles,
+    misalignment and warnings. It is written as records.csv, or into a page with a figure of each.
+    Options hold for all; a file data.toml beside data.csv says what holds for that one alone:
+
+        stiction analyse slow.csv fast.csv --time ms --force mN -o records.csv
 
     Parameters
     ----------
     result
         A file written by `stiction run`, or a measured record: CSV and other text, .lvm, .tdms,
         .mat, HDF5, NetCDF, .npy, .npz, Parquet.
+    results
+        More of them, or folders of them.
     output
-        The folder to write to, by default RESULT-analysis; made if it does not exist. Example: -o
-        report.
+        The folder or the page (.html) to write, by default the folder RESULT-analysis; of several
+        results also the table alone (.csv), by default the folder records-analysis beside the
+        first. A folder is made if it does not exist. Example: -o report.
     """
-    from stiction.analysis.export import write as write_tables
-    from stiction.analysis.parts.cycles import each_cycle
-    from stiction.analysis.record import Record
+    from stiction.analysis.export import full_report
     from stiction.analysis.report import analyse as understand
     from stiction.cli.progress import progress
-    from stiction.cli.tables import print_sections
-    from stiction.plotting.analysis.overview import figures
-    from stiction.plotting.page.save import drawable, write
-    from stiction.storage.files import make_folder, usable_folder
-    from stiction.text.columns import rows_left_out
-    from stiction.text.sections import Section
+    from stiction.cli.tables import as_file, print_sections
+    from stiction.plotting.page.html import SUFFIXES
+    from stiction.storage.files import folder_or_file
 
+    if results:
+        _analyse_several([result, *results], output, trust, measured)
+        return
     source = source_in(result, measured, trust)
-    folder = result.with_name(f"{result.stem}-analysis") if output is None else output
-    usable_folder(folder)
+    target = folder_or_file(output or result.with_name(f"{result.stem}-analysis"), SUFFIXES)
     with progress("analysing"):
         found = understand(source)
-        parts = found.tables()
-        make_folder(folder)
-        paths = write_tables(found, folder)
-        for name, figure in figures(found).items():
-            paths.append(write(figure, drawable(folder / f"{name}.png")))
-    if count := found.cycles.sizes["cycle"]:
-        at = [part.title for part in parts].index("Cycles") + 1
-        more = rows_left_out(count, "cycles", "cycles.csv")
-        parts.insert(at, Section("Cycle by cycle", more, each_cycle(found.cycles)))
-    if isinstance(source, Record) and source.origin is not None:
-        parts += source.origin.tables()
+        parts = full_report(found)
+        if target.suffix.lower() in SUFFIXES:
+            written = str(found.write_html(target, result.name))
+        else:
+            paths = _write_folder(found, target, as_file(str(result), parts))
+            written = f"{', '.join(path.name for path in paths)} to {target}"
     print_sections(str(result), parts)
-    say(f"\nwrote {', '.join(path.name for path in paths)} to {folder}")
+    say(f"\nwrote {written}")
+
+
+def _write_folder(found: Analysis, folder: Path, text: str) -> list[Path]:
+    """Write tables, text and figures of an analysis into a folder; return their paths."""
+    from stiction.analysis.export import write as write_tables
+    from stiction.plotting.analysis.overview import figures
+    from stiction.plotting.page.save import drawable, write
+    from stiction.storage.files import make_folder, write_text
+
+    make_folder(folder)
+    paths = [write_text(text, folder / "report.txt"), *write_tables(found, folder)]
+    for name, figure in figures(found).items():
+        paths.append(write(figure, drawable(folder / f"{name}.png")))
+    return paths
+
+
+def _analyse_several(
+    results: list[Path], output: Path | None, trust: bool, measured: RecordOptions | None
+) -> None:
+    """Analyse several results or records: a row each."""
+    from stiction.analysis.export import full_report
+    from stiction.analysis.measurement.reading import read_sources
+    from stiction.analysis.report import analyse as understand
+    from stiction.analysis.several import section, side_by_side
+    from stiction.cli.progress import progress
+    from stiction.cli.tables import as_file, print_sections
+    from stiction.plotting.analysis.page import write_several
+    from stiction.plotting.page.html import SUFFIXES
+    from stiction.storage.files import folder_or_file, make_folder, write_text
+    from stiction.storage.table_files import write_tables
+
+    said = (measured or RecordOptions()).arguments()
+    with progress("reading"):
+        sources = read_sources(results, trust=trust, **said)
+    target = folder_or_file(output or results[0].with_name("records-analysis"), (*SUFFIXES, ".csv"))
+    with progress("analysing") as report:
+        found = {}
+        for number, (name, source) in enumerate(sources.items()):
+            found[name] = understand(source)
+            report((number + 1) / len(sources))
+    table = section(found)
+    print_sections(f"{len(found)} records", [table])
+    if target.suffix.lower() in SUFFIXES:
+        with progress("drawing"):
+            paths = [write_several(found, target)]
+    elif target.suffix.lower() == ".csv":
+        paths = write_tables({"records": side_by_side(found)}, target, {})
+    else:
+        make_folder(target)
+        text = as_file(f"{len(found)} records", [table])
+        text += "".join("\n\n" + as_file(x, full_report(each)) for x, each in found.items())
+        paths = write_tables({"records": side_by_side(found)}, target / "records.csv", {})
+        paths.append(write_text(text, target / "report.txt"))
+    say(f"wrote {', '.join(map(str, paths))}")
 
 
 def import_(

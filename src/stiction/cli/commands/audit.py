@@ -86,10 +86,10 @@ def audit(
         rig = rig_from(config, preset, given, trust)
     title = str(config or preset)
     if output is not None:
-        from stiction.auditing.page import SUFFIXES
+        from stiction.plotting.page.html import page_path
 
         with faults.of_part():
-            placeable(output, SUFFIXES)
+            page_path(output)
     if json is not None:
         with faults.of_part():
             placeable(json)

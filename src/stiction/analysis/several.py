@@ -1,0 +1,122 @@
+"""The analyses of several records side by side: a row each."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping
+from math import isfinite, nan
+
+from stiction.analysis.motion.cycle_columns import mean_in_words
+from stiction.analysis.motion.friction import Measured
+from stiction.analysis.parts.brief import warnings_in_short
+from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
+from stiction.analysis.report import Analysis
+from stiction.arrays import xr
+from stiction.text.sections import Section, Table
+from stiction.text.units import with_error
+
+FRICTIONS = ("static", "kinetic")
+MEANS = {"drop": "N", "period": "s"}  # over the cycles
+COLUMNS = (
+    *("record", "motion", "cycles", "static friction", "kinetic friction", "force drop"),
+    *("period", "misalignment φ", "warnings"),
+)
+UNKNOWN = Measured(nan, nan, nan, nan, nan, nan)
+
+
+def side_by_side(found: Mapping[str, Analysis]) -> xr.Dataset:
+    """Return a row for each analysis: motion, friction, means over cycles, misalignment, warnings.
+
+    Parameters
+    ----------
+    found : mapping of str to Analysis
+        From `stiction.analyse`, by the names of the records.
+
+    Returns
+    -------
+    Dataset
+        Over ``record``; NaN where a quantity is not determined.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 10.0, 1e-3)
+    >>> records = {"slow": 0.1 * (time % 2.0), "fast": 0.1 * (time % 0.5)}
+    >>> found = {
+    ...     name: st.analyse(st.Record(time=time, force=force)) for name, force in records.items()
+    ... }
+    >>> st.analysis.side_by_side(found)["period"].values.round(6).tolist()
+    [2.0, 0.5]
+    """
+    each = list(found.values())
+    columns = {
+        "motion": ([x.regime.kind for x in each], ""),
+        "confidence": ([x.regime.confidence for x in each], "1"),
+        "cycles": ([x.cycles.sizes["cycle"] for x in each], "1"),
+    }
+    for name in FRICTIONS:
+        its = [getattr(x.friction, name) or UNKNOWN for x in each]
+        columns |= {
+            f"mu_{name}": ([x.coefficient for x in its], "1"),
+            f"mu_{name}_error": ([x.coefficient_error for x in its], "1"),
+            f"{name}_force": ([x.force for x in its], "N"),
+            f"{name}_force_error": ([x.error for x in its], "N"),
+        }
+    for name, unit in MEANS.items():
+        rows = [x.summary.sel(quantity=name) for x in each]
+        for key in ("mean", "standard_deviation"):
+            column = name if key == "mean" else f"{name}_{key}"
+            columns[column] = ([float(row[key]) for row in rows], unit)
+    angles = [x.misalignment for x in each]
+    columns |= {
+        "misalignment": ([x.phi if x else nan for x in angles], "rad"),
+        "misalignment_error": ([x.phi_error if x else nan for x in angles], "rad"),
+        "warnings": (["; ".join(x.warnings) for x in each], ""),
+    }
+    return xr.Dataset(
+        {
+            name: ("record", values, {"units": unit} if unit else {})
+            for name, (values, unit) in columns.items()
+        },
+        {"record": list(found)},
+    )
+
+
+def section(found: Mapping[str, Analysis]) -> Section:
+    """Return the same in words: a table without empty columns, and the warnings."""
+    rows = [_row(name, each) for name, each in found.items()]
+    kept = [at for at in range(len(COLUMNS)) if any(row[at] for row in rows)]
+    kinds = Counter(each.regime.kind for each in found.values())
+    lines = [f"{len(found)} records: {', '.join(f'{k} ({n})' for k, n in kinds.most_common())}."]
+    lines += [
+        f"{name}: {warning}"
+        for name, each in found.items()
+        for warning in warnings_in_short(each.warnings)
+    ]
+    table = Table(
+        tuple(COLUMNS[at] for at in kept), [tuple(row[at] or "none" for at in kept) for row in rows]
+    )
+    return Section("Side by side", lines, table)
+
+
+def _row(name: str, found: Analysis) -> tuple[str, ...]:
+    angle, count = found.misalignment, len(found.warnings)
+    return (
+        name,
+        found.regime.kind,
+        str(found.cycles.sizes["cycle"]),
+        *(_friction(getattr(found.friction, each)) for each in FRICTIONS),
+        *(_mean(found.summary, each) for each in MEANS),
+        with_error(angle.phi, angle.phi_error, "rad") if angle else "",
+        str(count) if count else "",
+    )
+
+
+def _friction(its: Measured | None) -> str:
+    """Return a coefficient, the force where the load is unknown, or nothing."""
+    return (coefficient_in_words(its) or force_in_words(its)) if its else ""
+
+
+def _mean(summary: xr.Dataset, quantity: str) -> str:
+    known = isfinite(float(summary["mean"].sel(quantity=quantity)))
+    return mean_in_words(summary, quantity) if known else ""
