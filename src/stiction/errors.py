@@ -264,8 +264,9 @@ class Faults:
         if len(lines) > LISTED:
             lines = [*lines[:LISTED], f"and {len(lines) - LISTED} more faults"]
         if lines:
-            kinds = {type(error) for error in self.found} - {DescriptionError}
-            raise (kinds.pop() if len(kinds) == 1 else ResultError)("\n".join(lines))
+            kinds = {type(error) for error in self.found}
+            of_file = any(issubclass(kind, ResultError | DescriptionError) for kind in kinds)
+            raise (ResultError if of_file or len(kinds) > 1 else kinds.pop())("\n".join(lines))
 
 
 class Status(Enum):

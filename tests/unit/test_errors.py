@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.errors import ECHOED, MOST, DescriptionError, Fault, echo
+from stiction.errors import ECHOED, MOST, DescriptionError, Fault, Faults, echo
 
 PAPER = st.presets.nakano_popov_2020()
 MANY = 20_000
@@ -150,6 +150,38 @@ def test_an_argument_that_a_message_suggests_is_no_option_to_everybody():
         if option.search(text) and not re.search("stiction (fit|run|sweep)|uv run|^ --", text)
     ]
     assert wrong == []
+
+
+class Refusal(st.StictionError):
+    """An error of its own kind."""
+
+
+class Unclear(st.ResultError):
+    """An error of a file that takes more than a text."""
+
+    def __init__(self, what: str, remedy: str) -> None:
+        super().__init__(f"{what}; {remedy}")
+
+
+@pytest.mark.parametrize(
+    ("errors", "kind"),
+    [
+        ([Refusal("a"), Refusal("b")], Refusal),
+        ([Refusal("a"), st.ResultError("b")], st.ResultError),
+        ([Refusal("a"), st.StictionError("b")], st.ResultError),
+        ([Unclear("a", "c"), Unclear("b", "d")], st.ResultError),
+        ([DescriptionError.of("x", "a"), Refusal("b")], st.ResultError),
+    ],
+)
+def test_faults_of_one_kind_keep_it(errors, kind):
+    faults = Faults()
+    for error in errors:
+        with faults.of_part():
+            raise error
+    with pytest.raises(kind) as raised:
+        faults.refuse()
+    assert type(raised.value) is kind
+    assert len(str(raised.value).splitlines()) == 2
 
 
 COMMAND = re.compile(r"\bstiction (run|sweep|init|map|plot|analyse|audit|fit|check|design)\b")
