@@ -233,7 +233,7 @@ def test_who_waits_for_the_first_run_is_told_why(root, monkeypatch, caplog, caps
         monkeypatch.setattr(builtins, "__IPYTHON__", True, raising=False)
     for _ in range(2):
         jit._entry(speed, Shelf(speed))(st.ConstantVelocity(1.0))
-    said = "stiction: compiling the solver for ConstantVelocity, once\n"
+    said = "stiction: compiling the solver for constant velocity, once\n"
     assert capsys.readouterr().err == (said if place in ("terminal", "notebook") else "")
 
 
