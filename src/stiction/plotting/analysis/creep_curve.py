@@ -39,14 +39,34 @@ def creep_theory(
     return {label: before_slip(formula) for label, formula in formulas.items()}
 
 
+FEW = 20  # stick phases, of which each curve can be seen
+
+
 def draw_phases(ax: Axes, curves: xr.Dataset, V: float) -> None:
-    """Draw the creep of every stick phase, as a share of the drive velocity `V` (m/s)."""
-    faint = max(0.05, min(0.5, 4.0 / max(curves.sizes["phase"], 1)))
+    """Draw the creep of every stick phase, as a share of the drive velocity `V` (m/s).
+
+    Of many phases the curves would be a hatching: the middle half of them is drawn.
+    """
+    if curves.sizes["phase"] > FEW:
+        draw_middle_half(ax, curves, V)
+        return
+    faint = min(0.5, 4.0 / max(curves.sizes["phase"], 1))
     for phase in range(curves.sizes["phase"]):
         row = curves.isel(phase=phase)
         middle = 0.5 * (row["begin"] + row["end"]).values
         label = "each stick phase" if phase == 0 else None
         ax.plot(middle, row["velocity"].values / V, color=BLACK, lw=0.4, alpha=faint, label=label)
+
+
+def draw_middle_half(ax: Axes, curves: xr.Dataset, V: float) -> None:
+    """Draw the quartiles of the creep of all stick phases, where at least four reach."""
+    velocity = curves["velocity"].values / V
+    several = np.isfinite(velocity).sum(axis=0) > 3
+    middle = np.broadcast_to(0.5 * (curves["begin"] + curves["end"]).values, velocity.shape)
+    quartiles = np.nanquantile(velocity[:, several], (0.25, 0.75), axis=0)
+    for each, label in zip(quartiles, ("middle half of the stick phases", None), strict=True):
+        at = np.nanmedian(middle[:, several], axis=0)
+        ax.plot(at, each, color=BLACK, lw=0.7, ls=":", label=label)
 
 
 def draw_mean(ax: Axes, mean: xr.Dataset, V: float) -> None:

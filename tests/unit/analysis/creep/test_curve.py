@@ -416,6 +416,22 @@ def test_the_figure_says_what_is_drawn(curves):
     assert figure_of(plot_creep, curves, noisy, V).axes[0].get_yscale() == "linear"
 
 
+def test_of_many_phases_the_figure_shows_the_middle_half():
+    """A hundred curves of a noisy record were a grey hatching."""
+    record = noisy_record(3, 0.0)
+    few = st.analysis.creep_curves(*record, 0.01)
+    many = xr.concat([few.isel(phase=[0])] * 15 + [few.isel(phase=[1])] * 15, "phase")
+    many["velocity"] = many["velocity"] * 0.0 + V * np.arange(30.0)[:, None] / 30.0
+    ax = figure_of(plot_creep, many, st.analysis.mean_creep(few), V).axes[0]
+    (low,) = (each for each in ax.get_lines() if "middle half" in str(each.get_label()))
+    high = ax.get_lines()[ax.get_lines().index(low) + 1]
+    reach = np.isfinite(many["velocity"].values).sum(axis=0)
+    for line, quartile in ((low, 7.25), (high, 21.75)):
+        drawn = np.asarray(line.get_ydata())[reach[reach > 3] == 30]
+        np.testing.assert_allclose(drawn, quartile / 30.0)
+    assert (reach == 30).any()
+
+
 def test_far_turned_the_angle_is_that_of_the_run():
     """Eq. (7) has the drive's own speed, not its part along the soft spring: 40 deg, not 47."""
     rig = {"mass": 0.1, "k_x": 2e3, "k_y": 4e6, "phi": "40 deg", "normal_load": 6}
