@@ -246,6 +246,12 @@ def test_tables_and_numbers_as_files(found, tmp_path):
     assert numbers["regime"]["kind"] == "stick-slip"
     assert numbers["cycles"]["period"]["unit"] == "s"
     assert numbers["misalignment"]["phi"] == found.misalignment.phi
+    for name, units in (
+        ("misalignment", {"phi": "rad", "phi_error": "rad", "F_0": "N", "weakening": "1"}),
+        ("divergence", {"exponent": "1", "amplitude_error": "m/s", "loading_time": "s"}),
+        ("friction", {"force": "N", "coefficient_error": "1"}),
+    ):
+        assert units.items() <= numbers[name]["units"].items()
 
 
 def test_the_command_writes_tables_and_figures(run, tmp_path, capsys):

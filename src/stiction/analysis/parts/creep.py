@@ -33,6 +33,11 @@ BARELY = "it creeps at less than a millionth of the drive's velocity"
 USUAL = 0.5  # of the stick phases: what only the longest of them reach is left to the table
 RAPID = 0.5  # of the drive's velocity: a mass so fast does not creep, it gains speed
 FAR_STIFFER = " This supposes a spring across the force that is far stiffer, k_x/k_y ≪ tan² φ."
+# of the numbers of a fit; others have none
+UNITS = {
+    "phi": "rad", "F_0": "N", "stiffness": "N/m",
+    "amplitude": "m/s", "lag": "s", "loading_time": "s",
+}  # fmt: skip
 EXCLUDED = 9.0  # sum of squares, in standard errors, by which presliding alone fits worse
 
 
@@ -193,9 +198,11 @@ def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
 
 
 def numbers(found: Analysis) -> dict[str, Any]:
-    """Return the fits to the creep."""
+    """Return the fits to the creep, with units."""
     fits = {"divergence": found.divergence, "misalignment": found.misalignment}
     return {
-        name: fit and {key: number(value) for key, value in fit._asdict().items()}
+        name: fit
+        and {key: number(value) for key, value in fit._asdict().items()}
+        | {"units": {key: UNITS.get(key.removesuffix("_error"), "1") for key in fit._fields}}
         for name, fit in fits.items()
     }

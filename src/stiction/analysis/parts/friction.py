@@ -128,8 +128,8 @@ def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
 
 
 def numbers(found: Analysis) -> dict[str, Any]:
-    """Return each friction as a table: force, coefficient, error and spread, or the reason."""
-    shown: dict[str, Any] = {"missing": found.friction.missing}
+    """Return each friction as a table of force, coefficient, errors and spreads, or the reason."""
+    shown: dict[str, Any] = {"missing": found.friction.missing, "units": FRICTION}
     for name in FRICTIONS:
         each = getattr(found.friction, name)
         shown[name] = each and {key: number(getattr(each, key)) for key in FRICTION}
