@@ -102,6 +102,7 @@ def _are_several(springs: Any) -> bool:
 FROM_SPRINGS = ("k_x", "k_y")  # follow from the springs in series, where there are several
 DRIVE = "ConstantVelocity | DriveProgram"
 CONSTANT = "st.ConstantVelocity('1 mm/s')"
+ANGLES = ("phi", "mass_angle", "damping_angle", "cell_angle")
 
 
 class Apparatus(Described):
@@ -405,6 +406,8 @@ class Slider(Apparatus):
                 found += error.faults
             raise DescriptionError(found)
         values = {name: getattr(self, name) for name in self.own_fields()}
+        # of one that was changed without a check, angles are plain numbers
+        values |= {name: Radians(values[name]) for name in ANGLES if values[name] is not None}
         if _are_several(changes.get("springs")):
             values = {name: each for name, each in values.items() if name not in FROM_SPRINGS}
         return type(self)(**(values | changes))

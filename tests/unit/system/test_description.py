@@ -7,6 +7,7 @@ from math import pi
 import pytest
 
 import stiction as st
+from stiction.system.parameter import change_unchecked
 from stiction.system.writing import parameter_table
 
 TOML = """
@@ -286,3 +287,9 @@ def test_all_faults_of_its_arguments_are_told_at_once():
         st.Description.of("slider.toml", initial=5, rtol=2.0, sampl_rate="1 kHz")
     told = [fault.path for fault in caught.value.faults]
     assert told == ["slider", "initial", "rtol", "sampl_rate"]
+
+
+def test_a_slider_that_was_changed_without_a_check_is_replaced_like_others():
+    """As where parameters are drawn: its angles are plain numbers."""
+    slider = change_unchecked(st.presets.nakano_popov_2020(), "phi", 0.1)
+    assert slider.replace(mass="1 kg") == slider.replace(mass="1 kg", phi="0.1 rad")
