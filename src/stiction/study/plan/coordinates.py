@@ -13,14 +13,15 @@ from pydantic_core import PydanticCustomError
 from stiction.arrays import TINY, Floats, Indices
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.study.plan.axes import Axis, Grid, Range
-from stiction.study.variables.measures import MEASURES
+from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES, trace_name
 from stiction.system import parameter
 from stiction.system.description import Description
 from stiction.text.paths import canonical_path
 from stiction.text.units import Kind, bare, in_words, span, to_si
 from stiction.text.validation import unknown_name
 
-TAKEN = {"status", "message", "time", *MEASURES}  # reserved names in a store
+# reserved names in a store; an old name is read as its new one
+TAKEN = {"status", "message", "time", *MEASURES, *FORMERLY, *map(trace_name, TRACES)}
 ROUNDING = 8.0 * np.finfo(float).eps  # relative: what a value on a grid may be off by
 DIGITS = 12  # of a value on a grid that somebody would write
 NAME = re.compile(r"\w[\w ,.-]*")
@@ -191,7 +192,7 @@ def decimals(values: Floats, off: Floats) -> Floats:
     """
     places = DIGITS - np.ceil(np.log10(np.maximum(np.abs(values), off / ROUNDING) + TINY))
     near = np.array([*map(round, values.tolist(), places.astype(int).tolist())])
-    return np.where(np.abs(near - values) <= off, near, values)
+    return np.where(np.abs(near - values) <= off, near, values) + 0.0  # no -0
 
 
 def coordinate_faults(

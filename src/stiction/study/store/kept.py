@@ -10,7 +10,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.study.plan.study import Study
-from stiction.study.variables.measures import MEASURES, TRACES
+from stiction.study.variables.measures import MEASURES, TRACES, trace_name
 from stiction.study.variables.observed_run import ObservedRun
 from stiction.study.variables.own import OwnMeasure
 
@@ -58,15 +58,11 @@ def stored_variables(study: Study) -> list[Kept]:
 
 def names_kept(study: Mapping[str, Any]) -> list[str]:
     """Return the names of the kept variables, from the table [study] of a description."""
-    return [*map(_measure_name, study["measures"]), *map(_trace_name, study["traces"])]
+    return [*map(_measure_name, study["measures"]), *map(trace_name, study["traces"])]
 
 
 def _measure_name(measure: str | Mapping[str, str]) -> str:
     return measure if isinstance(measure, str) else measure["function"].rpartition(":")[2]
-
-
-def _trace_name(name: str) -> str:
-    return f"{name}_trace"
 
 
 def _measure(name: str) -> Kept:
@@ -92,7 +88,7 @@ def _trace(name: str, count: int) -> Kept:
         return np.interp(at, run.time, known.of(run))
 
     labels = {"units": known.unit, "long_name": known.long_name}
-    return Kept(_trace_name(name), decimate, (count,), np.float64, nan, labels)
+    return Kept(trace_name(name), decimate, (count,), np.float64, nan, labels)
 
 
 def trace_times(study: Study) -> tuple[Floats, dict[str, str]]:

@@ -136,6 +136,11 @@ class Trace(NamedTuple):
     of: Callable[[ObservedRun], Floats]
 
 
+def trace_name(name: str) -> str:
+    """Return the name of a trace's variable in a store."""
+    return f"{name}_trace"
+
+
 TRACES: dict[str, Trace] = {
     "force": Trace("N", "spring force along x, k_x u_x", lambda run: run.force),
     "velocity": Trace("m/s", "velocity of the mass along X", lambda run: run.velocity),
