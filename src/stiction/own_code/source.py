@@ -10,6 +10,7 @@ import inspect
 import linecache
 import re
 import sys
+import threading
 import tokenize
 from collections.abc import Iterator
 from importlib.abc import InspectLoader
@@ -20,6 +21,8 @@ from types import CodeType, FunctionType, ModuleType
 from typing import Any, NamedTuple
 
 from stiction.errors import one_line
+
+_running = threading.RLock()  # a text may read a description whose law is a text
 
 
 class Text(NamedTuple):
@@ -72,9 +75,13 @@ def module_of(text: Text, path: str) -> ModuleType:
     Exception
         Whatever the text raises.
     """
-    name = module_name(text)
-    if name in sys.modules:
-        return sys.modules[name]
+    with _running:  # otherwise another thread would get a module that has not all its names yet
+        name = module_name(text)
+        return sys.modules.get(name) or _run(text, path, name)
+
+
+def _run(text: Text, path: str, name: str) -> ModuleType:
+    """Run a text as a module of this name."""
     spec = spec_from_loader(name, TextLoader(text, path), origin=path)
     assert spec is not None
     assert spec.loader is not None
@@ -233,9 +240,15 @@ def missing_names(text: str) -> list[str]:
     for node in nodes:
         match node:
             case (
-                ast.arg(arg=name) | ast.ExceptHandler(name=str(name)) | ast.MatchAs(name=str(name))
+                ast.arg(arg=name)
+                | ast.ExceptHandler(name=str(name))
+                | ast.MatchAs(name=str(name))
+                | ast.MatchStar(name=str(name))
+                | ast.MatchMapping(rest=str(name))
             ):
                 known.add(name)
+            case ast.ImportFrom(names=[ast.alias(name="*")]):
+                return []  # whatever it lacks may come from there
             case ast.FunctionDef() | ast.ClassDef() | ast.Import() | ast.ImportFrom():
                 known.update(_bound(node))
     return sorted({node.id for node in names} - known)

@@ -1,10 +1,14 @@
 """Measures of the user's own: kept like built-in ones, run only where they may be."""
 
+import copy
 import json
 import os
 import pickle
 import subprocess
 import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import wraps
 from pathlib import Path
 from typing import Annotated
 
@@ -19,6 +23,7 @@ from stiction.study.execution.cores import Cores
 from stiction.study.execution.engines import Threads
 from stiction.study.execution.repair import restore
 from stiction.study.store.store import ERROR
+from stiction.study.variables.own import measures_of_results
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="50 ms"))
 PHI = {"phi": st.Grid("1 deg", "3 deg", 3)}
@@ -73,6 +78,23 @@ def angle_in_wrong_unit(run) -> Annotated[float, "degg"]: ...
 def of_two(run, other): ...
 def period(run): ...
 def phi(run): ...
+def force_trace(run): ...
+def song(run): ...
+
+
+def twice(measure):
+    @wraps(measure)
+    def double(run):
+        return 2.0 * measure(run)
+
+    return double
+
+
+@twice
+@np.errstate(divide="ignore")
+def stick_density(run) -> Annotated[float, "mN"]:
+    """Decorated number."""
+    return run.statistics.stick_count / run.slider.mass
 
 
 @pytest.fixture
@@ -81,6 +103,10 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "mine.py").write_text(TEXT)
     (tmp_path / "study.toml").write_text(FILE + BASE.to_toml())
     yield tmp_path
+    forget()
+
+
+def forget():
     for name in [each for each in sys.modules if each.startswith("stiction_law_mine")]:
         del sys.modules[name]
 
@@ -106,6 +132,14 @@ def test_it_is_what_the_function_returns_for_the_run(tmp_path):
         np.testing.assert_allclose(data["highest"], data["peak_force"], rtol=5e-3)
         assert data["longest"].attrs == {"units": "s", "long_name": "Duration of the longest stick"}
         assert data["highest"].attrs == {"long_name": "highest"}
+
+
+def test_it_may_be_decorated(tmp_path):
+    st.sweep(of(stick_density), tmp_path / "a.zarr", engine=Threads(1))
+    with st.open_study(tmp_path / "a.zarr") as data:
+        assert data["stick_density"].attrs == {"units": "mN", "long_name": "Decorated number"}
+        run = st.run(of(stick_density).description((1,)))
+        assert data["stick_density"].values[1] == 2.0 * run.statistics.stick_count / run.slider.mass
 
 
 def test_a_file_names_it_by_file_and_function(folder):
@@ -172,13 +206,58 @@ def test_another_process_reads_its_numbers_and_runs_nothing(folder):
     assert (folder / "elsewhere" / "ran").exists()
 
 
+def study_of_others(folder):
+    """Return a study of a store as another process reads it: its measure is not run."""
+    text = st.Study.from_toml("study.toml").to_json()
+    (folder / "ran").unlink()
+    forget()
+    return st.Study.from_json(text)
+
+
+def test_no_copy_of_a_study_runs_what_it_may_not(folder):
+    study = study_of_others(folder)
+    again = [pickle.loads(pickle.dumps(study)), copy.deepcopy(study), study.replace(seed=1)]
+    assert not (folder / "ran").exists()
+    for each in again:
+        assert each.measures == study.measures
+        with pytest.raises(st.DescriptionError, match="not run without permission"):
+            st.sweep(each, "a.zarr")
+
+
+def test_what_a_trusted_text_lacks_is_told(folder):
+    text = study_of_others(folder).to_json().replace("mine.py:stuck", "mine.py:stick")
+    with pytest.raises(st.DescriptionError, match="unknown function 'stick'"):
+        st.Study.from_json(text, trust=True)
+
+
+def test_a_stored_measure_has_a_text(folder):
+    tables = study_of_others(folder).to_dict()
+    tables["study"]["measures"][1]["source"] = None
+    with pytest.raises(st.DescriptionError, match="neither a measure's name nor a function"):
+        st.Study.from_json(json.dumps(tables))
+
+
+def test_threads_that_read_it_at_once_get_the_whole_file(folder):
+    """Else one would find the module that another one has begun to run."""
+    text = f"import time\ntime.sleep(0.2)\n{TEXT}"
+    find = measures_of_results(trust=True)
+
+    def read(number):
+        time.sleep(0.05 * number)
+        return find("mine.py:stuck", text).function
+
+    with ThreadPoolExecutor(3) as pool:
+        found = [*pool.map(read, range(3))]
+    assert callable(found[0])
+    assert found == [found[0]] * 3
+
+
 def test_damage_is_computed_again_with_trust(folder):
     st.sweep(st.Study.from_toml("study.toml"), "a.zarr", engine=Threads(1))
     before = st.open_study("a.zarr").load()
     chunk = next((folder / "a.zarr" / "stuck" / "c").glob("*"))
     chunk.write_bytes(bytes(len(chunk.read_bytes())))
-    for name in [each for each in sys.modules if each.startswith("stiction_law_mine")]:
-        del sys.modules[name]
+    forget()
     with pytest.raises(st.DescriptionError, match="not run without permission"):
         restore(folder / "a.zarr")
     assert restore(folder / "a.zarr", trust=True)
@@ -250,6 +329,8 @@ def local_function():
         (of_two, "must take one argument"),
         (angle_in_wrong_unit, "the unit of angle_in_wrong_unit: 'degg' is not a known unit"),
         (period, "period has a meaning in every store"),
+        (force_trace, "force_trace has a meaning in every store"),
+        (song, "song has a meaning in every store"),
         (phi, "phi is the name of an axis, too"),
     ],
 )
@@ -323,12 +404,15 @@ def f(x, *rest, key=1, **more):
     for i, (j, k) in enumerate(more):
         del j
     match x:
-        case [first, *remaining] | {"k": first, **remaining} if (n := first):
-            pass
+        case [first, 1, *remaining] | {"k": first, **remaining} if (n := first):
+            remaining
+        case [_, *further]:
+            further
     return [np.mean(z) + circle + a + b + i + k + n + total for z in rest], key, file, lost, g
 def g(): return __file__, lambda q: q
 """
     assert missing_names(text) == ["lost", "other"]
+    assert not missing_names(f"from math import *\n{text}")
 
 
 def python(code: str, folder: Path) -> str:

@@ -113,7 +113,9 @@ def _reference(each: Any) -> Any:
     if isinstance(each, str) and ":" in each:
         return OwnMeasure(each, None)
     if isinstance(each, Mapping) and {*each} == {"function", "source"}:
-        return OwnMeasure(str(each["function"]), str(each["source"]))
+        function, source = each["function"], each["source"]
+        if isinstance(function, str) and isinstance(source, str):
+            return OwnMeasure(function, source)
     return each
 
 

@@ -338,9 +338,12 @@ class Study(Described):
         """Return the study as one JSON string."""
         return json.dumps(self.to_dict())
 
-    def __reduce__(self) -> tuple[Callable[[str], Study], tuple[str]]:
-        """Pickle as text, which other processes can read, including users' laws."""
-        return _from_text, (self.to_json(),)
+    def __reduce__(self) -> tuple[Callable[[str, bool], Study], tuple[str, bool]]:
+        """Pickle as text, which other processes can read, including users' laws.
+
+        Measures that may not be run here may not be run there.
+        """
+        return _from_text, (self.to_json(), not _without_function(self))
 
 
 def _faults_of_axes(unit_at: Callable[[str], str | None], axes: Any) -> list[Fault]:
@@ -349,9 +352,17 @@ def _faults_of_axes(unit_at: Callable[[str], str | None], axes: Any) -> list[Fau
     return [Fault(f"axes.{fault.path}", fault.message) for fault in found]
 
 
+def _without_function(study: Study) -> list[OwnMeasure]:
+    """Return the measures that may not be run."""
+    own = (each for each in study.measures if isinstance(each, OwnMeasure))
+    return [each for each in own if each.function is None]
+
+
 @lru_cache(maxsize=4)
-def _from_text(text: str) -> Study:
-    return Study.from_json(text, trust=True)
+def _from_text(text: str, trust: bool) -> Study:
+    raw, find = read_json(text), finder_for_results(trust=True)  # its law was made here
+    own = measures_of_results(trust)
+    return Study.from_dict(raw, find=find, locate=locate_nothing, find_measure=own)
 
 
 def _in_file(fault: Fault) -> Fault:
@@ -373,7 +384,6 @@ def study_of(source: Study | str | Path) -> Study:
     if not isinstance(source, Study):
         remedy = "make one with st.Study(...), or give the path of its file"
         raise DescriptionError.of("study", f"{echo(source)} is not a Study; {remedy}")
-    for each in source.measures:
-        if isinstance(each, OwnMeasure) and each.function is None:
-            raise refusal(each.reference)
+    for each in _without_function(source):
+        raise refusal(each.reference)
     return source

@@ -120,7 +120,7 @@ def number(value: Any, name: str) -> float:
 
 def raised_in(function: Any, error: BaseException) -> str:
     """Return what a user's function raised, and the last line of its file that led there."""
-    file = function.__code__.co_filename
+    file = inspect.unwrap(function).__code__.co_filename
     lines = [each.lineno for each in extract_tb(error.__traceback__) if each.filename == file]
     place = f"{Path(file.strip('<>')).name}, line {lines[-1]}: " if lines else ""
     return f"{place}{one_line(error)}"
@@ -162,7 +162,8 @@ def measures_of_results(trust: bool = False) -> FindMeasure:
             raise MEASURE.fault(f"{echo(reference)} was stored without its text")
         found = next(loaded_members(file, name, text), None)
         if found is None and trust:
-            found = member(module_of_text(file, text, MEASURE), name)
+            module = module_of_text(file, text, MEASURE)
+            return _measure_in(member(module, name), reference, vars(module))
         return OwnMeasure(reference, text, found if isinstance(found, FunctionType) else None)
 
     return find
@@ -231,11 +232,13 @@ def unit_of(function: Any) -> str:
     >>> unit_of(mean_angle)
     'deg'
     """
-    only = FunctionType(function.__code__, function.__globals__)
-    only.__annotations__ = {"return": function.__annotations__.get("return")}
-    name = function.__name__
+    inner, name = inspect.unwrap(function), function.__name__  # without its decorators
+
+    def only() -> Any: ...
+
+    only.__annotations__ = {"return": inner.__annotations__.get("return")}
     try:
-        hint = get_type_hints(only, include_extras=True)["return"]
+        hint = get_type_hints(only, inner.__globals__, include_extras=True)["return"]
     except Exception as error:  # the annotation may be any text
         told = f"what {name} returns is annotated wrongly: {one_line(error)}"
         raise ValueError(f"{told}; write: {WRITE}") from None
