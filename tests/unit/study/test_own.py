@@ -10,6 +10,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from functools import wraps
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Annotated
 
 import numpy as np
@@ -23,7 +24,7 @@ from stiction.study.execution.cores import Cores
 from stiction.study.execution.engines import Threads
 from stiction.study.execution.repair import restore
 from stiction.study.store.store import ERROR
-from stiction.study.variables.own import measures_of_results
+from stiction.study.variables.own import OwnMeasure, measures_of_results, own_measure
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="50 ms"))
 PHI = {"phi": st.Grid("1 deg", "3 deg", 3)}
@@ -72,6 +73,22 @@ def moody(run) -> float:
 def keep(run):
     KEPT.append(run)
     return 0.0
+
+
+def by_helper(run):
+    return moody(run)
+
+
+def as_text(run):
+    return "1.0"
+
+
+def interrupt(run):
+    raise KeyboardInterrupt
+
+
+def share(run) -> Annotated[float, "1"]:
+    return 0.5
 
 
 def angle_in_wrong_unit(run) -> Annotated[float, "degg"]: ...
@@ -163,6 +180,53 @@ def test_what_it_raises_leaves_the_other_measures(tmp_path):
         assert data["message"].values[1] == (
             f"moody: test_own.py, line {line}: RuntimeError: no such angle"
         )
+
+
+def test_all_that_raise_are_told_with_the_last_line_of_their_file(tmp_path):
+    st.sweep(of(moody, by_helper, as_text), tmp_path / "a.zarr", engine=Threads(1))
+    with st.open_study(tmp_path / "a.zarr") as data:
+        line = moody.__code__.co_firstlineno + 2
+        assert data["message"].values[1].split("; ")[:3] == [
+            f"moody: test_own.py, line {line}: RuntimeError: no such angle",
+            f"by_helper: test_own.py, line {line}: RuntimeError: no such angle",
+            "as_text returned '1.0'",
+        ]
+
+
+def test_a_run_with_too_few_samples_has_no_such_number():
+    assert np.isnan(own_measure(moody).value(SimpleNamespace(resolved=False)))
+
+
+def test_an_interrupt_passes_through():
+    with pytest.raises(KeyboardInterrupt):
+        own_measure(interrupt).value(SimpleNamespace(resolved=True, trajectory=None))
+
+
+def test_a_share_has_the_unit_1():
+    assert own_measure(share).unit == "1"
+
+
+def test_two_of_one_name_are_refused():
+    with pytest.raises(st.DescriptionError, match="2 measures are called share"):
+        of(share, OwnMeasure("other.py:share", "", share))
+
+
+def test_the_name_of_a_dimension_is_refused():
+    axes = {"phi": st.Values(["1 deg", "2 deg"], along="share")}
+    with pytest.raises(st.DescriptionError, match="share is the name of an axis, too"):
+        of(share, axes=axes)
+
+
+def test_a_text_in_a_study_s_file_is_not_run_without_trust(folder):
+    table = f"{{function = 'mine.py:stuck', source = {json.dumps(TEXT)}}}"
+    text = FILE.replace('"mine.py:stuck"', table)
+    (folder / "study.toml").write_text(text + BASE.to_toml())
+    study = st.Study.from_toml("study.toml")
+    with pytest.raises(st.DescriptionError, match="not run without permission"):
+        st.sweep(study, "a.zarr")
+    assert not (folder / "ran").exists()
+    st.Study.from_toml("study.toml", trust=True)
+    assert (folder / "ran").exists()
 
 
 def test_a_measure_must_return_one_number(folder):
