@@ -75,15 +75,14 @@ def module_of_text(file: str, text: str, role: Role) -> ModuleType:
     return _run(Text(_relative(file), text), f"<{file}>", role)
 
 
-def loaded_members(file: str, name: str, text: str) -> Iterator[Any]:
-    """Yield the objects of that name that this process has loaded from the same text."""
+def loaded_classes(file: str, name: str, text: str) -> Iterator[type[Any]]:
+    """Yield the classes of that name that this process has loaded from the same text."""
     ours, base = module_name(Text(file, text)), Path(file).name
     for key, module in list(sys.modules.items()):
         own = vars(module).get("__file__") if isinstance(module, ModuleType) else None
         if key in (ours, "__main__") or (isinstance(own, str) and Path(own).name == base):
             found = member(module, name)
-            defined = inspect.isclass(found) or inspect.isfunction(found)
-            known = text_of(found) if defined else None
+            known = text_of(found) if inspect.isclass(found) else None
             if known is not None and known.text == text:
                 yield found
 

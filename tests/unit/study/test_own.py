@@ -24,6 +24,7 @@ from stiction.study.execution.cores import Cores
 from stiction.study.execution.engines import Threads
 from stiction.study.execution.repair import restore
 from stiction.study.store.store import ERROR
+from stiction.study.variables import own
 from stiction.study.variables.own import OwnMeasure, measures_of_results, own_measure
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="50 ms"))
@@ -126,6 +127,7 @@ def folder(tmp_path, monkeypatch):
 def forget():
     for name in [each for each in sys.modules if each.startswith("stiction_law_mine")]:
         del sys.modules[name]
+    own._GIVEN.clear()
 
 
 def command(*words):
@@ -498,3 +500,33 @@ def test_the_store_s_description_holds_its_text(folder):
     with st.open_study("a.zarr") as data:
         kept = json.loads(data.attrs["description"])["study"]["measures"]
     assert kept == ["time_stuck", {"function": "mine.py:stuck", "source": TEXT}]
+
+
+def write_over(run):
+    run.samples["spring_x"][:] = 0.0
+    return 0.0
+
+
+def test_a_measure_does_not_change_what_others_see(tmp_path):
+    done = st.sweep(of(write_over, highest), tmp_path / "a.zarr", engine=Threads(1))
+    assert "ValueError" in done.first.message
+    with st.open_study(tmp_path / "a.zarr") as data:
+        assert (data["highest"] > 0.0).all()
+
+
+def test_a_store_cannot_name_any_function_that_is_loaded(tmp_path):
+    """Also one of the standard library takes one argument, and its text is known."""
+    import code
+
+    text = Path(code.__file__).read_text("utf-8")
+    raw = of("time_stuck").to_dict()
+    raw["study"]["measures"].append({"function": "code.py:interact", "source": text})
+    study = st.Study.from_json(json.dumps(raw))
+    assert study.measures[1].function is None
+    with pytest.raises(st.DescriptionError, match="not run without permission"):
+        st.sweep(study, tmp_path / "a.zarr")
+
+
+def test_a_function_that_a_study_was_given_is_known_in_this_process():
+    study = of(longest)
+    assert st.Study.from_json(study.to_json()).measures[0].function is longest

@@ -11,7 +11,7 @@ from stiction.friction.user.validation import fault, is_law, law_in, try_law
 from stiction.own_code.loading import (
     Role,
     errors_as_faults,
-    loaded_members,
+    loaded_classes,
     module_in_folder,
     module_of_text,
     split,
@@ -52,7 +52,7 @@ def finder_for_results(trust: bool = False) -> Find:
                 "after it was imported; write the law in a file, and describe or import it anew; "
                 "the arrays can be read with xarray.open_dataset"
             )
-        for candidate in loaded_members(file, kind, text):
+        for candidate in loaded_classes(file, kind, text):
             return is_law(candidate, name)  # the file may name any module and class
         if trust:
             return law_in(module_of_text(file, text, LAW), kind, name)

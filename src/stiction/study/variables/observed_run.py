@@ -109,7 +109,10 @@ class ObservedRun:
         """The run at its even samples, as `stiction.run` returns it, in memory of its own."""
         samples = self._thin_out(self.solution.samples)
         even = self.solution._replace(times=self.time, samples=samples)
-        return trajectory_of(self.description, even)
+        found = trajectory_of(self.description, even)
+        for column in found.samples.columns.values():  # several measures see them
+            column.values.flags.writeable = False
+        return found
 
     @cached_property
     def _columns(self) -> Floats:

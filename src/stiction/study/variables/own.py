@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, get_type_hints
 from stiction.errors import DescriptionError, StictionError, echo, one_line
 from stiction.own_code.loading import (
     Role,
-    loaded_members,
     module_in_folder,
     module_of_text,
     split,
@@ -34,6 +33,9 @@ WRITE = "def mean_angle(run) -> Annotated[float, 'deg']: ..."
 
 # from a measure's reference, and its text if stored, to the measure
 FindMeasure = Callable[[str, str | None], "OwnMeasure"]
+
+
+_GIVEN: dict[tuple[str, str], Callable[..., Any]] = {}  # to studies of this process
 
 
 class MeasureError(StictionError):
@@ -57,6 +59,11 @@ class OwnMeasure:
     reference: str
     source: str | None
     function: Callable[[Trajectory], Any] | None = field(default=None, compare=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Keep in mind that the function may be run in this process."""
+        if self.function is not None and self.source is not None:
+            _GIVEN[self.reference, self.source] = self.function
 
     def __str__(self) -> str:
         """Return the name."""
@@ -95,7 +102,7 @@ class OwnMeasure:
             return nan
         try:
             found = self.function(run.trajectory)
-        except KeyboardInterrupt:
+        except (KeyboardInterrupt, MemoryError):
             raise
         except BaseException as error:
             raise MeasureError(f"{self.name}: {raised_in(self.function, error)}") from None
@@ -153,18 +160,20 @@ def measures_in_folder(folder: Path, trust: bool = False) -> FindMeasure:
 def measures_of_results(trust: bool = False) -> FindMeasure:
     """Return a finder for measures of a store: it runs nothing unless `trust` is given.
 
-    A measure that may not be run has no function: what it returned can still be read and drawn.
+    But for functions that the user has given to a study in this process: a store may name any
+    function that is loaded. A measure that may not be run has no function: what it returned can
+    still be read and drawn.
     """
 
     def find(reference: str, text: str | None) -> OwnMeasure:
         file, name = split(reference, MEASURE)
         if not isinstance(text, str):
             raise MEASURE.fault(f"{echo(reference)} was stored without its text")
-        found = next(loaded_members(file, name, text), None)
+        found = _GIVEN.get((reference, text))
         if found is None and trust:
             module = module_of_text(file, text, MEASURE)
             return _measure_in(member(module, name), reference, vars(module))
-        return OwnMeasure(reference, text, found if isinstance(found, FunctionType) else None)
+        return OwnMeasure(reference, text, found)
 
     return find
 
