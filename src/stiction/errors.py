@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from contextvars import ContextVar
 from enum import Enum
 from pathlib import Path
 from reprlib import Repr
@@ -82,17 +81,17 @@ def without_middle(text: str, most: int) -> str:
     return text if len(text) <= most else f"{text[:half]}...{text[-half:]}"
 
 
-_terminal: ContextVar[bool] = ContextVar("_terminal", default=False)
+_terminals: list[bool] = []  # of the process: an error of one of its threads is read there, too
 
 
 @contextmanager
 def in_terminal() -> Iterator[None]:
     """Write commands in messages, for who types commands; others read Python."""
-    token = _terminal.set(True)
+    _terminals.append(True)
     try:
         yield
     finally:
-        _terminal.reset(token)
+        _terminals.pop()
 
 
 class Instruction(NamedTuple):
@@ -120,7 +119,7 @@ class Instruction(NamedTuple):
 
     def __str__(self) -> str:
         """Return what this reader types."""
-        return self.command if _terminal.get() else self.call
+        return self.command if _terminals else self.call
 
 
 class StictionError(Exception):

@@ -4,12 +4,22 @@ import ast
 import re
 from collections.abc import Callable
 from pathlib import Path
+from threading import Thread
 
 import numpy as np
 import pytest
 
 import stiction as st
-from stiction.errors import ECHOED, MOST, DescriptionError, Fault, Faults, echo
+from stiction.errors import (
+    ECHOED,
+    MOST,
+    DescriptionError,
+    Fault,
+    Faults,
+    Instruction,
+    echo,
+    in_terminal,
+)
 
 PAPER = st.presets.nakano_popov_2020()
 MANY = 20_000
@@ -208,3 +218,15 @@ def test_a_message_names_a_command_only_to_those_who_type_commands():
     # these name the function of Python beside the command; ready studies have none
     both = re.compile(r"st\.Rig|export\(\.\.\.\)|in a terminal")
     assert [text for text in found if not both.search(text)] == []
+
+
+def test_an_error_of_a_thread_is_told_where_the_command_was_typed():
+    """Chunks of a store are read by threads: their errors named calls of Python in a terminal."""
+    said = []
+    instruction = Instruction("stiction check", "st.check(path)")
+    thread = Thread(target=lambda: said.append(str(instruction)))
+    with in_terminal():
+        thread.start()
+        thread.join()
+    assert said == ["stiction check"]
+    assert str(instruction) == "st.check(path)"
