@@ -10,7 +10,7 @@ from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import Band, without_bands
 from stiction.analysis.signals.robust import block_means
 from stiction.errors import ResultError
-from stiction.inference.cycles import slip_cycles
+from stiction.inference.cycles import slip_cycles, usual_fall
 from stiction.inference.observation import (
     Conditions,
     Noise,
@@ -340,3 +340,10 @@ def test_behind_a_load_cell_that_rings_are_the_cycles_to_which_it_answered(
     one = rings.force[rings.cycles.before[0] + 20 : rings.cycles.peak[0] - 20]
     level = np.diff(one).std() / 2**0.5  # of means; of readings, noise is more at high frequencies
     assert 0.7 < rings.conditions.noise["force"].level / level < 2.0
+
+
+def test_the_usual_fall_is_that_of_half_of_the_squares():
+    """Of three falls of 1 and one of 2: 3 of 7 are not half."""
+    assert usual_fall(np.array([1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 2.0, 0.0])) == 2.0
+    assert usual_fall(np.array([1.0, 0.0] * 5 + [2.0, 0.0])) == 1.0
+    assert usual_fall(np.array([0.0, 1.0, 2.0])) == 0.0

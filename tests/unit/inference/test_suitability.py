@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ from stiction.inference.observation import observe
 from stiction.inference.priors import Normal, Uniform
 from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import plan
-from stiction.inference.suitability import explain_unlike, refuse_few
+from stiction.inference.suitability import dispute, explain_unlike, refuse_few
 
 RIG = st.Rig.from_toml(
     """
@@ -209,3 +210,21 @@ def test_too_few_simulations_are_refused_after_the_first(monkeypatch, usable, re
     assert asked == [fits.FIRST]
     fits.refuse_early(of, fits.FIRST, None, 0)
     assert asked == [fits.FIRST]
+
+
+@pytest.mark.parametrize(("theirs", "ours"), [(7, 5), (5, 7), (8, 5), (20, 15)])
+def test_counts_that_an_end_and_a_third_explain_are_not_disputed(theirs, ours):
+    assert dispute(*counts_in_common(theirs, ours), "the record") == ""
+
+
+@pytest.mark.parametrize(("theirs", "ours"), [(9, 5), (5, 9), (22, 15)])
+def test_counts_that_differ_by_more_are_told_with_their_time(theirs, ours):
+    said = dispute(*counts_in_common(theirs, ours), "the record")
+    assert f"In 10 s of the record an analysis counts {theirs} cycles, and the fit {ours}" in said
+
+
+def counts_in_common(theirs, ours):
+    """Cycles of an analysis, and the ends of a fit's, in the same 10 s."""
+    ends = np.linspace(0.0, 10.0, theirs + 1)
+    lasting = {"start": ends[:-1], "trough_time": ends[1:]}
+    return SimpleNamespace(lasting=lasting), np.linspace(0.0, 10.0, ours + 1)
