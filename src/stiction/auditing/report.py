@@ -128,7 +128,7 @@ class Audit(NamedTuple):
 
     @property
     def remedies(self) -> list[Remedy | Pair]:
-        """All changes of one and of two parameters: those that work first, the mildest at the head.
+        """All changes of one and of two parameters, those that work first, the mildest at the head.
 
         Milder is what changes by a smaller factor, see `stiction.auditing.advice.change_factor`.
         """

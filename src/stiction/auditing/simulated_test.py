@@ -113,7 +113,7 @@ class SimulatedTest:
 
     @cached_property
     def settled(self) -> float:
-        """When steady sliding is reached, s: its speed stays within 2 % of the drive's thereafter.
+        """When the speed comes to stay within 2 % of the drive's, s, which is steady sliding.
 
         NaN where that takes longer than the test.
         """

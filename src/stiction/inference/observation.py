@@ -82,7 +82,7 @@ class Noise(NamedTuple):
     lasting, lasts : float
         Standard deviation of noise that lasts, beside the white, and the time (s) within which its
         correlation falls by a factor of e.
-    cell : RingingCell or None
+    cell : tuple, optional
         The load cell, where it rings: the force to which it answered is restored, which smooths it
         and amplifies the noise.
     """

@@ -314,7 +314,7 @@ class Fit(Report):
 
     @property
     def meaningless(self) -> bool:
-        """Whether the values mean nothing: of other cycles, unlike records, or contradictory."""
+        """Whether the values mean nothing, as of other cycles, unlike records, or contradictory."""
         return bool(self.disputed) or self.farther < RARE or self.contradictory
 
     @property
