@@ -22,7 +22,7 @@ from stiction.system.initial import Initial
 from stiction.system.slider import FROM_SPRINGS, Slider
 from stiction.text.paths import canonical, keys_of
 from stiction.text.units import Quantity, hints_of, unit_of
-from stiction.text.validation import make, unknown_name
+from stiction.text.validation import fields_to_read, make, unknown_name
 
 Owner = TypeVar("Owner", Slider, Description)
 KINDS = {"slider": Slider, "drive": DriveProgram, "initial": Initial, "run": Settings}
@@ -202,7 +202,7 @@ def _unit(owner: Slider | Description, name: str) -> str:
 
 
 def _unit_of(part: Any, rooms: list[str], field: str) -> str:
-    its = _unit_in(_hints(_holder(part, field)).get(field))
+    its = _unit_in(hints_of(type(_holder(part, field))).get(field))
     room = next((each for each in rooms if each in LEVEL_UNITS), "")
     return its or (LEVEL_UNITS.get(room, "") if field in LEVELS else "")
 
@@ -243,10 +243,6 @@ def _value(owner: Slider | Description, name: str) -> float:
     if part is None:
         raise DescriptionError.of(name, "is not given")
     return float(part)
-
-
-def _hints(part: Any) -> dict[str, Any]:
-    return hints_of(type(part))
 
 
 def _fields(part: Any) -> tuple[str, ...]:
@@ -325,8 +321,4 @@ def _place(part: Any, keys: list[str], value: float) -> Any:
 
 def _field_values(part: Any) -> dict[str, Any]:
     """Return the fields of a part, ready to be read: angles with their unit."""
-    hints = _hints(part)
-    given = getattr(part, "_fields", None) or part.model_fields_set
-    values = {name: getattr(part, name) for name in given}
-    angles = [name for name in given if unit_of(hints.get(name)) == "rad"]
-    return {**values, **{name: f"{values[name]!r} rad" for name in angles}}
+    return fields_to_read(part, getattr(part, "_fields", None) or part.model_fields_set)

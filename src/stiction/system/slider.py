@@ -39,7 +39,7 @@ from stiction.system.writing import parameter_table, slider_tables
 from stiction.text.sections import Section, as_html
 from stiction.text.toml import Reader, folder_of, gather, read_slider, toml_text
 from stiction.text.units import Angle, Damping, Force, Mass, Radians, Stiffness
-from stiction.text.validation import Described, faulty, in_si
+from stiction.text.validation import Described, faulty, fields_to_read, in_si
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,7 +102,6 @@ def _are_several(springs: Any) -> bool:
 FROM_SPRINGS = ("k_x", "k_y")  # follow from the springs in series, where there are several
 DRIVE = "ConstantVelocity | DriveProgram"
 CONSTANT = "st.ConstantVelocity('1 mm/s')"
-ANGLES = ("phi", "mass_angle", "damping_angle", "cell_angle")
 
 
 class Apparatus(Described):
@@ -405,9 +404,7 @@ class Slider(Apparatus):
             except DescriptionError as error:
                 found += error.faults
             raise DescriptionError(found)
-        values = {name: getattr(self, name) for name in self.own_fields()}
-        # of one that was changed without a check, angles are plain numbers
-        values |= {name: Radians(values[name]) for name in ANGLES if values[name] is not None}
+        values = fields_to_read(self, self.own_fields())
         if _are_several(changes.get("springs")):
             values = {name: each for name, each in values.items() if name not in FROM_SPRINGS}
         return type(self)(**(values | changes))

@@ -41,6 +41,7 @@ from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import (
     QUANTITY,
     SMALLEST,
+    Radians,
     as_float,
     bare,
     fault,
@@ -126,9 +127,8 @@ class Described(BaseModel, metaclass=_Presented):
         DescriptionError
             As if it was made anew.
         """
-        stated = {name: getattr(self, name) for name in self.own_fields()}
-        stated = {name: value for name, value in stated.items() if name in self.model_fields_set}
-        return type(self)(**(stated | changes))
+        stated = [name for name in self.own_fields() if name in self.model_fields_set]
+        return type(self)(**(fields_to_read(self, stated) | changes))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
         """Return a copy with other fields, without what was derived from the old ones."""
@@ -154,6 +154,24 @@ class Described(BaseModel, metaclass=_Presented):
     def __str__(self) -> str:
         """Return the same as `repr`; the library would give angles without units."""
         return repr(self)
+
+
+def fields_to_read(part: Any, names: Iterable[str]) -> dict[str, Any]:
+    """Return fields of a part, ready to be read anew: angles with their unit.
+
+    Of a part that was changed without a check, angles are plain numbers.
+    """
+    values = {name: getattr(part, name) for name in names}
+    angles = (name for name in _angles_of(type(part)) if values.get(name) is not None)
+    return values | {name: Radians(values[name]) for name in angles}
+
+
+def _angles(kind: Any) -> tuple[str, ...]:
+    """Return the names of the fields of a class that are angles."""
+    return tuple(name for name, hint in hints_of(kind).items() if unit_of(hint) == "rad")
+
+
+_angles_of: Callable[[Any], tuple[str, ...]] = cache(_angles)  # a study makes a slider for each run
 
 
 def equal(one: object, other: object) -> bool:
