@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -28,15 +29,16 @@ from stiction.analysis.record import Record, as_record
 from stiction.analysis.rotation.findings import GROWING
 from stiction.arrays import TINY, xr
 from stiction.formats.table import number_of
-from stiction.names import draw, own_picture, page_of, warn_renamed
-from stiction.text.sections import Section, as_html, as_text
+from stiction.names import draw, page_of, warn_renamed
+from stiction.text.sections import Report, Section
 from stiction.trajectory import Trajectory
 
 HARMONICS = 10.0  # of the stick-slip; oscillations are sought above them
 BINS = 20.0  # least number in a stick phase for averages
 
 
-class Analysis(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class Analysis(Report):
     """The analysis of a run or a record; for each None, `missing` gives the reason.
 
     Parameters
@@ -100,10 +102,6 @@ class Analysis(NamedTuple):
             (self.source, self.record, str(self)) == (other.source, other.record, str(other))
         )
 
-    def __ne__(self, other: object) -> bool:
-        """Return the opposite; a tuple has its own."""
-        return not self == other
-
     @property
     def energy(self) -> xr.Dataset | None:
         """The energy budget of each cycle (`stiction.analysis.energy_budget`); for runs only."""
@@ -125,13 +123,6 @@ class Analysis(NamedTuple):
         found = f"{self.regime.kind}, {number_of(self.cycles.sizes['cycle'], 'cycle')}"
         missing = f"; missing: {', '.join(self.missing)}" if self.missing else ""
         return f"<Analysis: {found}{missing}>"
-
-    def __str__(self) -> str:
-        """Return the whole report as plain text."""
-        return as_text(self.tables())
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables()) + own_picture(self)
 
     def tables(self) -> list[Section]:
         """Return the report as sections of sentences and tables."""
@@ -223,7 +214,7 @@ def _with_parts(analysis: Analysis) -> Analysis:
     found = {
         name: attempt(missing, name, partial(find, analysis)) for name, find in functions("find")
     }
-    return _agreeing(analysis._replace(parts=analysis.parts | found, missing=missing))
+    return _agreeing(replace(analysis, parts=analysis.parts | found, missing=missing))
 
 
 def _agreeing(analysis: Analysis) -> Analysis:
@@ -236,7 +227,7 @@ def _agreeing(analysis: Analysis) -> Analysis:
         "grows (see Rotation of the force)"
     )
     missing = analysis.missing | {"misalignment": why}
-    return analysis._replace(misalignment=None, missing=missing)
+    return replace(analysis, misalignment=None, missing=missing)
 
 
 analyze = analyse

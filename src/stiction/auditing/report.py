@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
-from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.arguments import end_reading, read_together
-from stiction.arrays import same_values
+from stiction.arrays import same_fields
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
 from stiction.auditing.pairs import Pair, advise_pairs
@@ -40,10 +40,10 @@ from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
-from stiction.names import old_attributes, own_picture
+from stiction.names import old_attributes
 from stiction.system.description import Description
 from stiction.system.slider import Slider
-from stiction.text.sections import Section, as_html, as_text
+from stiction.text.sections import Report, Section
 
 if TYPE_CHECKING:  # a fit takes 0.3 s to import
     from stiction.auditing.measured import RecordComparison
@@ -56,7 +56,8 @@ FITTING = 0.8  # of the time of an audit with a measured record
 MORE = 12  # such parts of a tolerance budget
 
 
-class Audit(NamedTuple):
+@dataclass(frozen=True, eq=False, repr=False)
+class Audit(Report):
     """The audit of an apparatus before its friction tests are trusted.
 
     Parameters
@@ -104,16 +105,12 @@ class Audit(NamedTuple):
     chain: chain.Chain | None = None
     budget: Budget | None = None
     measured: RecordComparison | None = None
-    priors: Mapping[str, Prior] = MappingProxyType({})
+    priors: Mapping[str, Prior] = field(default_factory=dict)
     pairs: tuple[Pair, ...] = ()
 
     def __eq__(self, other: object) -> bool:
         """Compare what was predicted and simulated; NaN equals NaN."""
-        return isinstance(other, Audit) and all(map(same_values, self, other))
-
-    def __ne__(self, other: object) -> bool:
-        """Return the opposite; a tuple has its own."""
-        return not self == other
+        return same_fields(self, other)
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -134,13 +131,6 @@ class Audit(NamedTuple):
         """
         every: list[Remedy | Pair] = [*self.advices, *self.pairs]
         return sorted(every, key=lambda each: (not each.works, each.factor))
-
-    def __str__(self) -> str:
-        """Return the report as text."""
-        return as_text(self.tables())
-
-    def _repr_html_(self) -> str:
-        return as_html(self.tables()) + own_picture(self)
 
     @property
     def ok(self) -> bool:

@@ -3,6 +3,7 @@ import json
 import pickle
 import re
 from collections import Counter
+from dataclasses import replace
 from math import degrees
 
 import numpy as np
@@ -296,14 +297,14 @@ def test_a_fitted_friction_below_the_largest_force_is_doubted(found) -> None:
     said = "\n".join(creep.section(found).sentences)
     assert " ± " in said.partition("F_0 = ")[2]
     assert "too small" not in said
-    small = found._replace(misalignment=found.misalignment._replace(F_0=1.9))
+    small = replace(found, misalignment=found.misalignment._replace(F_0=1.9))
     assert "too small: the force itself reaches 1.99" in "\n".join(creep.section(small).sentences)
 
 
 def test_no_sentence_counts_with_a_wild_sample(found) -> None:
     wild = found.record.model_copy(update={"force": found.record.force.copy()})
     wild.force[30_000] = 99.9
-    small = found._replace(record=wild, misalignment=found.misalignment._replace(F_0=1.9))
+    small = replace(found, record=wild, misalignment=found.misalignment._replace(F_0=1.9))
     assert "too small: the force itself reaches 1.99" in "\n".join(creep.section(small).sentences)
     time = np.arange(0.0, 20.0, 1e-3)
     spiked = 0.4 + 0.1 * (time % 2.0)

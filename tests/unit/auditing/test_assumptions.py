@@ -1,3 +1,4 @@
+from dataclasses import replace
 from math import asin, cos, hypot, pi, radians, sin, sqrt
 
 import pytest
@@ -96,7 +97,7 @@ def test_only_the_creep_is_marked_where_only_it_is_off():
 def test_every_number_of_eqs_7_and_10_is_marked_where_creep_ends_early():
     p = predict(VERY_SLOW)
     seen = simulate_test(VERY_SLOW, p, growth_rate(VERY_SLOW), sample_rate=coarse_rate(p))
-    found = st.audit(PAPER)._replace(slider=VERY_SLOW, prediction=p, observation=seen)
+    found = replace(st.audit(PAPER), slider=VERY_SLOW, prediction=p, observation=seen)
     rows = {row[0]: row[1] for row in numbers(found).rows}
     assert rows["creep before the first slip"].startswith("~ 39.8")
     assert rows["time until the first slip"].startswith("~ ")

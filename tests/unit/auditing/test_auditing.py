@@ -2,6 +2,7 @@ import json
 import re
 from base64 import b64decode
 from copy import copy
+from dataclasses import replace
 from html import unescape
 from math import atan2, cos, degrees, hypot, inf, isnan, nan, pi, radians, sin, sqrt
 from types import SimpleNamespace
@@ -386,7 +387,8 @@ def test_the_nearest_stable_stretch_is_advised():
     ],
 )
 def test_every_end_of_a_window_of_misalignments_is_said(found, slider, said):
-    changed = found._replace(
+    changed = replace(
+        found,
         slider=slider,
         prediction=predict(slider),
         sliding=steady_sliding(slider),
@@ -487,7 +489,7 @@ def test_what_cannot_be_audited_or_written_says_why(tmp_path, capsys):
 
 
 def test_a_percentage_as_coefficient_comes_first(found):
-    first, *others = verdict(found._replace(slider=PAPER.replace(friction=st.Coulomb(40.0))))
+    first, *others = verdict(replace(found, slider=PAPER.replace(friction=st.Coulomb(40.0))))
     assert "if a percentage is meant, write 0.4" in first
     assert others == verdict(found)
 
@@ -714,11 +716,14 @@ def test_the_loading_ends_where_the_force_is_largest():
 
 def test_the_margin_of_a_rig_on_the_boundary_does_not_contradict_it(found):
     aligned = PAPER.replace(phi="0 deg", friction=st.Coulomb(mu_0=0.45))
-    other = found._replace(
-        slider=aligned, sliding=steady_sliding(aligned), misalignment=critical(aligned, "phi")
+    other = replace(
+        found,
+        slider=aligned,
+        sliding=steady_sliding(aligned),
+        misalignment=critical(aligned, "phi"),
     )
     assert margin(other) == "At any other φ from 0 deg to 90 deg steady sliding is stable."
-    neutral = other._replace(misalignment=other.misalignment._replace(neutral=True))
+    neutral = replace(other, misalignment=other.misalignment._replace(neutral=True))
     always = "No misalignment changes that: so it is at every φ from 0 deg to 90 deg."
     assert margin(neutral) == always
 
@@ -936,7 +941,7 @@ def test_a_stability_that_lasts_no_test_is_said_to():
     """Where a disturbance of 1 % oscillates in the test, "stable" says which are meant."""
     found = short(PAPER.replace(phi="10 deg"))
     assert stability(found).startswith("Steady sliding is stable: small disturbances decay")
-    kicked = found._replace(sliding_on=seen_otherwise(found.sliding_on, comes_to=OSCILLATES))
+    kicked = replace(found, sliding_on=seen_otherwise(found.sliding_on, comes_to=OSCILLATES))
     assert not kicked.bistable
     assert "stable only to disturbances far below 1 %" in stability(kicked)
     assert "in a test it does not last" in stability(kicked)
@@ -957,7 +962,7 @@ def test_means_of_cycles_have_the_digits_of_their_errors(found):
     uneven = CycleTable(dict(rest.table.columns) | {"drop": drop}, rest.table.least)
     said = []
     for seen in (rest, seen_otherwise(rest, table=uneven)):
-        rows = {row[0]: row[2] for row in numbers(found._replace(observation=seen)).rows}
+        rows = {row[0]: row[2] for row in numbers(replace(found, observation=seen)).rows}
         said.append(rows["force drop, mean"])
     # of the paper 824.0 mN, alike in all cycles; then its six have an error of 25 mN
     assert said == ["824.0 mN", "820 mN"]
@@ -983,7 +988,7 @@ def test_a_change_whose_test_ends_too_early_is_not_decided(found):
     assert final_motion(tried) == said
     undecided = found.advices[0]._replace(tried=tried)
     assert _change(found, undecided)[-1] == f"not decided: {said}"
-    lines, _ = changes(found._replace(advices=(undecided,)))
+    lines, _ = changes(replace(found, advices=(undecided,)))
     assert lines[0].startswith("None of these is seen to make it slide steadily.")
 
 
@@ -994,7 +999,7 @@ def test_the_paper_s_audit_breaks_no_rule(rule, found):
 
 def test_rules_see_what_contradicts(found):
     """A rule that cannot be broken says nothing: an unstable rig, called one without advice."""
-    silent = found._replace(advices=())
+    silent = replace(found, advices=())
     broken = {rule.__name__ for rule in RULES if not rule(silent)}
     assert "nothing_to_change" in broken
 

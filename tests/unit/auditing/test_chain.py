@@ -1,5 +1,6 @@
 """What an audit says of springs in series, against NumPy and simulations of a single spring."""
 
+from dataclasses import replace
 from math import inf, isinf, pi
 
 import numpy as np
@@ -67,7 +68,7 @@ def test_shares_are_of_what_each_axis_yields(found):
     side = CHAIN.replace(springs=[st.Spring("a", "rigid", 1e3, "80 deg"), *CHAIN.springs])
     assert softest_path(side) == "springs.a.k_y"
     soft = [CHAIN.springs[1], st.Spring("leaf springs", 1e3, 1e6)]
-    line = chain_sections(found._replace(chain=examine(CHAIN.replace(springs=soft), 0)))[0]
+    line = chain_sections(replace(found, chain=examine(CHAIN.replace(springs=soft), 0)))[0]
     assert "The softest is: leaf springs, with 98 % of the compliance along x and 83 %" in str(line)
 
 
@@ -76,11 +77,11 @@ def test_a_compliance_is_told_as_such(found):
     soft = CHAIN.replace(springs=[*CHAIN.springs[:2], leaf])
     path = softest_path(soft)
     assert path == "springs.leaf-springs.compliance_x"
-    assert name_of(found._replace(slider=soft), path) == "compliance_x of the leaf springs"
+    assert name_of(replace(found, slider=soft), path) == "compliance_x of the leaf springs"
     values = list(further(soft, path))
     assert values == sorted(values, reverse=True)
     assert values[0] == 0.00042  # half of it, in two digits: less of it is stiffer
-    table = chain_sections(found._replace(chain=examine(soft, 0)))[0].table
+    table = chain_sections(replace(found, chain=examine(soft, 0)))[0].table
     assert table.rows[2][1:3] == ("1.2 kN/m", "30 MN/m")
 
 
@@ -115,7 +116,7 @@ def test_the_first_row_is_the_apparatus_as_it_is(found):
     assert first[6] == final_motion(found.observation)
     assert len(sections[1].table.rows) == 7
     assert sections == found.tables()[-2:]
-    assert chain_sections(found._replace(chain=None)) == []
+    assert chain_sections(replace(found, chain=None)) == []
     assert found.ok
 
 

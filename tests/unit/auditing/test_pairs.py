@@ -118,7 +118,7 @@ def random_rig(rng):
 def test_work_that_is_used_up_is_said(pin):
     none = tuple(pairs.advise_pairs(pin.slider, LEAST_WORK - 1))
     assert [each.cut for each in none] == [True, True]
-    what = sections(pin._replace(pairs=none))[-1]
+    what = sections(replace(pin, pairs=none))[-1]
     assert [row[-1] for row in what.table.rows[-2:]] == ["not tried", "not tried"]
     assert any(each.startswith("Values farther") for each in what.sentences)
 
@@ -126,7 +126,7 @@ def test_work_that_is_used_up_is_said(pin):
 def test_where_no_pair_slides_steadily_the_range_is_told(pin, monkeypatch):
     monkeypatch.setattr(pairs, "nearest_pairs", lambda *_: iter(()))
     none = tuple(pairs.advise_pairs(pin.slider, 10 * LEAST_WORK))
-    row = sections(pin._replace(pairs=none))[-1].table.rows[-1]
+    row = sections(replace(pin, pairs=none))[-1].table.rows[-1]
     assert row[2:] == ("nowhere", "to 45 deg and 1000 times", "no values in that range")
 
 
@@ -168,7 +168,7 @@ def test_a_pair_whose_simulation_was_cut_or_whose_slide_is_unstable_is_no_remedy
     """Such an audit is not whole, and the pair is not advised."""
     speed, stiffness = pin.pairs
     cut = SimulatedTest(st.simulate(pin.slider, "1 s", max_steps=100), growth=-1.0)
-    seen = pin._replace(pairs=(speed._replace(tried=cut), stiffness))
+    seen = replace(pin, pairs=(speed._replace(tried=cut), stiffness))
     assert (pin.ok, seen.ok) == (True, False)
     what = sections(seen)[-1]
     row = next(row for row in what.table.rows if row[0] == "misalignment φ, drive velocity V")

@@ -124,7 +124,7 @@ def test_creep_leaves_out_stick_phases_in_which_the_drive_pauses(holds):
     assert found.curves.attrs["left_out"] == 4
     assert np.isnan(found.curves["velocity"]).all("bin").sum() == 4
     assert "Left out: 4 stick phases, in which the drive pauses" in str(found)
-    one = found._replace(curves=found.curves.assign_attrs(left_out=1))
+    one = replace(found, curves=found.curves.assign_attrs(left_out=1))
     assert "Left out: 1 stick phase, in which the drive pauses" in str(one)
 
 

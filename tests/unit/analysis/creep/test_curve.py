@@ -1,6 +1,7 @@
 """Creep curves against Eq. (7), from runs and from noisy records."""
 
 import re
+from dataclasses import replace
 from math import isnan, radians
 
 import numpy as np
@@ -661,7 +662,7 @@ def test_a_bound_of_creep_above_the_drive_s_velocity_says_nothing(paper_run, err
     found = st.analyse(paper_run)
     rests = 0.0 * found.creep["velocity"]
     off = rests + error * paper_run.slider.drive_speed
-    hidden = found._replace(creep=found.creep.assign(velocity=rests, velocity_error=off))
+    hidden = replace(found, creep=found.creep.assign(velocity=rests, velocity_error=off))
     said = " ".join(creep_part.section(hidden).sentences)
     assert ("creeps no faster than" in said) == known
     assert ("Its creep is not determined" in said) != known
@@ -776,7 +777,7 @@ def test_the_fitted_line_knows_the_spring_across():
     stiffness = found.misalignment.stiffness
     assert isnan(stiffness)  # the mass is seen to move, so that it is that of the record
     softer = found.record.model_copy(update={"stiffness_across": 4.0 * K})
-    line = _creep_lines(found._replace(record=softer), V)["Eq. (7), fitted"]
+    line = _creep_lines(replace(found, record=softer), V)["Eq. (7), fitted"]
     middle, force = 0.5 * (found.creep["begin"] + found.creep["end"]), found.creep["force"]
     at = middle.values > 0.2 * L_X / V
     expected = V * implied_velocity(found.misalignment, force.values[at], 0.25)
@@ -792,12 +793,12 @@ def test_a_misalignment_within_its_error_has_no_line(only_loading):
     fit = only_loading.misalignment
     for error, lines in ((0.45, 2), (0.55, 0)):
         unsure = fit._replace(phi_error=error * abs(fit.phi))
-        assert len(_creep_lines(only_loading._replace(misalignment=unsure), V)) == lines
+        assert len(_creep_lines(replace(only_loading, misalignment=unsure), V)) == lines
 
 
 def test_the_fitted_line_begins_where_the_fit_does_and_has_its_stiffness(only_loading):
     fit = only_loading.misalignment._replace(stiffness=2.0 * K)
-    found = only_loading._replace(misalignment=fit)
+    found = replace(only_loading, misalignment=fit)
     begins = 0.05 * fit.F_0 / (2.0 * K) / V
     at = begins * np.array([0.98, 1.02])
     drawn = _creep_lines(found, V)["Eq. (7), fitted"](at)
@@ -814,7 +815,7 @@ def test_the_line_of_eq_8_is_of_the_loading_from_its_begin_and_at_the_load(only_
     other = its.model_copy(update={"time": time + 0.5, "load": load})
     (near,) = (
         line
-        for name, line in _creep_lines(only_loading._replace(record=other), V).items()
+        for name, line in _creep_lines(replace(only_loading, record=other), V).items()
         if "Eq. (8)" in name
     )
     fit, lasts = only_loading.misalignment, float(only_loading.curves["slip_time"][0]) - 0.5

@@ -1,5 +1,7 @@
 """What a record says of its apparatus, on records whose answer is known."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from benchmarks.explore.draw import Draw
@@ -90,7 +92,7 @@ def test_no_sentence_agrees_with_what_is_not_determined(monkeypatch):
         each._replace(error=each.found) if each.quantity == "stiffness over mass" else each
         for each in found.parts["metadata"]
     ]
-    shown = parts_of_metadata.section(found._replace(parts={**found.parts, "metadata": tuple(its)}))
+    shown = parts_of_metadata.section(replace(found, parts={**found.parts, "metadata": tuple(its)}))
     assert shown.sentences[0] == (
         "The record agrees with stiffness times drive velocity as stated."
     )
