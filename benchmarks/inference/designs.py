@@ -30,9 +30,9 @@ from stiction.inference.next_test.design import expectations, split
 from stiction.inference.next_test.expected import Expected, fill_in, typical
 from stiction.inference.next_test.further import Further, Wanted, further_tests
 from stiction.inference.observation import Conditions
-from stiction.inference.progress import silent
 from stiction.inference.simulated.library import have_cycles, simulate_all
 from stiction.inference.simulated.plan import Plan
+from stiction.progress.report import silent
 
 LEARNED = 0.75  # share of the rigs from which is learned; the others are fitted
 OF = "phi"

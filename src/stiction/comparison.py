@@ -20,6 +20,7 @@ from stiction.friction.law import static_coefficient
 from stiction.friction.user.loading import finder_for_descriptions
 from stiction.machine import shortage
 from stiction.names import draw
+from stiction.progress.audience import with_progress
 from stiction.result.rest import REST
 from stiction.simulation import MOST_STEPS, automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
@@ -115,6 +116,7 @@ def add_sample_rate(description: Description) -> Description:
 
 
 @read_together
+@with_progress("simulating")
 def compare(
     description: Description | str | Path,
     laws: Sequence[Law | Mapping[str, Any] | str | Path],
@@ -137,7 +139,8 @@ def compare(
     max_steps : int, optional
         Limit of the steps of each run.
     progress : callable, optional
-        Called with the fraction of all runs done.
+        Called with the fraction of all runs done; without it, a terminal or a notebook shows a
+        bar or lines.
 
     Returns
     -------

@@ -15,6 +15,7 @@ from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.errors import STATUSES, DescriptionError, Fault, Faults, Status
 from stiction.friction import has_state, states
+from stiction.progress.audience import with_progress
 from stiction.result.file import SHORTEST
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
 from stiction.solver.accuracy import tolerance
@@ -34,6 +35,7 @@ ROUNDING = 1e-12  # of a duration: a time that is nearer to the end is the end
 
 
 @read_together
+@with_progress("simulating")
 def simulate(
     slider: Slider,
     duration: Quantity | None = None,
@@ -95,7 +97,8 @@ def simulate(
     max_steps : int, optional
         Give up after so many steps.
     progress : callable, optional
-        Called with the fraction done, about 20 times a second.
+        Called with the fraction done, about 20 times a second; without it, a terminal or a
+        notebook shows a bar or lines where a run takes long.
 
     Returns
     -------
@@ -139,6 +142,7 @@ def simulate(
 
 
 @read_together
+@with_progress("simulating")
 def run(
     description: Description | str | Path,
     *,

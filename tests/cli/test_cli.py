@@ -17,9 +17,10 @@ from tests.waiting import INTERRUPTIBLE, PATIENCE, until
 
 import stiction as st
 from stiction.__main__ import main as start
-from stiction.cli import COMMANDS, app, main, progress
+from stiction.cli import COMMANDS, app, main
 from stiction.cli.commands.run import report_lines
 from stiction.cli.tokens import join_negative_values
+from stiction.progress import display as progress
 
 # runs the command, and says so once the simulation is on its way
 TOLD = """
@@ -481,7 +482,7 @@ def test_work_that_lasts_says_so_through_a_pipe(capsys, monkeypatch):
     monkeypatch.setattr(progress, "FIRST", 0.01)
     lines = []
     monkeypatch.setattr(progress, "print_line", lines.append)
-    with progress.progress("simulating") as report:
+    with progress.show_progress("simulating") as report:
         report(0.5)
         until(lambda: bool(lines), "the first line")
     assert lines[0].startswith("simulating: ")
@@ -493,9 +494,9 @@ def test_a_terminal_shows_no_percentage_of_work_whose_share_is_not_told(monkeypa
     """An analysis of 4 million samples showed "0 %" for half a minute."""
     screen = StringIO()
     terminal = Console(file=screen, force_terminal=True, width=100)
-    monkeypatch.setattr(progress, "Console", lambda **_: terminal)
+    monkeypatch.setattr("rich.console.Console", lambda **_: terminal)
     monkeypatch.setattr(progress, "PATIENCE", 0.0)
-    with progress.progress("analysing") as report:
+    with progress.show_progress("analysing") as report:
         until(lambda: "analysing" in screen.getvalue(), "the bar")
         assert "%" not in screen.getvalue()
         report(0.25)
@@ -522,7 +523,7 @@ def noted(monkeypatch):
         begun.append(title)
         yield lambda fraction: None
 
-    monkeypatch.setattr(progress, "progress", note)
+    monkeypatch.setattr(progress, "show_progress", note)
     return begun
 
 
@@ -599,7 +600,7 @@ def test_ctrl_c_is_the_end_of_the_explorer(monkeypatch, capsys, source):
 
 
 def test_work_that_is_over_soon_says_nothing(capsys):
-    with progress.progress("simulating") as report:
+    with progress.show_progress("simulating") as report:
         report(1.0)
     assert capsys.readouterr() == ("", "")
 

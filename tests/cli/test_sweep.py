@@ -17,7 +17,8 @@ from tests.waiting import INTERRUPTIBLE, PATIENCE, until
 
 import stiction as st
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
-from stiction.cli import main, progress, tally
+from stiction.cli import main, tally
+from stiction.progress import display as progress
 from stiction.study.variables.measures import MEASURES
 from stiction.study.view.view import kinds
 

@@ -33,9 +33,9 @@ from stiction.auditing.tolerance import (
     turn_to,
 )
 from stiction.inference.priors import Normal, Prior, Uniform
-from stiction.inference.progress import silent
 from stiction.inference.simulated.restriction import is_allowed
 from stiction.linear_stability import growth_rate
+from stiction.progress.report import silent
 
 FINER = 10.0  # times the samples of a budget's own tests
 MOST_STEPS = 3_000_000  # of a test

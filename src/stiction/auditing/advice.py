@@ -11,8 +11,8 @@ import numpy as np
 from stiction.auditing.chain import softest_path
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import LEAST_WORK, SLIDES, SimulatedTest, simulate_coarsely
-from stiction.inference.progress import Progress, part, silent
 from stiction.linear_stability import Critical, critical
+from stiction.progress.report import Progress, part, silent
 from stiction.system.parameter import change_parameter, quantity, read, unit
 from stiction.system.slider import Slider
 from stiction.system.springs import COMPLIANCES

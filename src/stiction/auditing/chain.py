@@ -12,7 +12,7 @@ from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import LEAST_WORK, SimulatedTest, simulate_coarsely
 from stiction.errors import DescriptionError
-from stiction.inference.progress import Progress, part, silent
+from stiction.progress.report import Progress, part, silent
 from stiction.system.slider import Slider
 from stiction.system.springs import COMPLIANCES, STIFFNESSES, Spring, compliance, scale_stiffness
 

@@ -24,11 +24,11 @@ from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit, middle
 from stiction.inference.predictive import Predictive, predict
-from stiction.inference.progress import silent
 from stiction.inference.rig import Rig
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.simulated.synthetic import NOT_OF_THE_SLIDER
+from stiction.progress.report import silent
 from stiction.system.load_cell import stiffness_of_cell
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider

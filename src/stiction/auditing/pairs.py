@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from stiction.auditing.advice import change_factor, few_digits, holds, try_change
 from stiction.auditing.simulated_test import LEAST_WORK, SimulatedTest
-from stiction.inference.progress import Progress, part, silent
 from stiction.linear_stability.linear import growth_at
+from stiction.progress.report import Progress, part, silent
 from stiction.system.parameter import change_parameter, change_unchecked, quantity, read, unit
 from stiction.system.slider import Slider
 

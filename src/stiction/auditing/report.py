@@ -35,12 +35,13 @@ from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
-from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
 from stiction.names import old_attributes
+from stiction.progress.audience import with_progress
+from stiction.progress.report import Progress, part, silent
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.text.sections import Report, Section
@@ -180,6 +181,7 @@ class Audit(Report):
 
 
 @read_together
+@with_progress("auditing")
 def audit(
     slider: Slider | Description | Rig | str | Path,
     progress: Callable[[float], None] | None = None,
@@ -197,7 +199,7 @@ def audit(
         state and settings of a description are ignored. Where a parameter is uncertain, as in
         ``phi = "2 +- 1 deg"``, the audit ends with a tolerance budget.
     progress : callable, optional
-        Called with the fraction done.
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
     record : Record, str or Path, optional
         A measured record of the apparatus, whose description states what is uncertain: the audit
         begins with what it says, by a fit (`stiction.fit`) and simulations with its parameters.

@@ -20,8 +20,8 @@ from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, across_force, record_of
 from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
-from stiction.inference.progress import Progress, silent
 from stiction.linear_stability import Linearisation, growth_rate
+from stiction.progress.report import Progress, silent
 from stiction.simulation import simulate
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider

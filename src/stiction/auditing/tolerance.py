@@ -17,9 +17,9 @@ from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, simulate_coarsely
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
-from stiction.inference.progress import Progress, silent
 from stiction.inference.rig import Rig
 from stiction.inference.simulated.restriction import is_allowed
+from stiction.progress.report import Progress, silent
 from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider

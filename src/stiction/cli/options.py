@@ -233,10 +233,10 @@ def source_in(
 ) -> Trajectory | Record:
     """Read a run, or a measured record; a bar is shown while that takes long."""
     from stiction.analysis.measurement.reading import read_source
-    from stiction.cli.progress import progress
+    from stiction.progress.display import show_progress
 
     said = (measured or RecordOptions()).arguments()
-    with progress("reading"):
+    with show_progress("reading"):
         return read_source(path, trust=trust, rig_load=rig_load, **said)
 
 

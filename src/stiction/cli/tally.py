@@ -14,8 +14,8 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, Task, TextColumn, TimeElapsedColumn
 from rich.text import Text
 
-from stiction.cli.progress import in_time, line, now_and_then, print_line
 from stiction.cli.terminal import say
+from stiction.progress.display import in_time, line, now_and_then, print_line
 
 if TYPE_CHECKING:
     from stiction.study.execution.sweep import Tally
@@ -35,7 +35,7 @@ def show_tally(quiet: bool, json_lines: bool) -> Iterator[tuple[Report | None, C
     if json_lines:
         yield _at_most_every(JSON_EVERY, _print_tally), _print_summary
     elif quiet:
-        yield None, _tell_failures
+        yield lambda tally: None, _tell_failures
     else:
         with _bar() as report:
             yield report, _tell

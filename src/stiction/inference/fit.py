@@ -19,7 +19,6 @@ from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import Conditions, Observation, Source, observe_all, sign_seen
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
-from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
@@ -27,6 +26,8 @@ from stiction.inference.simulated.library import Library, build, library_folder,
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import ANALYSE
+from stiction.progress.audience import with_progress
+from stiction.progress.report import Progress, part, silent
 from stiction.recording.part import begin_and_end
 from stiction.system.slider import Slider
 
@@ -37,6 +38,7 @@ FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is lear
 
 
 @read_together
+@with_progress("simulating and learning")
 def fit(
     records: Source | Sequence[Source],
     rig: Rig | str | Path,
@@ -72,7 +74,7 @@ def fit(
     seed : int, optional
         Of the simulations.
     progress : callable, optional
-        Called with the fraction done.
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
 
     Returns
     -------

@@ -24,6 +24,7 @@ from stiction.media.scene import Scene, slowest_slip
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
 from stiction.plotting.run.lines import BAND, draw_line, envelope
 from stiction.plotting.run.time_series import STILL, say_only
+from stiction.progress.audience import with_progress
 from stiction.result.table import ColumnTable, sample_table
 from stiction.result.window import time_in, window_of
 from stiction.simulation import automatic_times, solve_coarsely
@@ -105,6 +106,7 @@ class Screening(Described):
     length: Duration
 
 
+@with_progress("filming")
 def animate(
     run: Trajectory | str | Path,
     *,
@@ -134,7 +136,7 @@ def animate(
     trust : bool, optional
         For a file; see `stiction.load`.
     progress : callable, optional
-        Called with the fraction done.
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
 
     Returns
     -------

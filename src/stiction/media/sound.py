@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats, same_fields
 from stiction.errors import Faults, ResultError, echo
+from stiction.progress.audience import with_progress
 from stiction.result.table import sample_table
 from stiction.result.window import window_of
 from stiction.simulation import solve_coarsely
@@ -92,6 +93,7 @@ class Passage(NamedTuple):
     axis: str
 
 
+@with_progress("listening")
 def listen(
     run: Trajectory | str | Path,
     *,
@@ -119,7 +121,7 @@ def listen(
     trust : bool, optional
         For a file; see `stiction.load`.
     progress : callable, optional
-        Called with the fraction done.
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
 
     Returns
     -------

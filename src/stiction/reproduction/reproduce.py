@@ -12,6 +12,7 @@ from stiction import presets
 from stiction.errors import StictionError, echo
 from stiction.friction.laws import Coulomb
 from stiction.plotting.page.save import save
+from stiction.progress.audience import with_progress
 from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
 from stiction.reproduction.numbers import NumberTable, numbers
@@ -55,6 +56,7 @@ class Reproduction(NamedTuple):
         return [] if self.table is None else [self.table.section]
 
 
+@with_progress("simulating and drawing")
 def paper(
     output: str | Path = "paper-output",
     figure: Literal[3, 4, 5] | None = None,
@@ -69,7 +71,7 @@ def paper(
     figure : {3, 4, 5}, optional
         Only this figure; by default all of them, and the table.
     progress : callable, optional
-        Called with the fraction done.
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
 
     Returns
     -------

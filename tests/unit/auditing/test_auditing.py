@@ -54,8 +54,8 @@ from stiction.auditing.words.verdict import (
 )
 from stiction.cli import main
 from stiction.inference.mechanism.rest import Rest
-from stiction.inference.progress import silent
 from stiction.linear_stability import Critical, critical, steady_sliding
+from stiction.progress.report import silent
 from stiction.text.quantity_text import percent
 from stiction.text.unit_text import registry
 from stiction.text.units import in_words

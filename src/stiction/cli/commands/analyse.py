@@ -62,9 +62,9 @@ def analyse(
     """
     from stiction.analysis.export import full_report
     from stiction.analysis.report import analyse as understand
-    from stiction.cli.progress import progress
     from stiction.cli.tables import as_file, print_sections
     from stiction.plotting.page.html import SUFFIXES
+    from stiction.progress.display import show_progress
     from stiction.storage.files import folder_or_file
 
     if results:
@@ -72,7 +72,7 @@ def analyse(
         return
     source = source_in(result, measured, trust)
     target = folder_or_file(output or result.with_name(f"{result.stem}-analysis"), SUFFIXES)
-    with progress("analysing"):
+    with show_progress("analysing"):
         found = understand(source)
         parts = full_report(found)
         if target.suffix.lower() in SUFFIXES:
@@ -106,18 +106,18 @@ def _analyse_several(
     from stiction.analysis.measurement.reading import read_sources
     from stiction.analysis.report import analyse as understand
     from stiction.analysis.several import section, side_by_side
-    from stiction.cli.progress import progress
     from stiction.cli.tables import as_file, print_sections
     from stiction.plotting.analysis.page import write_several
     from stiction.plotting.page.html import SUFFIXES
+    from stiction.progress.display import show_progress
     from stiction.storage.files import folder_or_file, make_folder, write_text
     from stiction.storage.table_files import write_tables
 
     said = (measured or RecordOptions()).arguments()
-    with progress("reading"):
+    with show_progress("reading"):
         sources = read_sources(results, trust=trust, **said)
     target = folder_or_file(output or results[0].with_name("records-analysis"), (*SUFFIXES, ".csv"))
-    with progress("analysing") as report:
+    with show_progress("analysing") as report:
         found = {}
         for number, (name, source) in enumerate(sources.items()):
             found[name] = understand(source)
@@ -125,7 +125,7 @@ def _analyse_several(
     table = section(found)
     print_sections(f"{len(found)} records", [table])
     if target.suffix.lower() in SUFFIXES:
-        with progress("drawing"):
+        with show_progress("drawing"):
             paths = [write_several(found, target)]
     elif target.suffix.lower() == ".csv":
         paths = write_tables({"records": side_by_side(found)}, target, {})
@@ -186,8 +186,8 @@ def import_(
         Write the guess as JSON, too. Example: --json guess.json.
     """
     from stiction.analysis.measurement.reading import read_records
-    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
+    from stiction.progress.display import show_progress
     from stiction.storage.files import NETCDF, placeable, write_text
 
     if output is not None:
@@ -195,7 +195,7 @@ def import_(
     if json is not None:
         placeable(json)
     said = (measured or RecordOptions()).arguments()
-    with progress("reading"):
+    with show_progress("reading"):
         records = read_records([file, *files], **said)
     targets: list[Path] = []
     if output is not None:

@@ -75,9 +75,9 @@ def audit(
         data.csv.
     """
     from stiction.auditing.report import audit as examine
-    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.simulated import SIMULATIONS
+    from stiction.progress.display import show_progress
     from stiction.storage.files import placeable, write_text
 
     faults, rig = Faults(), None
@@ -101,11 +101,11 @@ def audit(
     assert rig is not None
     kept = None if seen is None else library_or_cache(library)
     count = SIMULATIONS if simulations is None else simulations
-    with progress("auditing") as report:
+    with show_progress("auditing") as report:
         found = examine(rig, report, record=seen, simulations=count, library=kept)
     print_sections(title, found.tables())
     if output is not None:
-        with progress("drawing"):
+        with show_progress("drawing"):
             written = found.write_html(output, title if config is None else config.name)
         say(f"wrote {written}")
     if json is not None:

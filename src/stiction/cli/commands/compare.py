@@ -74,10 +74,10 @@ def compare(
         results.
     """
     from stiction import comparison
-    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
+    from stiction.progress.display import show_progress
     from stiction.result.window import window_of
     from stiction.storage.files import usable_folder
 
@@ -93,7 +93,7 @@ def compare(
         with faults.of_part():
             usable_folder(data)
     faults.refuse()
-    with progress("simulating and drawing") as report:
+    with show_progress("simulating and drawing") as report:
         found = comparison.compare(description, law, progress=report)
         figure = figure_of(found.plot, window=window)
     write(figure, output)

@@ -33,10 +33,10 @@ def paper(
     figure
         Only this figure, without the table of numbers. Example: --figure 3.
     """
-    from stiction.cli.progress import progress
+    from stiction.progress.display import show_progress
     from stiction.reproduction.reproduce import paper as reproduce
 
-    with progress("simulating and drawing") as report:
+    with show_progress("simulating and drawing") as report:
         found = reproduce(output, figure, report)
     for path in found.files:
         say(f"wrote {path}")

@@ -27,10 +27,10 @@ def plot(result: Path, /, *, output: Output, window: Window = None, trust: Trust
     window
         Start and end in the run; all of it by default. Example: --window 1.5s 2.2s.
     """
-    from stiction.cli.progress import progress
     from stiction.plotting.door import plot as draw
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
+    from stiction.progress.display import show_progress
     from stiction.trajectory import load
 
     faults = Faults()
@@ -39,6 +39,6 @@ def plot(result: Path, /, *, output: Output, window: Window = None, trust: Trust
     with faults.of_part():
         run = load(result, trust=trust)
     faults.refuse()
-    with progress("drawing"):
+    with show_progress("drawing"):
         written = write(figure_of(draw, run, window=window), output)
     say(f"wrote {written}")

@@ -55,7 +55,7 @@ def run(
         The NetCDF file to write: samples over time, and every stick interval. Example: -o my.nc.
     """
     from stiction import simulation
-    from stiction.cli.progress import progress
+    from stiction.progress.display import show_progress
     from stiction.storage.files import NETCDF, placeable
 
     faults = Faults()
@@ -65,7 +65,7 @@ def run(
     with faults.of_part():
         placeable(output, NETCDF)
     faults.refuse()
-    with progress("simulating") as report:
+    with show_progress("simulating") as report:
         result = simulation.run(description, progress=report)
         result.save(output)
     for line in report_lines(result, output):
@@ -77,13 +77,13 @@ def run(
 
 def compare_with_published(preset: str, result: Trajectory) -> None:
     """Print the numbers of a preset's run beside the published ones."""
-    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.presets import find
     from stiction.presets.report import comparison
+    from stiction.progress.display import show_progress
 
     found = find(preset)
-    with progress("comparing"):
+    with show_progress("comparing"):
         section = comparison(found.numbers(result))
     print_sections(f"\n{found.reference}", [section])
 

@@ -63,10 +63,10 @@ def stability(
         The figure to write (.png, .pdf or .svg): the modes over one parameter, or the boundary of
         stability in the plane of two. Example: -o map.png.
     """
-    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.linear_stability.examination import OVER
     from stiction.linear_stability.examination import stability as examine
+    from stiction.progress.display import show_progress
 
     faults = Faults()
     given = changes(set, faults)
@@ -92,7 +92,7 @@ def stability(
         from stiction.plotting.page.canvas import figure_of
         from stiction.plotting.page.save import write
 
-        with progress("drawing"):
+        with show_progress("drawing"):
             written = write(figure_of(found.plot), output)
         say(f"wrote {written}")
 

@@ -30,7 +30,7 @@ from stiction.inference.learning.summary import (
     single_threaded_algebra,
 )
 from stiction.inference.learning.typicality import Typicality
-from stiction.inference.progress import Progress, part, silent
+from stiction.progress.report import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
 RANKED = 500  # records of the library whose ranks are found

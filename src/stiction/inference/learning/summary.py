@@ -22,7 +22,7 @@ from scipy.linalg.lapack import dpotrf, dpotrs, dtrtri  # type: ignore[attr-defi
 from threadpoolctl import threadpool_limits
 
 from stiction.arrays import Floats
-from stiction.inference.progress import Progress, part, silent
+from stiction.progress.report import Progress, part, silent
 
 WIDTHS = (1.0, 3.0)  # of the kernel, over the typical distance between records
 FINER = 0.3  # ridge with the metric of a parameter, over that without

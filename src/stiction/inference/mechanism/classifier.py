@@ -29,9 +29,9 @@ from stiction.inference.learning.summary import (
     single_threaded_algebra,
 )
 from stiction.inference.mechanism.rivals import Mechanism
-from stiction.inference.progress import Progress, part, silent
 from stiction.inference.simulated.library import have_cycles, simulate_all
 from stiction.inference.simulated.plan import Plan
+from stiction.progress.report import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out

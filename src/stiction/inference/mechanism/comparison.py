@@ -28,11 +28,12 @@ from stiction.inference.mechanism.rivals import (
 )
 from stiction.inference.mechanism.static_check import ELASTIC, StaticCheck
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
-from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig, load_of_records, rig_of
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import explain_unlike
+from stiction.progress.audience import with_progress
+from stiction.progress.report import Progress, part, silent
 
 SIMULATIONS = 1000  # of each mechanism, by default
 CLAIMED = ROTATION, STATIC, RATE_AND_STATE, LUGRE
@@ -40,6 +41,7 @@ SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
 
 
 @read_together
+@with_progress("simulating and telling mechanisms apart")
 def mechanism(
     records: Source | Sequence[Source],
     rig: Rig | str | Path,
@@ -75,7 +77,7 @@ def mechanism(
     seed : int, optional
         Of the simulations.
     progress : callable, optional
-        Called with the fraction done.
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
 
     Returns
     -------

@@ -13,7 +13,7 @@ from stiction.inference.learning.typicality import Typicality
 from stiction.inference.mechanism.classifier import Simulations
 from stiction.inference.posterior import RARE
 from stiction.inference.predictive import departures
-from stiction.inference.progress import Progress, part, silent
+from stiction.progress.report import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
 # simulations with whose loading that of the record is compared: the fewest by which one in a

@@ -16,7 +16,7 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read
 from stiction.inference.mechanism.rivals import LUGRE, MISALIGNED_STATIC, RATE_AND_STATE
-from stiction.inference.progress import Progress, silent
+from stiction.progress.report import Progress, silent
 
 ELASTIC = RATE_AND_STATE, LUGRE  # contacts yield before they slip
 

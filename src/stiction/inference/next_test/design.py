@@ -49,7 +49,6 @@ from stiction.inference.observation import (
     record_from,
 )
 from stiction.inference.posterior import RARE, unlike
-from stiction.inference.progress import Progress, part, silent
 from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import (
     have_cycles,
@@ -59,6 +58,8 @@ from stiction.inference.simulated.library import (
 )
 from stiction.inference.simulated.plan import Plan
 from stiction.inference.suitability import explain_unlike
+from stiction.progress.audience import with_progress
+from stiction.progress.report import Progress, part, silent
 from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.units import Quantity, in_words
@@ -68,6 +69,7 @@ OTHER_NOISE = "the simulated tests have another noise, as given; leave it out to
 
 
 @read_together
+@with_progress("simulating and learning")
 def design(
     rig: Rig | str | Path,
     record: Source | None = None,
@@ -119,7 +121,7 @@ def design(
     seed : int, optional
         Of the simulations.
     progress : callable, optional
-        Called with the fraction done.
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
 
     Returns
     -------

@@ -16,9 +16,9 @@ from stiction.errors import DescriptionError, ResultError
 from stiction.inference.columns import dummy
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features
-from stiction.inference.progress import Progress, silent
 from stiction.inference.simulated.plan import Plan
 from stiction.inference.simulated.synthetic import draw
+from stiction.progress.report import Progress, silent
 from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
 from stiction.storage.files import prepare_folder
 from stiction.study.execution.cores import Cores

@@ -17,9 +17,10 @@ from pydantic_core import PydanticCustomError
 from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.names import by_new_names
+from stiction.progress.audience import with_progress
 from stiction.storage.files import place, workshop
 from stiction.study.execution.engines import Engine
-from stiction.study.execution.sweep import Tally, sweep
+from stiction.study.execution.sweep import Tally, sweep, told_by
 from stiction.study.plan.axes import Values
 from stiction.study.plan.coordinates import ascending, number
 from stiction.study.plan.study import Study, study_of
@@ -106,6 +107,7 @@ def widest(found: Intervals, along: str) -> float:
     return float(np.max(np.abs(found.high[along] - found.low[along])))
 
 
+@with_progress("simulating", told_by)
 def refine(
     study: Study | str | Path,
     path: str | Path,

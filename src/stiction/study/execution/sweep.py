@@ -14,6 +14,8 @@ import numpy as np
 
 from stiction.errors import STATUSES, DescriptionError, one_line
 from stiction.own_code.source import raised_in_law
+from stiction.progress.audience import with_progress
+from stiction.progress.report import Progress
 from stiction.solver.integrate import Room
 from stiction.storage.files import folder_lock
 from stiction.study.execution.cores import Cores
@@ -279,6 +281,12 @@ class Pace:
         return (times[-1] - half) / (half - times[0]) if half > times[0] else float("nan")
 
 
+def told_by(progress: Progress) -> Report:
+    """Return a report of tallies that tells the share of the runs that are done."""
+    return lambda tally: progress((tally.before + tally.now) / tally.runs)
+
+
+@with_progress("simulating", told_by)
 def sweep(
     study: Study | str | Path,
     path: str | Path,
@@ -301,7 +309,8 @@ def sweep(
         The engine for the runs, `Threads`, `Processes` or `Scheduler`; by default all cores of this
         machine: threads, and processes beside them if it takes longer than some seconds.
     progress : callable, optional
-        Called with a `Tally` after each task.
+        Called with a `Tally` after each task; without it, a terminal or a notebook shows a bar or
+        lines.
 
     Returns
     -------

@@ -94,12 +94,12 @@ def design(
     output
         A figure: PNG, PDF or SVG. Example: -o design.png.
     """
-    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.next_test.design import answer
     from stiction.inference.next_test.further import ANGLES
     from stiction.inference.next_test.question import ask
     from stiction.inference.simulated.library import library_folder
+    from stiction.progress.display import show_progress
 
     faults = Faults()
     altered = changes(set, faults)
@@ -128,7 +128,7 @@ def design(
         position_noise=position_noise,
         simulations=simulations,
     )
-    with progress("simulating and learning") as report:
+    with show_progress("simulating and learning") as report:
         found = answer(question, library_or_cache(library), seed, report)
     print_sections(str(rig), found.tables())
     if output is not None:
@@ -136,6 +136,6 @@ def design(
         from stiction.plotting.page.canvas import figure_of
         from stiction.plotting.page.save import write
 
-        with progress("drawing"):
+        with show_progress("drawing"):
             written = write(figure_of(plot_design, found), output)
         say(f"wrote {written}")

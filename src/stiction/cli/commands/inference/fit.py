@@ -88,12 +88,12 @@ def fit(
         Give the odds of mechanisms too, from a quarter as many simulations of each; they are
         written in the group "mechanism" of the output.
     """
-    from stiction.cli.progress import progress
     from stiction.cli.tables import print_sections
     from stiction.inference.fit import fit as infer
     from stiction.inference.mechanism.comparison import SHARE
     from stiction.inference.mechanism.comparison import mechanism as find
     from stiction.inference.rig import Rig, load_of_records
+    from stiction.progress.display import show_progress
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
     faults, given, known = Faults(), [], None
@@ -118,14 +118,14 @@ def fit(
     faults.refuse()
     assert known is not None
     kept = library_or_cache(library)
-    with progress("simulating and learning") as report:
+    with show_progress("simulating and learning") as report:
         found = infer(
             given, known, simulations=simulations, library=kept, seed=seed, progress=report
         )
     sections, groups = [*origins(records, given), *warnings(records, given), *found.tables()], {}
     plots: dict[str, Any] = {"posterior": found, "corner": found}
     if mechanism:
-        with progress("simulating and telling mechanisms apart") as report:
+        with show_progress("simulating and telling mechanisms apart") as report:
             odds = find(
                 given, known, simulations=simulations // SHARE, library=kept, seed=seed,
                 progress=report,
@@ -158,14 +158,14 @@ def warnings(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
 def write_figures(plots: Mapping[str, Any], folder: Path) -> None:
     """Write figures by their names, as `stiction.plotting` draws what belongs to each."""
     from stiction import plotting
-    from stiction.cli.progress import progress
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import write
+    from stiction.progress.display import show_progress
     from stiction.storage.files import make_folder
 
     make_folder(folder)
     for name, what in plots.items():
-        with progress("drawing"):
+        with show_progress("drawing"):
             drawn = figure_of(getattr(plotting, f"plot_{name}"), what)
             written = write(drawn, folder / f"{name}.png")
         say(f"wrote {written}")

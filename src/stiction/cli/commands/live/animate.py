@@ -42,8 +42,8 @@ def animate(
         The time whose surroundings are shown under the microscope: a few periods of the fast
         oscillation; by default a third into the window. Example: --at 2.05s.
     """
-    from stiction.cli.progress import progress
     from stiction.media.film import excerpt, filmable, make_film
+    from stiction.progress.display import show_progress
 
     faults = Faults()
     with faults.of_part():
@@ -51,6 +51,6 @@ def animate(
     with faults.of_part():
         shown = excerpt(result, window, length, at, trust=trust)
     faults.refuse()
-    with progress("filming") as report:
+    with show_progress("filming") as report:
         made = make_film(shown, target.suffix[1:].lower(), report)
     say(f"wrote {made.save(target)}")

@@ -43,8 +43,8 @@ def listen(
         Whose elongation rate is heard: that of the transverse spring, y, or of x. Example: --axis
         x.
     """
-    from stiction.cli.progress import progress
     from stiction.media.sound import WAV, make_sound, passage
+    from stiction.progress.display import show_progress
     from stiction.storage.files import placeable
 
     faults = Faults()
@@ -53,7 +53,7 @@ def listen(
     with faults.of_part():
         heard = passage(result, speed, window, axis, trust=trust)
     faults.refuse()
-    with progress("listening") as report:
+    with show_progress("listening") as report:
         made = make_sound(heard, report)
     pitch = "at its true pitch"
     if made.speed != 1.0:

@@ -53,9 +53,9 @@ def map(
         map.png.
     """
     from stiction.analysis.motion.regime.kinds import UNDETERMINED
-    from stiction.cli.progress import progress
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import drawable, write
+    from stiction.progress.display import show_progress
     from stiction.study.view.mapping import map as look
     from stiction.study.view.view import REGIME, kinds
 
@@ -64,7 +64,7 @@ def map(
     if output is not None:
         with faults.of_part():
             drawable(output)
-    with progress("drawing"):
+    with show_progress("drawing"):
         with faults.of_part():
             found = look(study, of or (), cut, trust=trust)
         faults.refuse()

@@ -1,38 +1,56 @@
-"""Progress, with the time left: a bar on a terminal; where output is piped, a line now and then."""
+"""Progress on standard error, with the time left: a bar on a terminal, else a line now and then."""
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from threading import Event, Thread, Timer
 from time import monotonic
+from typing import Any
 
-from rich.console import Console
-
-from stiction.cli.terminal import note
+from stiction.progress.report import Progress
 
 PATIENCE = 1.0  # seconds of silence before a bar appears
 FIRST, EVERY = 5.0, 60.0  # seconds before the first line, and at most between lines
 WATCHED = 0.1  # of the time so far: the pace of a shorter while says little of the time left
+told: list[str] = []  # work whose progress is told; what is a part of it tells none of its own
 
 
 @contextmanager
-def progress(title: str) -> Iterator[Callable[[float], None]]:
+def telling(title: str) -> Iterator[None]:
+    """Let parts of some work tell nothing of their own."""
+    told.append(title)
+    try:
+        yield
+    finally:
+        told.pop()
+
+
+@contextmanager
+def show_progress(title: str) -> Iterator[Progress]:
     """Show progress on standard error; yield a function that takes the fraction."""
+    from rich.console import Console  # slow to import: only where work takes long
+
     console = Console(stderr=True, emoji=False)
-    if not console.is_terminal:
-        with _lines(title) as report:
-            yield report
-        return
-    from rich.progress import (  # slow to import: only where there is a terminal
+    with telling(title), (_bar if console.is_terminal else _lines)(title, console) as report:
+        yield report
+
+
+@contextmanager
+def _bar(title: str, console: Any) -> Iterator[Progress]:
+    """Show a bar if the work lasts."""
+    from rich.progress import (
         BarColumn,
-        Progress,
         TextColumn,
         TimeElapsedColumn,
         TimeRemainingColumn,
     )
+    from rich.progress import (
+        Progress as Bar,
+    )
 
-    bar = Progress(
+    bar = Bar(
         TextColumn("{task.description}"),
         BarColumn(bar_width=20),
         TextColumn("{task.fields[share]}"),
@@ -60,7 +78,7 @@ def progress(title: str) -> Iterator[Callable[[float], None]]:
 
 
 @contextmanager
-def _lines(title: str) -> Iterator[Callable[[float], None]]:
+def _lines(title: str, console: Any) -> Iterator[Progress]:
     """Print lines while the work lasts; yield a function that takes the fraction."""
     begun, done = monotonic(), [0.0]
     first: list[tuple[float, float]] = []  # the first fraction, and when it was reported
@@ -130,5 +148,5 @@ def in_time(seconds: float) -> str:
 
 def print_line(text: str) -> None:
     """Print a line of progress; nobody may read it."""
-    with suppress(OSError, ValueError):  # closed
-        note(text)
+    with suppress(OSError, ValueError, AttributeError):  # closed, or none
+        print(text, file=sys.stderr, flush=True)

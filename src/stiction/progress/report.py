@@ -1,4 +1,4 @@
-"""The progress of long work, of which simulations and what is learned from them are parts."""
+"""Reports of the progress of long work, and of its parts."""
 
 from __future__ import annotations
 

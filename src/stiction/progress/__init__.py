@@ -1,0 +1,1 @@
+"""The progress of long work: who is told, and how."""
