@@ -291,6 +291,10 @@ class Status(Enum):
     )
     TOO_MANY_STEPS = "the run used up its max_steps; raise max_steps or shorten the duration"
     CONTACT_LOST = "the normal load fell to zero and the contact was lost; keep it above zero"
+    TOO_MANY_STICKS = (
+        "each stick interval is recorded, and no more of them fit into the memory of this machine; "
+        "shorten the duration"
+    )
 
     @property
     def ok(self) -> bool:

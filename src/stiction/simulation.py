@@ -95,7 +95,7 @@ def simulate(
         everywhere, from the first stick on; steps are then held to 0.3 of the tolerance, and the
         promise is 9 times in place of 30 for a run with cycles that were interpolated.
     max_steps : int, optional
-        Give up after so many steps.
+        Give up after so many steps; cycles that are interpolated take none.
     progress : callable, optional
         Called with the fraction done, about 20 times a second; without it, a terminal or a
         notebook shows a bar or lines where a run takes long.

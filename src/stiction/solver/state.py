@@ -8,7 +8,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.errors import DescriptionError
 from stiction.machine import shortage
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.compilation.stand_in import called_from_both
@@ -19,7 +18,8 @@ FIRST_STEP = 0.05  # of the time in which the faster spring swings by a radian
 PLAN_LEAST, PLAN_MOST = 0.4, 1.5  # of the size that the last error allows
 STICK = 80.0  # bytes of memory per stick interval, for all tables and intermediate arrays
 # how the loop ended; it runs on, or asks how long a step about steady sliding may be
-ASKS, RUNNING, COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST = range(-2, 5)
+ASKS, RUNNING = -2, -1
+COMPLETED, STEP_UNDERFLOW, NON_FINITE, TOO_MANY_STEPS, CONTACT_LOST, TOO_MANY_STICKS = range(6)
 
 
 @dataclass
@@ -35,22 +35,14 @@ class Output:
     filled: int = 0
     used: int = 0
 
-    def make_room(self, sticks: int) -> None:
-        """Double the room for stick intervals if `sticks` fill it.
-
-        Raises
-        ------
-        DescriptionError
-            If they do not fit into memory.
-        """
+    def make_room(self, sticks: int) -> bool:
+        """Double the room for stick intervals if `sticks` fill it; return whether there is some."""
         if sticks < len(self.sticks):
-            return
-        if short := shortage(STICK * 2.0 * sticks):
-            message = (
-                f"more than {sticks} sticks, of which each is recorded; room for twice as many"
-            )
-            raise DescriptionError.of("run.duration", f"{message} {short}; shorten it")
+            return True
+        if shortage(STICK * 2.0 * sticks):
+            return False
         self.sticks = np.concatenate([self.sticks, np.empty_like(self.sticks)])
+        return True
 
 
 class Motion(NamedTuple):

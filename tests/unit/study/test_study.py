@@ -7,11 +7,13 @@ import pytest
 import xarray as xr
 
 import stiction as st
+from stiction import machine
 from stiction.study.execution.engines import Processes, Threads
 from stiction.study.plan.coordinates import unit, values, vary
 from stiction.study.plan.layout import Layout, layout_of, places
 from stiction.study.store.creation import create
 from stiction.study.store.seal import seal
+from stiction.study.store.store import ENDS
 from stiction.text.paths import with_changes
 
 PAPER = st.presets.nakano_popov_2020()
@@ -101,6 +103,20 @@ def test_the_store_explains_itself(finished, study):
     meanings = data["status"].attrs["flag_meanings"].split()
     assert len(meanings) == len(data["status"].attrs["flag_values"])
     assert st.Study.from_json(data.attrs["description"]).to_json() == study.to_json()
+
+
+def test_a_study_tells_runs_of_too_many_sticks_in_a_place_of_their_own(tmp_path, monkeypatch):
+    """Stores of earlier versions have "refused" and "error" where they were."""
+    monkeypatch.setattr(machine, "largest_object", lambda: 1e6)
+    study = st.Study(
+        base=st.Description.of(PAPER, "60 s"), axes={"phi": st.Values(["1 deg", "30 deg"])},
+        measures=["stick_count"],
+    )  # fmt: skip
+    result = st.sweep(study, tmp_path / "a.zarr")
+    assert result.failed == {"too_many_sticks": 1}
+    assert "no more of them fit into the memory" in result.first.message
+    assert ENDS.index("refused") == 5
+    assert ENDS.index("error") == 6
 
 
 def test_a_run_that_fails_is_data(tmp_path):

@@ -19,7 +19,16 @@ from stiction.solver.problem import Problem, at, call_for, is_aligned, isotropic
 from stiction.solver.regularised import Smoothed, gradient_in_axes
 from stiction.solver.rig import as_general
 from stiction.solver.segments import begin, friction_of, surface_of, system_of
-from stiction.solver.state import Motion, Output, State, drop_memory, start, state_from_plain
+from stiction.solver.state import (
+    COMPLETED,
+    TOO_MANY_STICKS,
+    Motion,
+    Output,
+    State,
+    drop_memory,
+    start,
+    state_from_plain,
+)
 from stiction.solver.stepping.amplification import write_rates
 from stiction.solver.stick import holding
 from stiction.solver.surface import friction_along, metric_into, speed_ratio
@@ -135,5 +144,6 @@ def advance_compiled(
     code, now, out.filled, turns = call_for(problem, function, *arguments)
     state = state_from_plain(now)
     out.used += turns
-    out.make_room(state.counts.sticks)
+    if code < COMPLETED and not out.make_room(state.counts.sticks):
+        code = TOO_MANY_STICKS
     return code, state

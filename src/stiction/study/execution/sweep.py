@@ -24,7 +24,15 @@ from stiction.study.plan.layout import Index, Layout, places, runs_of, size_of
 from stiction.study.plan.study import Study, study_of
 from stiction.study.store.creation import create
 from stiction.study.store.kept import Kept, stored_variables
-from stiction.study.store.store import COMPLETED, ERROR, REFUSED, BlockResults, Store, open_store
+from stiction.study.store.store import (
+    COMPLETED,
+    ENDS,
+    ERROR,
+    REFUSED,
+    BlockResults,
+    Store,
+    open_store,
+)
 from stiction.study.variables.observed_run import MOST_SAMPLES, ObservedRun, observe_run
 from stiction.study.variables.own import MeasureError
 from stiction.study.view.summary import Summary, summary
@@ -116,7 +124,7 @@ def run_one(
         seen = observe_run(study.description(index), report, room)
         ended = STATUSES[seen.solution.code]
         if not ended.ok:
-            return StoredOutcome(seen.solution.code, ended.value, ())
+            return StoredOutcome(ENDS.index(ended.name.lower()), ended.value, ())
         why = "" if seen.resolved else TOO_FEW
         return values_of(wanted, seen, why)
     except (Unwanted, OSError, MemoryError):

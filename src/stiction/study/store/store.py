@@ -40,8 +40,10 @@ CHECKED = 2  # the format that is written, the first with checksums
 MAKE = Instruction("make one with 'stiction sweep'", "st.sweep(study, path) makes one")
 PENDING = -1
 MOST_TASKS = 256 * MANY_TASKS  # that a store may claim: each block is visited
-# ends of a run in a study: those of any run, refused before it began, or an error of the program
-ENDS = (*(status.name.lower() for status in errors.Status), "refused", "error")
+# ends of a run in a study: those of any run, refused before it began, or an error of the program;
+# a store holds their places, so that what is new comes last
+OF_ANY_RUN = [status.name.lower() for status in errors.Status]
+ENDS = (*OF_ANY_RUN[:5], "refused", "error", *OF_ANY_RUN[5:])
 COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
 STATUS, MESSAGE = "status", "message"
 
