@@ -452,7 +452,8 @@ def test_paper(tmp_path, capsys):
     text = capsys.readouterr().out
     assert "WRONG" not in text
     names = {path.name for path in (tmp_path / "out").iterdir()}
-    for figure in ("figure-1-and-2", "figure-3", "figure-4", "figure-5", "beyond-zero-slip"):
+    figures = ["first-look", "figure-1-and-2", "beyond-zero-slip"]
+    for figure in [*figures, *(f"figure-{number}" for number in (3, 4, 5))]:
         assert {f"{figure}.png", f"{figure}.pdf"} <= names
     entries = json.loads((tmp_path / "out" / "numbers.json").read_text())
     assert len(entries) > 20

@@ -60,6 +60,7 @@ from stiction.plotting.shades import COLORS, measure_shades
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
+from stiction.reproduction.first_look import first_look
 from stiction.text.quantity_text import metric_prefix
 
 
@@ -112,6 +113,27 @@ def test_labels_of_panels_above_each_other_are_aligned(
 
 
 # --- figures of the paper ---
+
+
+def test_a_first_look_shows_friction_that_turns_and_no_title_is_cut(
+    paper_run: st.Trajectory,
+) -> None:
+    fig = draw(first_look(paper_run))
+    titles = {ax.get_title(loc="left") + ax.get_title(): ax for ax in fig.axes}
+    turn = titles["Friction on the mass, from above"]
+    arrows = [patch for patch in turn.patches if isinstance(patch, FancyArrowPatch)]
+    tips = np.array([patch._posA_posB[1] for patch in arrows])[:-1]  # the last is the drive
+    assert len(tips) == 5
+    np.testing.assert_allclose(np.hypot(*tips.T), paper_run.slider.F_0, rtol=1e-2)
+    angles = np.degrees(np.arctan2(-tips[:, 1], -tips[:, 0]))
+    assert (np.diff(angles) < 0.0).all()
+    assert angles[0] > 80.0
+    assert angles[-1] < 15.0
+    window = fig.get_window_extent()
+    for ax in fig.axes:
+        for text in (ax.title, ax._left_title):
+            extent = text.get_window_extent()
+            assert not text.get_text() or window.x0 <= extent.x0 <= extent.x1 <= window.x1
 
 
 def test_figure3_shows_five_quantities_with_units_and_the_creep(paper_run: st.Trajectory) -> None:

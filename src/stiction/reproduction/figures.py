@@ -108,13 +108,13 @@ def figure3(run: Trajectory) -> Figure:
         for ax, letter in zip(axes, "abcde", strict=True):
             ax.margins(y=0.12)
             panel_letter(ax, letter)
-        _magnify_creep(axes[4], run)
+        magnify_creep(axes[4], run)
         axes[-1].set_xlabel("time $t$ (s)")
         fig.align_ylabels(axes)
     return fig
 
 
-def _magnify_creep(ax: Axes, run: Trajectory) -> Axes:
+def magnify_creep(ax: Axes, run: Trajectory) -> Axes:
     """Draw, in an inset, how X (um) creeps before the first slip."""
     time, X = run.samples["time"], run.samples["X"]
     end = first_slip_time(run)

@@ -15,6 +15,7 @@ from stiction.plotting.page.save import save
 from stiction.progress.audience import with_progress
 from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
+from stiction.reproduction.first_look import first_look
 from stiction.reproduction.numbers import NumberTable, numbers
 from stiction.simulation import simulate
 from stiction.storage.files import make_folder, usable_folder
@@ -113,6 +114,7 @@ def reproduce(
         progress=lambda fraction: report(0.3 * fraction),
     )
     drawings: dict[str, Callable[[], Figure]] = {
+        "first-look": lambda: first_look(run),
         "figure-1-and-2": lambda: schematic(slider),
         "figure-3": lambda: figure3(run),
         "figure-4": lambda: figure4(run),
