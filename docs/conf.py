@@ -55,6 +55,7 @@ myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
+nb_output_stderr = "remove"  # progress and compilation, which depend on the machine
 
 autodoc_typehints = "none"
 PYTHON = "reference/python"
