@@ -348,4 +348,6 @@ def automatic_times(description: Description) -> np.ndarray:
     wanted = max(fine, least, FEWEST_SAMPLES)
     start = description.initial.time
     times: np.ndarray = np.linspace(start, start + duration, ceil(min(wanted, MOST_SAMPLES)) + 1)
-    return np.unique(times)  # some may be the same to rounding
+    times.sort(kind="stable")  # they are in order but for rounding: NumPy's `unique` sorts anew
+    distinct: np.ndarray = times[np.append(True, times[1:] > times[:-1])]  # rounding makes some one
+    return distinct
