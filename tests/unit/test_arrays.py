@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import stiction as st
-from stiction.arrays import KEPT, Floats, compute_once, same_values
+from stiction.arrays import KEPT, Floats, compute_once, median, same_values
 
 
 class Counted:
@@ -121,3 +121,15 @@ def test_a_result_that_was_copied_is_equal(paper_run):
         assert copy.deepcopy(found) == found
     assert st.audit(paper_run.slider.replace(phi="2 deg")) != st.audit(paper_run.slider)
     assert st.listen(paper_run, axis="x") != st.listen(paper_run)
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 4, 63, 64, 1001])
+def test_the_median_is_that_of_numpy_to_the_last_bit(count):
+    random = np.random.default_rng(count)
+    for values in (random.standard_normal(count), random.integers(-9, 9, count)):
+        before = values.copy()
+        assert median(values) == np.median(values)
+        assert values.tolist() == before.tolist()
+    holed = random.standard_normal(count)
+    holed[random.integers(count)] = np.nan
+    assert np.isnan(median(holed))

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import NORMAL_MEDIAN, Floats, compute_once
+from stiction.arrays import NORMAL_MEDIAN, Floats, compute_once, median
 
 ORDER = 4  # of the differences: a sine at a tenth of the sample rate keeps 0.15 of its amplitude
 FEWEST_SAMPLES = 64  # so many tell white noise to a fifth
@@ -142,7 +142,7 @@ def dither_remainder(values: Floats, step: float) -> float:
 def _median(values: Floats, step: float) -> float:
     """Return the median of sizes; of multiples of a step, spread evenly over half a step around."""
     if step == 0.0:
-        return float(np.median(values))
+        return median(values)
     number = np.rint(values / step).astype(np.int64)
     counts = np.bincount(np.minimum(number, LARGEST))
     below = np.cumsum(counts) - counts

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import MEANS_OF_RECORD, median, part_means, part_starts
+from stiction.analysis.signals.robust import MEANS_OF_RECORD, part_means, part_starts
 from stiction.analysis.signals.turning_points import without_spikes
-from stiction.arrays import NORMAL_MEDIAN, Floats
+from stiction.arrays import NORMAL_MEDIAN, Floats, median
 from stiction.recording.noise import white_noise
 
 ORDERED = -0.9  # rank correlation of size and number: each smaller than the last, but for noise

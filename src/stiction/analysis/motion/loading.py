@@ -157,5 +157,5 @@ def _window(time: Floats, start: Floats, until: Floats) -> tuple[Indices, Indice
 
 def samples_from(time: Floats, begin: Floats) -> Indices:
     """Return the first sample at or after each time, within rounding."""
-    place = np.interp(begin, time, np.arange(len(time)))
+    place = np.interp(begin, time, np.arange(len(time), dtype=np.float64))
     return np.ceil(place - 1e-3).astype(np.intp)

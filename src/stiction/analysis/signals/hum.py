@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
-from stiction.analysis.signals.robust import inner_product, median, uniform_mean
+from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.analysis.signals.spectrum import spectrum
-from stiction.arrays import TINY, Complex, Floats, compute_once
+from stiction.arrays import TINY, Complex, Floats, compute_once, median
 
 PERIODS = 16  # of a line, or a vibration, that a record has at least
 ABOVE = 30.0  # times the median power beside it: noise goes beyond in one of a million samples

@@ -23,8 +23,8 @@ from stiction.analysis.signals.reversals import (
     remove_reversals,
     standing_out,
 )
-from stiction.analysis.signals.robust import median, median_of_three
-from stiction.arrays import Floats, Indices
+from stiction.analysis.signals.robust import median_of_three
+from stiction.arrays import Floats, Indices, compute_once, median
 
 PER_OCTAVE = 4  # edges tried in each factor of two of height
 # A walk of steps of finite size goes beyond a level before it turns: at either end by 0.583
@@ -76,8 +76,10 @@ def widest_gap(heights: ArrayLike, step: float, most: float) -> Gap:
     if len(size) == 0 or not size[-1] > lowest > 0.0:
         return NO_GAP
     octaves = np.log2(size[-1] / lowest)
-    edges = np.geomspace(lowest, size[-1], int(np.ceil(PER_OCTAVE * octaves)) + 1)
-    edges[-1] = size[-1]
+    count = int(np.ceil(PER_OCTAVE * octaves)) + 1
+    # what `geomspace` does, which looks longer at its arguments than at the edges
+    edges = 10.0 ** np.linspace(np.log10(lowest), np.log10(size[-1]), count)
+    edges[0], edges[-1] = lowest, size[-1]
     # counted one step lower, so that the steps of a digitised signal are not taken for gaps
     above_low = len(size) - np.searchsorted(size, edges - step)
     above_high = len(size) - np.searchsorted(size, edges)
@@ -145,7 +147,7 @@ def turning_points(values: Floats) -> TurningPoints:
     large heights of reversals is sought; the level with the clearest gap decides. If none is clear,
     there are no points.
     """
-    counts = without_spikes(as_counts(values))
+    counts = limit_spikes(as_counts(values))
     levels = list(running_sums(counts))
     steps = [typical_step(each) / 2**level for level, each in enumerate(levels)]
     gaps = [
@@ -165,7 +167,7 @@ def turning_points(values: Floats) -> TurningPoints:
     index = standing_out(levels[level], gap.middle * width, gap.low * width)
     if len(index) < 2:  # one turn is not a cycle
         return nothing
-    leg = float(np.median(np.abs(np.diff(levels[level][index])))) / width
+    leg = median(np.abs(np.diff(levels[level][index]))) / width
     trough = np.diff(levels[level][index], append=0) > 0
     trough[-1:] = ~trough[-2:-1]
     for quiet in range(level + 1):
@@ -216,15 +218,28 @@ def as_counts(values: Floats) -> Counts:
     return counts
 
 
-def without_spikes(values: NDArray[Number]) -> NDArray[Number]:
+def limit_spikes(values: NDArray[Number]) -> NDArray[Number]:
     """Limit each sample to the extrapolation of its neighbours; smooth peaks stay."""
-    if len(values) < 5:
-        return values
-    before, after = values[1:-3], values[3:-1]
-    lines = np.stack([before, after, 2 * before - values[:-4], 2 * after - values[4:]])
     limited = values.copy()
-    limited[2:-2] = np.clip(values[2:-2], lines.min(axis=0), lines.max(axis=0))
+    if len(values) < 5:
+        return limited
+    before, after = values[1:-3], values[3:-1]
+    rising, falling = 2 * before - values[:-4], 2 * after - values[4:]
+    low = np.minimum(np.minimum(before, after), np.minimum(rising, falling))
+    high = np.maximum(np.maximum(before, after), np.maximum(rising, falling))
+    limited[2:-2] = np.clip(values[2:-2], low, high)
     return limited
+
+
+@compute_once
+def without_spikes(values: Floats) -> Floats:
+    """Return a signal after `limit_spikes`: an array that cannot be changed.
+
+    All that look at a record's force share it, and so what is found once of each array.
+    """
+    found = limit_spikes(values)
+    found.setflags(write=False)
+    return found
 
 
 def running_sums(counts: Counts) -> Iterator[Counts]:

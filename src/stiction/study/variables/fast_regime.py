@@ -17,8 +17,7 @@ from stiction.analysis.motion.course import course_of_parts, dies_out, is_over
 from stiction.analysis.motion.hesitations import cycle_corners
 from stiction.analysis.motion.regime import force_course, kinds
 from stiction.analysis.motion.vibration import FastOscillation, is_irregular
-from stiction.analysis.signals.robust import median
-from stiction.arrays import Floats
+from stiction.arrays import Floats, median
 from stiction.study.variables.features import Features
 
 KINDS = (

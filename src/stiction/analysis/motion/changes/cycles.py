@@ -9,8 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.motion.course import ORDERED, order
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.signals.robust import median
-from stiction.arrays import TINY, Floats
+from stiction.arrays import TINY, Floats, median
 from stiction.recording.noise import white_noise
 
 FEW_CYCLES = 4  # in each part

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from stiction.analysis.signals.even_grid import EvenGrid
 from stiction.analysis.signals.robust import block_means
-from stiction.arrays import TINY, Complex, Floats
+from stiction.arrays import TINY, Complex, Floats, median
 from stiction.recording.noise import white_noise
 
 PER_PERIOD = 12  # means of a period: the amplitude needs no more
@@ -100,8 +100,9 @@ def _free_swing(even: Floats, step: float, period: float) -> FreeSwing | None:
         if len(amplitude) <= 4 * lag:
             return None
         before, after = amplitude[:-lag], amplitude[lag:]
-        large = np.abs(before) >= np.median(np.abs(before))
-        factors = after[large] / np.where(before, before, TINY)[large]
+        size = np.abs(before)
+        large = size >= median(size)
+        factors: Complex = np.asarray(after[large] / np.where(before, before, TINY)[large])
         factor = _usual(factors)
         share = float(np.mean(np.abs(factors - factor) < SAME))
         now = (float(np.angle(factor)) / (2.0 * pi) + round(lag * turns)) / lag
@@ -129,12 +130,14 @@ def _amplitude(values: Floats, turns: float) -> Complex:
 
 def _usual(factors: Complex) -> complex:
     """Return where complex numbers crowd: the median of those near it."""
-    middle = complex(np.median(factors.real), np.median(factors.imag))
+    middle = complex(median(factors.real), median(factors.imag))
     for _ in range(PASSES):
         near = factors[np.abs(factors - middle) < NEAR]
         if not len(near):
             break
-        middle = complex(np.median(near.real), np.median(near.imag))
+        last, middle = middle, complex(median(near.real), median(near.imag))
+        if middle == last:
+            break  # the same are near again
     return middle
 
 

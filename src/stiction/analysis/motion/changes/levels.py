@@ -12,8 +12,8 @@ from stiction.analysis.motion.changes.sliding import NO_LOAD
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.robust import median, part_means
-from stiction.arrays import Floats
+from stiction.analysis.signals.robust import part_means
+from stiction.arrays import Floats, median
 from stiction.recording.noise import rounding_error, white_noise
 
 PARTS = 200  # means of a record

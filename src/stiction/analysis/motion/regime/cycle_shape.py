@@ -29,8 +29,7 @@ from stiction.analysis.motion.vibration import COUPLED, LIKELY, drop_spread, irr
 from stiction.analysis.motion.wave import regular_wave
 from stiction.analysis.record import Record
 from stiction.analysis.signals.hum import beat_frequency
-from stiction.analysis.signals.robust import median
-from stiction.arrays import TINY, Floats
+from stiction.arrays import TINY, Floats, median
 
 ENOUGH = 8.0  # samples a cycle, which show its shape
 ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more
