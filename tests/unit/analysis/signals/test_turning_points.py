@@ -491,3 +491,13 @@ def test_a_top_that_is_put_back_may_change_places_with_the_next_one():
     ordered = peak_refinement._in_order(np.arange(9.0), points, found)
     np.testing.assert_array_equal(ordered.time, [2.0, 4.0, 6.0])
     np.testing.assert_array_equal(ordered.value, [2.0, 4.0, 6.0])
+
+
+def test_all_that_look_at_a_force_share_it_without_spikes():
+    force = np.sin(np.arange(50.0))
+    force[20] += 9.0
+    force.setflags(write=False)
+    found = turning_points.without_spikes(force)
+    assert found is turning_points.without_spikes(force)
+    assert not found.flags.writeable
+    assert found.tolist() == turning_points.limit_spikes(force).tolist() != force.tolist()
