@@ -11,12 +11,20 @@ import numpy as np
 
 from stiction.arguments import end_reading, read_together
 from stiction.drive import ConstantVelocity
+from stiction.drive.program import nominal_velocity
 from stiction.errors import DescriptionError, Fault, Instruction
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.observation import Conditions, Observation, Source, observe_all, sign_seen
+from stiction.inference.observation import (
+    VELOCITY,
+    Conditions,
+    Observation,
+    Source,
+    observe_all,
+    sign_seen,
+)
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
 from stiction.inference.rig import Rig, load_of_records, rig_of
@@ -150,12 +158,14 @@ def check(rig: Rig, simulations: int = FEWEST_SIMULATIONS) -> None:
 
 
 def program_faults(slider: Slider) -> Iterator[Fault]:
-    """Yield where drive or load change in time."""
+    """Yield where the drive stands still, or drive or load change in time."""
     part = f"and take the part of the record in which it is so ({begin_and_end()})"
     if not isinstance(slider.motion, ConstantVelocity):
         yield Fault(
             "drive", f'changes, and a fit takes a steady one: write velocity = "1 mm/s", {part}'
         )
+    elif not nominal_velocity(slider.motion):
+        yield Fault(VELOCITY, 'is 0, and a fit takes a drive that moves: write velocity = "1 mm/s"')
     if slider.load is not None:
         yield Fault("load", f"changes, and a fit takes a constant one: take out this table, {part}")
 
@@ -200,12 +210,17 @@ def plan_for(rig: Rig, conditions: Sequence[Conditions], signed: bool | None = N
     priors = {**rig.priors}
     if not signed and "phi" in priors:
         priors["phi"] = one_sided(priors["phi"])
+    if VELOCITY in priors:  # a drive that goes back makes no such record
+        priors[VELOCITY] = one_sided(priors[VELOCITY], rounding=0.0)
     return plan(rig.slider, priors, conditions)
 
 
-def one_sided(prior: Prior) -> Prior:
-    """Return the prior of an angle whose sign is not seen, on the side of its middle."""
-    if middle(prior) < -SMALLEST_ANGLE:
+def one_sided(prior: Prior, rounding: float = SMALLEST_ANGLE) -> Prior:
+    """Return the part of a prior on the side of its middle, as that of an angle without a sign.
+
+    A middle of zero is off by `rounding`, and is on the positive side.
+    """
+    if middle(prior) < -rounding:
         return replace(prior, high=min(prior.high, 0.0))
     return replace(prior, low=max(prior.low, 0.0))
 

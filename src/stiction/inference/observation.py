@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import floor, hypot, log10
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -58,6 +58,7 @@ LOADED, LATEST, SHORTEST = (0.2, 0.6), 0.8, 10.0
 DIGITS = 4  # of sampling interval and quantisation: those of many records differ by rounding
 TREND = 0.01  # p-value of a trend below which cycles do not stay the same
 DITHER = 0.5  # of a step: noise that hides it, so that rounding is noise too
+VELOCITY = "drive.velocity"  # its path, where it is uncertain
 SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 10 deg askew
 
 
@@ -143,6 +144,18 @@ class Conditions(NamedTuple):
         drive = ConstantVelocity._make([self.velocity])
         its = {"drive": drive, "normal_load": self.normal_load, "phi": slider.phi + self.yaw}
         return slider.model_copy(update=its)
+
+    def truth_for(self, slider: Slider, middle: Slider) -> Self:
+        """Return these conditions as they truly are for a slider drawn from its priors.
+
+        Drive and load are off from what is stated by the factors by which the slider's are off from
+        those in the `middle` of the priors: one lead screw and one dead weight serve all records.
+        """
+        faster = nominal_velocity(slider.motion) / nominal_velocity(middle.motion)
+        heavier = slider.normal_load / middle.normal_load
+        return self._replace(
+            velocity=faster * self.velocity, normal_load=heavier * self.normal_load
+        )
 
     def scale(self, slider: Slider) -> FeatureScale:
         """Return what features are relative to."""

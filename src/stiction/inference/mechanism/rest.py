@@ -14,6 +14,7 @@ import numpy as np
 
 from stiction.analysis.motion.rest import HELD, share_held
 from stiction.arrays import Floats
+from stiction.drive.program import nominal_velocity
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.observation import Conditions
 from stiction.inference.simulated.plan import Plan
@@ -90,5 +91,5 @@ def share_at_rest(made: Synthetic, conditions: Conditions) -> float:
     stretched, lasts = (float(np.diff(x[ends], axis=0).sum()) for x in (stretch, motion.time))
     if not lasts:
         return np.nan
-    way = conditions.velocity * made.slider.direction[1] * lasts
+    way = nominal_velocity(made.slider.motion) * made.slider.direction[1] * lasts
     return share_held(stretched, way)

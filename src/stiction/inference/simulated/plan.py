@@ -17,7 +17,7 @@ from stiction.inference.simulated.restriction import is_allowed, is_restricted
 from stiction.system.slider import Slider
 
 MOST_DRAWS = 10_000  # of one set of parameters, where the priors are restricted
-FORMAT = 10  # of stored simulations and of what is learned from them
+FORMAT = 11  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):

@@ -56,7 +56,8 @@ def synthesise(
         if path not in NOT_OF_THE_SLIDER:
             slider = change_unchecked(slider, path, value)
     spread, common = values["jitter"], float(random.uniform())
-    for conditions in plan.conditions:
+    for stated in plan.conditions:
+        conditions = stated.truth_for(slider, plan.slider)
         drift, alternation = (values.get(each, 0.0) for each in ("drift", "alternation"))
         jitter = Jitter(spread, common, drift / conditions.cycles, alternation)
         rig = conditions.slider_of(slider)
