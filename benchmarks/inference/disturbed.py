@@ -34,6 +34,7 @@ from stiction.inference.features import features
 from stiction.inference.fit import plan_for
 from stiction.inference.learning.calibration import learn_or_read
 from stiction.inference.observation import (
+    VELOCITY,
     Conditions,
     Noise,
     Observation,
@@ -77,6 +78,8 @@ class Sort(NamedTuple):
         Of the friction coefficients' logarithm.
     velocity, stiffness : float
         As stated, over the true one.
+    known : float
+        Stated uncertainty of the velocity, relative; 0 if it is stated as certain.
     zero : float
         Stated uncertainty of the zero, over the friction force at rest.
     """
@@ -88,6 +91,7 @@ class Sort(NamedTuple):
     alternation: Prior | None = None
     velocity: float = 1.0
     stiffness: float = 1.0
+    known: float = 0.0
     zero: float = ZERO
 
 
@@ -110,6 +114,8 @@ SORTS = {
     "alternates by 5 to 20 %": Sort(alternation=Uniform(0.05, 0.2)),
     "velocity 5 % too large": Sort(velocity=1.05),
     "velocity 5 % too small": Sort(velocity=0.95),
+    "velocity 5 % too large, known to 5 %": Sort(velocity=1.05, known=0.05),
+    "velocity 5 % too small, known to 5 %": Sort(velocity=0.95, known=0.05),
     "stiffness 5 % too large": Sort(stiffness=1.05),
     "stiffness 5 % too small": Sort(stiffness=0.95),
 }
@@ -163,6 +169,9 @@ def case_of(name: str, sort: Sort) -> Case:
     wrongly = Normal(sort.stiffness * slider.k_x, SURE * slider.k_x, low=0.0)
     stated = rig_with(slider, priors | ({"k_x": wrongly} if sort.stiffness != 1.0 else {}))
     velocity, cycle = slider.drive_speed, cycle_of(rig)
+    if sort.known:
+        spread = Normal(velocity, sort.known * velocity, low=0.0)
+        stated = Rig(stated.slider, {**stated.priors, VELOCITY: spread})
     level = float(f"{NOISE * slider.F_0:.2g}")
     noise = {"force": Noise(level, 0.01, sort.zero * slider.F_0)}
     usual = Conditions(

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from stiction.arrays import Floats
 from stiction.inference.cycles import slip_cycles
-from stiction.inference.features import BEND, FeatureGroup, parts
+from stiction.inference.features import BEND, SHAPE, FeatureGroup, parts
 from stiction.inference.observation import Conditions
 from stiction.system.slider import Slider
 
@@ -25,6 +25,11 @@ def features_from(
 def bend_features(conditions: Conditions, slider: Slider) -> NDArray[np.bool_]:
     """Return which features of a record under these conditions are those of a bent loading."""
     return which(conditions, slider, lambda part: part.name == BEND)
+
+
+def shape_features(conditions: Conditions, slider: Slider) -> NDArray[np.bool_]:
+    """Return which features of a record tell its shape, not how fast its force rises."""
+    return which(conditions, slider, lambda part: part.name in SHAPE)
 
 
 def which(

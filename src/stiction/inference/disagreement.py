@@ -1,4 +1,7 @@
-"""Whether several records of a rig contradict each other: what each says, apart from the others."""
+"""Whether records of a rig contradict each other, or the rate of loading that is stated.
+
+What each record says, apart from the others.
+"""
 
 from __future__ import annotations
 
@@ -9,8 +12,13 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
+from stiction.inference.columns import shape_features
+from stiction.inference.features import DROP, LOADING
+from stiction.inference.learning.conflict import Conflict
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.observation import steadiness
+from stiction.inference.observation import Observation, steadiness
+from stiction.inference.simulated.library import Library
+from stiction.inference.simulated.loading_rate import logarithms_of_rate
 
 
 class Disagreement(NamedTuple):
@@ -81,3 +89,21 @@ def _most_apart(names: Sequence[str], told: Sequence[Told]) -> Disagreement:
     others, own = (np.abs(usual) / scale).max(axis=(1, 2)), np.abs(its) / scale
     share = (np.count_nonzero(others >= own.max()) + 1.0) / (len(others) + 1.0)
     return Disagreement(names[int(np.argmax(own.max(axis=0)))], share)
+
+
+def stated_rate(library: Library, seen: Sequence[Observation]) -> Conflict:
+    """Return how far the rate of loading is from stiffness times drive velocity, as stated.
+
+    Of the logarithm of the mean rate from trough to peak, which creep lowers, and the shape of
+    loading and slip says by how much. Of several records, that which contradicts most.
+    """
+    plan, found = library.plan, []
+    stated = logarithms_of_rate(plan, library.scores)
+    ends = np.cumsum([len(each.features) for each in seen])[:-1]
+    for known, its in zip(np.split(library.features, ends, axis=1), seen, strict=True):
+        shape = shape_features(its.conditions, plan.slider)
+        rates = known[:, DROP] - known[:, LOADING]
+        own = float(its.features[DROP] - its.features[LOADING])
+        found.append(Conflict.between(known[:, shape], rates, stated, its.features[shape], own))
+    least = min(found, key=lambda each: each.p_value)
+    return least._replace(p_value=steadiness(each.p_value for each in found))

@@ -12,11 +12,19 @@ from scipy.special import ndtr
 
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
-from stiction.inference.disagreement import Disagreement, disagreement
+from stiction.inference.disagreement import Disagreement, disagreement, stated_rate
 from stiction.inference.learning.calibration import Learned
+from stiction.inference.learning.conflict import Conflict
 from stiction.inference.learning.regression_abc import Sample, quantiles
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.observation import TREND, Observation, Trend, sign_seen, steadiness
+from stiction.inference.observation import (
+    TREND,
+    VELOCITY,
+    Observation,
+    Trend,
+    sign_seen,
+    steadiness,
+)
 from stiction.inference.rig import Rig, stored_text
 from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import Plan
@@ -29,11 +37,11 @@ from stiction.text.paths import last_part, short_names
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Report, Section, Table
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words, interval, span, to_error
+from stiction.text.units import in_words, interval, span, to_error, with_error
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95
-CONTRADICTS = 0.01  # p-value below which records of one rig contradict each other
+CONTRADICTS = 0.01  # p-value below which records of one rig contradict each other, or the rig
 RARE = 0.05  # share of simulations below which a record is not like them
 NEAR_AN_END = 2.0  # normal score beyond which 5 % of a prior lie
 TAIL = 3.0  # normal score beyond which 0.27 % of a prior lie
@@ -50,6 +58,10 @@ WITHHELD = (
 ALONG_X = (
     "The force is taken as that of the spring along x, k_x u_x. A load cell along the drive reads "
     'k_y u_y sin φ as well: if yours does, state cell_angle = "0 deg" in [slider].'
+)
+BY_RATE = (
+    "k_x follows from the rate of loading, k_x V: it is as far off as the drive velocity, which is "
+    'taken as certain; else state velocity = "0.5 +- 0.02 mm/s".'
 )
 OWN_UNITS = {"jitter": "", "gain": "", "zero": "N", "zero_drift": "N/s"}
 MEANINGS = {
@@ -114,6 +126,9 @@ class Fit(Report):
         p-values of a trend of peaks and of drops from cycle to cycle, in all records together.
     disagreement : Disagreement or None
         The parameter of which several records say most clearly something else, if there are any.
+    loading : Conflict
+        Of the logarithm of the rate of loading with what is stated: stiffness times drive velocity,
+        times the gain of a load cell.
     explanation : str
         What may explain that records are not like the simulated ones, as sentences; may be empty.
     disputed : str
@@ -130,6 +145,7 @@ class Fit(Report):
     farther: float = field(compare=False)
     trend: Trend = field(compare=False)
     disagreement: Disagreement | None = field(compare=False)
+    loading: Conflict = field(compare=False)
     explanation: str = field(default="", compare=False)
     disputed: str = field(default="", compare=False)
 
@@ -165,11 +181,13 @@ class Fit(Report):
         count, ranks = len(library.scores), learned.ranks
         blocks = [each.features for each in seen]
         apart = disagreement([*plan.priors], library.scores, alone, blocks) if alone else None
+        loading = stated_rate(library, seen)
         why = explain_unlike([each.changes for each in seen])
         other = " ".join(each.disputed for each in seen if each.disputed)
         return cls(
-            plan, after, prior, estimates, count, ranks, scores, farther, trend, apart, why, other
-        )
+            plan, after, prior, estimates, count, ranks, scores, farther, trend, apart, loading,
+            why, other,
+        )  # fmt: skip
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -217,6 +235,8 @@ class Fit(Report):
             sentences.append("These channels do not show the sign of phi: it is that of the prior.")
         if "phi" in self.plan.priors and self.plan.slider.cell_angle is None:
             sentences.append(ALONG_X)
+        if VELOCITY not in self.plan.priors and "k_x" in [x.name for x in self.known]:
+            sentences.append(BY_RATE)
         sentences.append(f"Compared with {self.simulations} simulated records.")
         sentences += self.disturbances
         sentences.append(
@@ -292,6 +312,8 @@ class Fit(Report):
                 "values mean nothing until that is explained: are they of one rig, under "
                 "the conditions stated? Fit each by itself."
             )
+        if self.loading.p_value < CONTRADICTS:
+            found.append(other_rate(self.loading))
         if self.beyond:
             names = ", ".join(self.beyond)
             found.append(
@@ -402,6 +424,19 @@ def estimate(
     narrower = deviation / wide
     return Estimate(
         name, unit_of(plan, name), middle, low, high, mid, bottom, top, narrower, coverage
+    )
+
+
+def other_rate(its: Conflict) -> str:
+    """Return that a spring is loaded at another rate than stated, and what to do."""
+    factor = float(np.exp(its.found))
+    return (
+        f"The force rises at {with_error(factor, its.error * factor, '')} times the rate that is "
+        f"stated, stiffness times drive velocity: {percent(its.p_value)} of the simulated records "
+        f"are as far off, {percent(CONTRADICTS)} are needed. Stiffness, velocity or the gain of "
+        "the load cell is off by more than stated, and what is estimated of friction and stiffness "
+        "with it. Measure them, or state uncertainties that hold, such as velocity = "
+        '"0.5 +- 0.02 mm/s" under [drive].'
     )
 
 

@@ -1,0 +1,89 @@
+"""Whether a value that a record shows contradicts what is stated of it.
+
+A record is compared with simulated ones by all of its features together; beside forty others one of
+them may be far off. A value that follows from stated ones but for a small part, which the shape of
+a record shows, is worth a test of its own. That part is learned from simulations, whose parameters
+are known, so that no uncertainty of what is stated is needed to tell it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple, Self
+
+import numpy as np
+
+from stiction.arrays import Floats
+from stiction.inference.learning.summary import (
+    CENTRAL,
+    LEAST,
+    WIDTHS,
+    Standard,
+    decompose,
+    kernel,
+    regression,
+    single_threaded_algebra,
+)
+
+MOST = 1000  # simulations to learn from: a second's work, and more teach little
+NEAREST = 200  # of them, with which a record is compared
+OUTER = 1.0, 99.0  # percentiles, beyond which values are those of cycles that hardly slip
+
+
+class Conflict(NamedTuple):
+    """How far a value is from the middle of what is stated of it.
+
+    Parameters
+    ----------
+    found, error : float
+        The difference, less what the shape of the record accounts for, and its standard error.
+    p_value : float
+        Share of simulated records as far off, of those whose shape is alike (the prior predictive
+        check of M. Evans & H. Moshonov, Bayesian Anal. 1, 893 (2006)).
+    """
+
+    found: float
+    error: float
+    p_value: float
+
+    @classmethod
+    def between(
+        cls, shapes: Floats, values: Floats, stated: Floats, shape: Floats, value: float
+    ) -> Self:
+        """Compare the value of a record with those of simulated ones.
+
+        Parameters
+        ----------
+        shapes : ndarray
+            (n, f), features of simulated records that the value does not enter.
+        values, stated : ndarray
+            (n,), the value that each shows, and what its parameters say of it; both less the middle
+            of what is stated.
+        shape, value
+            Of the record, (f,).
+
+        Examples
+        --------
+        >>> random = np.random.default_rng(0)
+        >>> shapes, stated = random.standard_normal((400, 2)), random.standard_normal(400)
+        >>> found = Conflict.between(shapes, stated + shapes[:, 0], stated, np.array([1, 0.0]), 5.0)
+        >>> round(found.found, 1), found.p_value < 0.01
+        (4.0, True)
+        """
+        shapes, values, stated = shapes[:MOST], values[:MOST], stated[:MOST]
+        standard = Standard.of(shapes)
+        known, new = standard.scores(shapes), standard.scores(shape[None])
+        with single_threaded_algebra():
+            parts = [(width, *decompose(kernel(known, known, width))) for width in WIDTHS]
+            rest = values - stated
+            usual = np.clip(rest, *np.percentile(rest, OUTER))[:, None]
+            middle = regression(parts, usual, known.shape[1])
+            apart = rest - middle.library[:, 0]
+            spread = regression(parts, np.log(apart * apart + LEAST)[:, None], known.shape[1])
+        own = value - float(middle.predict(new, known)[0, 0])
+        places = np.column_stack([known, 0.5 * spread.library])
+        place = np.append(new[0], 0.5 * spread.predict(new, known)[0])
+        near = np.argsort(((places - place) ** 2).sum(axis=1))[:NEAREST]
+        others = np.abs(values - middle.library[:, 0])[near]
+        low, _, high = np.percentile(apart[near], CENTRAL)
+        share = (np.count_nonzero(others >= abs(own)) + 1.0) / (len(others) + 1.0)
+        return cls(own, 0.5 * float(high - low), share)
