@@ -221,6 +221,9 @@ def _agreeing(analysis: Analysis) -> Analysis:
     """Return an analysis without an angle of friction that turns where it is seen to grow."""
     shown = analysis.parts["rotation"]
     if shown is None or shown.kind != GROWING:
+        return analysis
+    known = analysis.missing.get("misalignment", "not determined")
+    if analysis.misalignment is None and known.startswith("not determined"):
         return analysis  # else a bound of the angle, too, supposes what is not so
     why = (
         "not determined: Eq. (7) supposes that friction turns, and the force across shows that it "

@@ -1,7 +1,8 @@
 """Whether the friction force turns or grows, of paths whose truth is known."""
 
+from dataclasses import dataclass
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import stiction as st
 from stiction.analysis.parts import rotation
 from stiction.analysis.report import _agreeing
 from stiction.analysis.rotation.findings import BOTH, GROWING, TURNING, UNDETERMINED, rotation_of
+from stiction.analysis.rotation.plane import with_both_forces
 from stiction.arrays import xr
 from stiction.errors import ResultError
 
@@ -167,7 +169,7 @@ def test_what_does_not_rise_or_is_too_short_is_refused():
 )
 def test_the_report_says_so(across, known, said):
     its = rotation_of(record_of(across, 1e-3, 6, 0.0 if known else 3.0, known), cycles_of())
-    analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}})
+    analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}, "source": None})
     assert said in " ".join(rotation.section(analysis).sentences)
     assert f"means over {LOADINGS} loadings" in " ".join(rotation.section(analysis).sentences)
     numbers = rotation.numbers(analysis)["rotation"]
@@ -177,13 +179,14 @@ def test_the_report_says_so(across, known, said):
 
 def test_the_report_of_one_loading_leaves_out_a_drift_that_it_cannot_show():
     its = rotation_of(record_of(TURN, 1e-3, 6, 0.0, 0.02), cycles_of().isel(cycle=[0]))
-    analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}})
+    analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}, "source": None})
     said = " ".join(rotation.section(analysis).sentences)
     assert "This is of one loading" in said
     assert "a drift of the zero beyond a stated one" in said
 
 
-class FoundAngle(NamedTuple):
+@dataclass(frozen=True)
+class FoundAngle:
     """What is known of an angle beside a rotation."""
 
     parts: dict[str, Any]
@@ -200,3 +203,52 @@ def test_a_force_that_grows_implies_no_angle_nor_a_bound_of_it(angle):
         found = _agreeing(FoundAngle({"rotation": its}, bound, angle))
         assert (found.misalignment, found.missing != bound) == (None if known else angle, known)
         assert ("shows that it grows" in found.missing.get("misalignment", "")) is known
+
+
+@pytest.mark.parametrize(
+    ("across", "known", "said"),
+    [
+        (TURN, None, "turns at nearly constant magnitude: this apparent stick is slow creep."),
+        (0.05 * RISE, 0.02, "grows rather than turns at one magnitude: the mass rests, or its"),
+        (PARTLY, 0.01, "grows and turns: the mass rests for a part of the loading"),
+        (PARTLY, None, ""),
+    ],
+)
+def test_the_brief_says_it_directly_after_the_kind_of_motion(across, known, said):
+    found = st.analyse(record_of(across, 1e-3, 6, 0.0 if known else 3.0, known))
+    brief = found.tables()[0]
+    kind, motion, third = brief.sentences[:3]
+    assert (brief.title, kind[:10], motion[:8]) == ("In short", "Stick-slip", "The mass")
+    assert third.startswith(f"By the force across, the friction force {said}") is bool(said)
+    assert "By the force across" not in " ".join(brief.sentences[3 if said else 2 :])
+
+
+@pytest.mark.parametrize(
+    ("angle", "kind", "said"),
+    [("1 deg", TURNING, "this apparent stick is slow creep"), ("0 deg", GROWING, "the mass rests")],
+)
+def test_a_run_knows_both_forces(angle, kind, said):
+    slider = st.presets.nakano_popov_2020().replace(phi=angle)
+    found = st.analyse(st.simulate(slider, duration=5.0, sample_rate=2e3))
+    its = found.parts["rotation"]
+    assert (its.kind, its.stated, found.record.force_across) == (kind, True, None)
+    third = found.tables()[0].sentences[2]
+    assert third.startswith("While the spring is loaded, the friction force")
+    assert said in third
+    section = next(each for each in found.tables() if each.title == rotation.TITLE)
+    assert not {"stated", "crosstalk", "zero"} & set(" ".join(section.sentences).split())
+
+
+def test_the_forces_of_a_run_stand_along_its_load_cell_and_across_it():
+    slider = st.presets.nakano_popov_2020()
+    turned = slider.replace(cell_angle="30 deg")
+    first, second = (
+        with_both_forces(run, st.analysis.record_of(run))
+        for run in (st.simulate(each, duration=2.0, sample_rate=1e3) for each in (slider, turned))
+    )
+    magnitude = [np.hypot(each.force, each.force_across) for each in (first, second)]
+    assert np.allclose(*magnitude, rtol=1e-12, atol=0.0)
+    angle = np.arctan2(second.force_across, second.force) - np.arctan2(
+        first.force_across, first.force
+    )
+    assert np.allclose(np.abs(angle[5:]), np.pi / 6.0 + slider.phi, atol=1e-9)

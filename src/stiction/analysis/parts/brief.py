@@ -6,6 +6,7 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from stiction.analysis.motion.friction import without_loading
+from stiction.analysis.parts import rotation
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
 from stiction.analysis.parts.procedure import name_of
 from stiction.text.sections import Section, first_clause, first_sentence
@@ -23,12 +24,13 @@ OF_LOADING = {  # by their name in `Analysis.missing`
 
 
 def section(found: Analysis) -> Section:
-    """Return test, kind of motion, friction, the first warning, and what is not determined."""
+    """Return test, motion, whether the force turns, friction, the first warning, and what lacks."""
     kind, test = found.regime.surely, found.parts["procedure"]
     lines = [
         *([] if test is None else [f"A test of {name_of(test).replace('-', ' ')}, as below."]),
         f"{kind[0].upper()}{kind[1:]}.",
         first_sentence(found.parts["motion"]),
+        *rotation.in_short(found),
         _friction(found),
         *_misalignment(found),
         *warnings_in_short(found.warnings),

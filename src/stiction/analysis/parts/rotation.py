@@ -15,6 +15,7 @@ from stiction.analysis.rotation.findings import (
     rotation_of,
 )
 from stiction.analysis.rotation.loading import SEVERAL
+from stiction.analysis.rotation.plane import with_both_forces
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.errors import ResultError
 from stiction.storage.table_files import number
@@ -26,20 +27,20 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 TITLE = "Rotation of the force"
-CONCLUSIONS = {
-    TURNING: "It turns at nearly constant magnitude: this apparent stick is slow creep.",
-    GROWING: "It grows rather than turns at one magnitude: the mass rests, or its contact yields "
-    "before it slips.",
-    BOTH: "It grows and turns: the mass rests for a part of the loading and creeps for another, or "
-    "friction differs with its direction.",
-    UNDETERMINED: "Whether the force turns or grows is not determined.",
+CLAUSES = {  # of the friction force
+    TURNING: "turns at nearly constant magnitude: this apparent stick is slow creep",
+    GROWING: "grows rather than turns at one magnitude: the mass rests, or its contact yields "
+    "before it slips",
+    BOTH: "grows and turns: the mass rests for a part of the loading and creeps for another, or "
+    "friction differs with its direction",
 }
+UNKNOWN = "Whether the force turns or grows is not determined."
 
 
 def find(found: Analysis) -> Rotation | None:
-    """Return how the force changes in the loadings of a record with a force across."""
-    record = found.record
-    if isinstance(found.source, Trajectory) or record.force_across is None:
+    """Return how the force changes in the loadings of a run, or of a record with both forces."""
+    record = with_both_forces(found.source, found.record)
+    if record is None or (isinstance(found.source, Trajectory) and not found.regime.loads):
         return None
     if not found.regime.loads:
         raise ResultError("not determined: the record shows no stick-slip")
@@ -56,18 +57,29 @@ def section(found: Analysis) -> Section | None:
     if its is None:
         why = found.missing.get("rotation")
         return Section(TITLE, [f"{why[0].upper()}{why[1:]}."]) if why else None
-    return Section(TITLE, [_course(its), _conclusion(its)])
+    measured = not isinstance(found.source, Trajectory)
+    return Section(TITLE, [_course(its, measured=measured), _conclusion(its, measured=measured)])
 
 
-def _course(its: Rotation) -> str:
+def in_short(found: Analysis) -> list[str]:
+    """Return whether the force turns in one sentence; nothing where that is not known."""
+    its: Rotation | None = found.parts["rotation"]
+    if its is None or its.kind not in CLAUSES:
+        return []
+    if isinstance(found.source, Trajectory):
+        return [f"While the spring is loaded, the friction force {CLAUSES[its.kind]}."]
+    return [f"By the force across, the friction force {CLAUSES[its.kind]}."]
+
+
+def _course(its: Rotation, *, measured: bool) -> str:
     """Return what both forces do, and with a known zero magnitude and angle."""
     a, b = (in_words(float(each), "N") for each in its.along)
     c, d = (float(each) for each in its.across)
     across = "the force across"
     if isfinite(its.change):
         c, d = its.side * c, its.side * d
-        known = "stated" if its.stated else "fitted"
-        across += f", from its {known} zero,"
+        if measured:
+            across += f", from its {'stated' if its.stated else 'fitted'} zero,"
     way = "falls" if d < c else "rises"
     said = (
         f"While the force along the drive rises from {a} to {b}, {across} {way} from "
@@ -92,9 +104,9 @@ def _means(its: Rotation) -> str:
     return f"These are means over {its.loadings} loadings."
 
 
-def _conclusion(its: Rotation) -> str:
+def _conclusion(its: Rotation, *, measured: bool) -> str:
     """Return whether it turns or grows, and what follows."""
-    said = [CONCLUSIONS[its.kind]]
+    said = [f"It {CLAUSES[its.kind]}." if its.kind in CLAUSES else UNKNOWN]
     if its.kind == UNDETERMINED and its.stated:
         said.append("The errors leave both possible.")
     elif its.kind == UNDETERMINED:
@@ -117,7 +129,7 @@ def _conclusion(its: Rotation) -> str:
                 f"The zero of the force across, {zero}, is that of the arc which fits, as none is "
                 "stated with its uncertainty; that friction is alike in all directions is supposed."
             )
-    if isfinite(its.change):
+    if isfinite(its.change) and measured:
         said.append(_left_out(its))
     return " ".join(said)
 
