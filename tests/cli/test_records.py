@@ -206,8 +206,8 @@ def test_a_doubt_of_a_unit_names_the_option(data, capsys):
     rig = ("--stiffness", "1 N/m", "--drive-velocity", "0.1 m/s")
     assert inside("analyse", data, "--time", "1=s", "--force", "mN", *rig) == 0
     said = " ".join(capsys.readouterr().out.split())
-    assert "is the time in milliseconds? Give --time '1=ms'; is the force in kilonewtons?" in said
-    assert "Give --force '2=kN'; or stiffness or drive velocity" in said
+    assert "is the time in ms, not in s? Give --time '1=ms'; is the force in N, not in mN?" in said
+    assert "Give --force '2=N'; or stiffness or drive velocity" in said
 
 
 def test_what_is_ambiguous_ends_with_status_2(data, capsys):

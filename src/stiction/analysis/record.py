@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from math import pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
+from pydantic import (
+    BeforeValidator,
+    InstanceOf,
+    ModelWrapValidatorHandler,
+    PrivateAttr,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from stiction.analysis.signals.digitised import first_of_each
@@ -202,6 +208,20 @@ class Record(Described):
     _same_time: int = PrivateAttr(0)
     _repeats: int = PrivateAttr(1)
     _of_run: OfRun | None = PrivateAttr(None)
+    _units: dict[str, str] = PrivateAttr(default_factory=dict)
+
+    @model_validator(mode="wrap")
+    @classmethod
+    def _with_units(cls, given: Any, make: ModelWrapValidatorHandler[Self]) -> Self:
+        """Store the units in which arrays were given, which a doubt of them names."""
+        made = make(given)
+        if isinstance(given, Mapping):
+            made._units = {
+                name: str(given.get(key) or KINDS[name].unit)
+                for name, key in UNITS.items()
+                if unit_on(given.get(name)) is None
+            }
+        return made
 
     @model_validator(mode="before")
     @classmethod
@@ -288,6 +308,10 @@ class Record(Described):
             self.__dict__.update(time=time)
             self._same_time += same
         return self
+
+    def unit_as_read(self, channel: str) -> str | None:
+        """Return the unit that was said of an array; None where the array carried its own."""
+        return self._units.get(channel)
 
     @property
     def same_time(self) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from math import isclose
 from typing import NamedTuple
 
 from stiction.formats.channels import CHANNELS, plain
@@ -19,6 +20,12 @@ SPELLED = {
 }  # fmt: skip
 BRIDGE = re.compile(r"[mµu]?V/V")  # the signal of strain gauges over their supply
 PER_BRIDGE = re.compile(rf"(.*?)/\(?({BRIDGE.pattern})\)?")
+PREFIXES = {  # of units that are written with them
+    "s": ("n", "u", "m", ""),
+    "N": ("n", "u", "m", "", "k", "M"),
+    "gf": ("", "k"),
+    "g": ("", "k"),
+}
 COUNTS = {"count", "lsb", "digit", "bit", "step"}
 RATIOS = {"-", "1", "", "–", "--", "none", "n/a", "[-]", "ratio"}
 IN = re.compile(r"in (?!lb|oz)", re.I)  # "in kN" is not an inch; "in lbf" is a moment
@@ -84,6 +91,44 @@ def with_other_sign(text: str) -> str:
     number, name = (found[1].replace("−", "-"), found[2]) if found else ("1", text)
     number = f"{number}1" if number in ("+", "-") else number
     return f"{number[1:]} {name}" if number[0] == "-" else f"-{number.lstrip('+')} {name}"
+
+
+def with_prefix(text: str, unit: str, power: int) -> str:
+    """Return the unit that is 1000**power as large, by its prefix; '' if nobody writes it so.
+
+    Examples
+    --------
+    >>> with_prefix("mN", "N", 1), with_prefix("-0.5 N/V", "N", -1), with_prefix("gf", "N", 1)
+    ('N', '-0.5 mN/V', 'kgf')
+    >>> with_prefix("min", "s", -1), with_prefix("s", "s", 1), with_prefix("sec", "s", -1)
+    ('', '', 'ms')
+    """
+    found = QUANTITY.fullmatch(text)
+    number, name = (f"{found[1]} ", found[2]) if found else ("", text)
+    upper, over, lower = name.partition("/")
+    upper = spell(upper)
+    had = size_of(upper, unit)
+    for base, prefixes in PREFIXES.items():
+        if had is None or not upper.endswith(base):
+            continue
+        for prefix in prefixes:
+            its = size_of(prefix + base, unit)
+            if its is not None and isclose(its.value, had.value * 1000.0**power):
+                return f"{number}{prefix}{base}{over}{lower}"
+    return ""
+
+
+def in_thousands(text: str, power: int) -> str:
+    """Return the unit that is 1000**power as large, by its number.
+
+    >>> in_thousands("min", -1), in_thousands("-1 lbf", 1), in_thousands("1000 s", -1)
+    ('0.001 min', '-1000 lbf', 's')
+    """
+    found = QUANTITY.fullmatch(text)
+    number, name = (found[1].replace("−", "-"), found[2]) if found else ("1", text)
+    value = float(f"{number}1" if number in ("+", "-") else number.replace(" ", ""))
+    times = f"{value * 1000.0**power:.12g}"
+    return name if times == "1" else f"{times} {name}"
 
 
 def is_electric(text: str) -> bool:

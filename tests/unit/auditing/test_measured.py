@@ -275,7 +275,7 @@ def test_the_loading_curve_of_a_sawtooth_is_straight():
     ("changes", "said"),
     [
         ({}, ""),
-        ({"k_x": "2.3 N/m"}, "is the force in millinewtons?"),
+        ({"k_x": "2.3 N/m"}, "mN/s: stiffness or drive velocity is stated 1000 times too small"),
         ({"k_x": "1.3 kN/m"}, "times stiffness times drive velocity as stated"),
         ({"drive.velocity": "0.2 mm/s"}, "times stiffness times drive velocity as stated"),
         ({"mass": "80 kg"}, "stiffness over mass is"),

@@ -58,10 +58,10 @@ def test_what_belongs_together_is_not_doubted(force) -> None:
 @pytest.mark.parametrize(
     ("stretch", "gain", "changes", "said"),
     [
-        (1e3, 1.0, {}, "is the time in milliseconds? Give time_unit='ms'"),
-        (1.0, 1e3, {}, "is the force in millinewtons? Give force_unit='mN'"),
-        (1e6, 1.0, {}, "is the time in microseconds? Give time_unit='us'"),
-        (1.0, 1e6, {}, "implausible: is the force in micronewtons? Give force_unit='uN'"),
+        (1e3, 1.0, {}, "is the time in ms, not in s? Give time_unit='ms'"),
+        (1.0, 1e3, {}, "is the force in mN, not in N? Give force_unit='mN'"),
+        (1e6, 1.0, {}, "is the time in us, not in s? Give time_unit='us'"),
+        (1.0, 1e6, {}, "implausible: is the force in uN, not in N? Give force_unit='uN'"),
         (1.0, 1e6, {}, "is stated 1000000 times too small"),
         (1e3, 1e3, {}, "A friction coefficient of 199 is implausible"),
         (1e3, 1e3, {}, "stiffness over mass is 7.3e-7 times"),
@@ -643,8 +643,9 @@ def test_a_force_in_kilonewtons_is_doubted_and_gives_no_distance() -> None:
     time = np.arange(0.0, 20.0, 1e-3)
     known = {"normal_load": 20.0, "stiffness": 1400.0, "drive_velocity": 1e-3}
     found = st.analyse(st.Record(time=time, force=1e-3 * sawtooth(time / 0.7), **known))
-    for words in ("of 0.0001 is implausible: is the force in kilonewtons", "in milliseconds"):
-        assert words in " ".join(found.warnings)
+    said = " ".join(found.warnings)
+    assert "of 0.0001 is implausible: is the force in kN, not in N" in said
+    assert "is the time" not in said  # that would leave the coefficient as it is
     assert np.isnan(found.cycles["slip_distance"]).all()
     assert "contradict the force" in found.missing["creep_distance"]
 

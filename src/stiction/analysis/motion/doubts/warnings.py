@@ -25,6 +25,15 @@ from stiction.analysis.motion.doubts.sampling import (
     doubt_slips_between_samples,
     doubt_times,
 )
+from stiction.analysis.motion.doubts.units import (
+    LARGEST_MU,
+    NEAR_RATE,
+    TINY_MU,
+    Numbers,
+    ask_units,
+    likely_changes,
+    numbers_of,
+)
 from stiction.analysis.motion.doubts.zero import doubt_zero, is_about_zero
 from stiction.analysis.motion.drift import WORTH, Drift, is_shown
 from stiction.analysis.motion.friction import Friction
@@ -43,27 +52,15 @@ from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
-from stiction.recording.origin import in_unit, use_of
 from stiction.system.load_cell import ACROSS
 from stiction.text.quantity_text import percent
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, times
 from stiction.trajectory import Trajectory
 
-LARGEST_MU = 3.0
-LEAST_MU = 0.01  # of dry friction: superlubricity aside
-UNITS = (("mN", "milli", 1e-3), ("uN", "micro", 1e-6), ("kN", "kilo", 1e3))  # size, N
-TINY_MU = 1e-3  # no friction is so small, but of a film of fluid
-THOUSAND = 0.2  # a ratio within a factor of 5 of a thousand, or its square, is a wrong unit
+NEAR_MASS = log10(5.0) / 6.0  # k/m within a factor of 5 of a million is that of another unit
 VARIES = 0.05  # of the mean of a measured load: less is not worth a sentence
 IMPOSED = {"drive": ("drive_X", "drive_Y"), "load": ("normal_load",)}  # columns of a run
-# By which power of 1000 the rate of a force is off in another unit: channel, unit in two ways
-CAUSES = {
-    -2: (("time", "microseconds", "us"),),
-    -1: (("time", "milliseconds", "ms"), ("force", "kilonewtons", "kN")),
-    1: (("force", "millinewtons", "mN"),),
-    2: (("force", "micronewtons", "uN"),),
-}
 STIRS = 0.01  # of the drive's largest speed: more backwards is a motion to and fro
 QUICKER = 2.0  # times k/m: so quick a vibration may be that of both springs
 
@@ -82,17 +79,18 @@ def warnings(
     `stated` is what was compared, `drift` that of the force, sure or not, `ends` where it is cut
     off.
     """
+    seen = numbers_of(_largest_mu(friction, cycles), stated)
     wrong = {each.quantity: each for each in stated if each.agrees is False}
     found = [
         *_doubt_load(record),
-        *_implausible_friction(record, friction, cycles),
+        *_implausible_friction(record, seen),
         *doubt_clipping(ends),
         *doubt_mean_period(cycles),
         *(doubt_loading(cycles) if kind in (STICK_SLIP, TRANSITIONAL) else ()),
         *doubt_cycles_apart(cycles),
         *doubt_quiet(record, friction, cycles),
-        *_loading(record, [each for each in stated if each.quantity == LOADING_RATE]),
-        *_mass(record, wrong.get(SWING), kind),
+        *_loading(record, [x for x in stated if x.quantity == LOADING_RATE], seen),
+        *_mass(record, wrong.get(SWING), kind, seen),
         *_mains(kind, cycles),
         *doubt_few_samples(record, cycles),
         *doubt_filter(record, cycles),
@@ -196,33 +194,24 @@ def _mains(kind: str, cycles: CycleTable) -> Iterator[str]:
         )
 
 
-def _implausible_friction(record: Record, friction: Friction, cycles: CycleTable) -> Iterator[str]:
+def _largest_mu(friction: Friction, cycles: CycleTable) -> float:
+    """Return the largest friction coefficient; NaN if none is known, or the force is about zero."""
     known = [each for each in friction[:3] if each is not None]
     mu = max((abs(each.coefficient) for each in known), default=np.nan)
+    return np.nan if mu < TINY_MU and is_about_zero(friction, cycles) else mu
+
+
+def _implausible_friction(record: Record, seen: Numbers) -> Iterator[str]:
+    mu = seen.mu
     if TINY_MU <= mu <= LARGEST_MU or not np.isfinite(mu):
         return
-    if mu < TINY_MU and is_about_zero(friction, cycles):
-        return
     load = in_words(record.normal_load or 0.0, "N")
-    its = next(
-        (
-            f"{_ask_unit(record, 'force', f'{prefix}newtons', unit)}; or "
-            for unit, prefix, size in UNITS
-            if LEAST_MU < mu * size < LARGEST_MU
-        ),
-        "",
-    )
+    asked = ask_units(record, likely_changes(seen), lambda change: "force" in change)
+    its = "".join(f"{each}; or " for each in asked)
     yield f"A friction coefficient of {mu:.3g} is implausible: {its}check the normal load, {load}."
 
 
-def _ask_unit(record: Record, channel: str, name: str, unit: str) -> str:
-    """Ask whether a channel is in another unit, and say how it is read so."""
-    use = use_of(record.origin, channel)
-    remedy = f"{channel}_unit='{unit}'" if use is None else in_unit(use, unit)
-    return f"is the {channel} in {name}? Give {remedy}"
-
-
-def _loading(record: Record, its: Sequence[StatedQuantity]) -> Iterator[str]:
+def _loading(record: Record, its: Sequence[StatedQuantity], seen: Numbers) -> Iterator[str]:
     """Doubt the rate of loading as stated, by the whole record or by the parts of a change."""
     good = [each for each in its if each.agrees]
     if good:
@@ -248,22 +237,22 @@ def _loading(record: Record, its: Sequence[StatedQuantity]) -> Iterator[str]:
                 f"{f'{each.part} the'.strip().capitalize()} force rises at "
                 f"{in_words(each.found, 'N/s')}, {times(each.ratio, 3)} stiffness times "
                 f"drive velocity as stated, {in_words(each.stated, 'N/s')}: "
-                f"{_remedy(record, each.ratio)}."
+                f"{_remedy(record, seen._replace(rate=each.ratio))}."
             )
 
 
-def _remedy(record: Record, ratio: float) -> str:
-    """Return the likely cause of a rate that is `ratio` times as large as stated."""
-    power = log10(ratio) / 3.0 if ratio > 0.0 else 0.0
-    causes = CAUSES.get(round(power)) if abs(power - round(power)) < 0.1 else None
-    if causes is None:
+def _remedy(record: Record, seen: Numbers) -> str:
+    """Return the likely causes of a rate that is so many times as large as stated."""
+    power = round(log10(seen.rate) / 3.0) if seen.rate > 0.0 else 0
+    if power == 0 or abs(log10(seen.rate) - 3.0 * power) > NEAR_RATE:
         return "check stiffness and drive velocity, or the gain of the load cell"
-    asked = "; ".join(_ask_unit(record, *cause) for cause in causes)
-    wrong = f"{1000 ** abs(round(power))} times too {'large' if power < 0.0 else 'small'}"
-    return f"{asked}; or stiffness or drive velocity is stated {wrong}"
+    wrong = f"{1000 ** abs(power)} times too {'large' if power < 0 else 'small'}"
+    stated = f"stiffness or drive velocity is stated {wrong}"
+    asked = ask_units(record, likely_changes(seen))
+    return f"{'; '.join(asked)}; or {stated}" if asked else stated
 
 
-def _mass(record: Record, its: StatedQuantity | None, kind: str) -> Iterator[str]:
+def _mass(record: Record, its: StatedQuantity | None, kind: str, seen: Numbers) -> Iterator[str]:
     """Doubt k/m if the period of a swing, or the duration of a slip, contradicts it."""
     if its is None:
         return
@@ -271,14 +260,18 @@ def _mass(record: Record, its: StatedQuantity | None, kind: str) -> Iterator[str
     yield (
         f"By the {its.how} ({in_words(lasts * pi / its.found**0.5, 's')}), "
         f"stiffness over mass is {times(its.ratio)} {in_words(its.stated, '1/s²', 3)}, as stated: "
-        f"{_remedy_of_mass(record, its.ratio, kind)}."
+        f"{_remedy_of_mass(record, its.ratio, kind, seen)}."
     )
 
 
-def _remedy_of_mass(record: Record, ratio: float, kind: str) -> str:
+def _remedy_of_mass(record: Record, ratio: float, kind: str, seen: Numbers) -> str:
     """Return the likely cause of a k/m that is `ratio` times as large as stated."""
-    if THOUSAND * 1e-6 < ratio < 1e-6 / THOUSAND:
-        return f"{_ask_unit(record, 'time', 'milliseconds', 'ms')}; or check mass and stiffness"
+    changes = likely_changes(seen._replace(swing=ratio))
+    asked = ask_units(record, changes, lambda change: "time" in change)
+    power = float(log10(ratio) / 6.0)
+    nearest = round(power)
+    if asked and nearest and abs(power - nearest) < NEAR_MASS:
+        return f"{'; '.join(asked)}; or check mass and stiffness"
     if kind == HARMONIC and ratio > QUICKER:
         return (
             "check mass and stiffness; or the transverse spring swings as well, as friction that "
