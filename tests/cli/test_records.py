@@ -213,7 +213,9 @@ def test_a_doubt_of_a_unit_names_the_option(data, capsys):
 def test_what_is_ambiguous_ends_with_status_2(data, capsys):
     assert inside("analyse", data) == 2
     said = capsys.readouterr().err
-    assert "states no unit of the force along the drive; say --force '2=mN'" in said
+    assert (
+        "states no unit of the force along the drive; say its unit: --force '2=N' makes it" in said
+    )
     assert "Traceback" not in said
     assert inside("import", data, "--time", "ms", "--force", "bar") == 2
     assert inside("import", data.with_name("none.csv")) == 2
@@ -309,7 +311,7 @@ def test_what_a_record_lacks_is_named_as_an_option_of_the_command(tmp_path, caps
     path = tmp_path / "ratio.csv"
     path.write_text("t [s],F/mg [-]\n" + "".join(f"{0.1 * k:.1f},{0.01 * k}\n" for k in range(30)))
     assert inside(command, path) == 2
-    assert "say for example --normal-load '10 N'" in capsys.readouterr().err
+    assert "say --normal-load '? N'" in capsys.readouterr().err
 
 
 def test_the_result_of_a_run_knows_its_units(tmp_path, slider, capsys):

@@ -16,6 +16,8 @@ from stiction.formats import TextLayout, read_tables
 from stiction.formats.channels import CHANNELS, plain
 from stiction.formats.table import FileTable, Remark, number_of
 from stiction.recording.guess.choice import (
+    FILL,
+    GAP,
     Choice,
     Chosen,
     UnclearColumns,
@@ -424,7 +426,7 @@ def _weigh(
     if not force.ratio:
         return channels, notes
     if load is None and "normal_load" not in known:
-        say = f"say for example {Suggestion('normal_load', '10 N')}"
+        say = f"say {Suggestion('normal_load', f'{GAP} N')}, {FILL}"
         remedy = f"{say}; if the load is unknown, 1 N: forces are then coefficients"
         if of_rig:
             remedy = f"the rig's description states none for certain: {say}, that of this record"

@@ -16,9 +16,7 @@ def table(tmp_path, heads, *columns):
 
 def test_a_force_over_an_even_displacement_is_told_how_to_get_times(tmp_path):
     path = table(tmp_path, "disp [um];tau [kN]", 0.25 * NUMBERS, NUMBERS % 7)
-    said = (
-        r"column 1 'disp \[um\]' rises in steps of 0.25 um: .*interval='0.25 s' if that is 1 um/s"
-    )
+    said = r"column 1 'disp \[um\]' rises in steps of 0.25 um: .*interval='\? s'"
     with pytest.raises(st.ResultError, match=said) as refused:
         st.read_record(path)
     assert "time='1=ms'" not in str(refused.value)  # it is no time
@@ -30,7 +28,7 @@ def test_a_force_over_an_even_displacement_is_told_how_to_get_times(tmp_path):
 
 def test_an_uneven_displacement_has_no_interval(tmp_path):
     path = table(tmp_path, "disp [um];tau [kN]", NUMBERS**1.5, NUMBERS % 7)
-    with pytest.raises(st.ResultError, match=r"or give interval='0.5 ms'"):
+    with pytest.raises(st.ResultError, match=r"or give interval='\? ms'"):
         st.read_record(path)
 
 
@@ -43,7 +41,7 @@ def test_a_unit_that_the_heading_states_is_not_asked_for_again(tmp_path):
 
 def test_a_coefficient_that_is_asked_for_as_a_force_is_told_what_it_needs(tmp_path):
     path = table(tmp_path, "time [s];F/mg [-]", NUMBERS, NUMBERS % 7)
-    with pytest.raises(st.ResultError, match=r"leave out force, and say normal_load='10 N'"):
+    with pytest.raises(st.ResultError, match=r"leave out force, and say normal_load='\? N'"):
         st.read_record(path, force="mN")
     assert st.read_record(path, normal_load="10 N").force.max() == pytest.approx(60.0)
 

@@ -13,10 +13,15 @@ from stiction.formats.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.formats.table import FileColumn, FileTable
 from stiction.formats.units import is_electric, is_ratio, size_of, split_unit
 from stiction.text.suggestion import Suggestion
+from stiction.text.units import in_words
 
 DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
+SHOWN = 3  # columns that a message suggests
 EVEN = 0.01  # of a step: displacements whose steps differ by more have no interval
-AN_AREA = "25 mm^2"  # that turns a stress into a force, for example
+# of a suggestion: what only the user knows. A number instead would be run as it stands
+GAP = "?"
+FILL = f"with its number in place of {GAP}"
+AN_AREA = f"{GAP} mm^2"  # that turns a stress into a force
 
 
 class UnclearColumns(ResultError):
@@ -245,7 +250,7 @@ def _say_ratio(table: FileTable, taken: Sequence[FileColumn]) -> str:
     """Return how a friction coefficient is read, where a force was asked for; '' without one."""
     return "".join(
         f"column {each} is a friction coefficient: leave out {Suggestion('force')}, and say "
-        f"{Suggestion('normal_load', '10 N')}"
+        f"{Suggestion('normal_load', f'{GAP} N')}, {FILL}"
         for each in _ratios(table, taken)[:1]
     )
 
@@ -297,13 +302,13 @@ def _say_time(table: FileTable, columns: Sequence[FileColumn]) -> str:
             steps = np.diff(column.values)
             step = float(np.median(steps))
             if np.abs(steps - step).max() <= EVEN * step:
-                interval = Suggestion("interval", f"{step:.4g} s")
+                interval = Suggestion("interval", f"{GAP} s")
                 return (
                     f"column {column} rises in steps of {step:.4g} {column.unit}: say the time of "
-                    f"one, a step over the drive velocity, {interval} if that is 1 {column.unit}/s"
+                    f"one, a step over the drive velocity, {interval}, {FILL}"
                 )
-    by_column = Suggestion("time", _example(table, "time"))
-    return f"say for example {by_column}; or give {Suggestion('interval', '0.5 ms')}"
+    by_column = _say(table, "time")
+    return f"{by_column}; or give {Suggestion('interval', f'{GAP} ms')}, {FILL}"
 
 
 def own_clock(
@@ -335,10 +340,10 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
         if "/" not in unit and (headed is None or abs(headed.value) != abs(size.value)):
             note = f"column {column} is read in {unit}, as asked, not in what its heading says"
         return Chosen(column, size.value, text, note)
-    example = Suggestion(name, f"{column.number}={channel.example}")
+    example = _say_units(name, column)
     if not text or (is_ratio(text) and not unit):
         raise ResultError(
-            f"{path}: column {column} states no unit of {_article(channel.meaning)}; say {example}"
+            f"{path}: column {column} states no unit of {_article(channel.meaning)}; {example}"
         )
     if is_electric(text):
         hints = [
@@ -349,12 +354,32 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
         hint = f"; line {hints[0].line} says {hints[0].text.strip()[:60]!r}" if hints else ""
         raise ResultError(
             f"{path}: column {column} is in {text}, and its scale is needed; say "
-            f"{Suggestion(name, f'{column.number}={_scale(channel.unit, text)}')}{hint}"
+            f"{Suggestion(name, f'{column.number}={_scale(channel.unit, text)}')}, {FILL}{hint}"
         )
     raise ResultError(
         f"{path}: column {column} is in {echo(text)}, not a unit of "
-        f"{_article(channel.meaning)}; say {example}"
+        f"{_article(channel.meaning)}; {example}"
     )
+
+
+def _say_units(name: str, column: FileColumn) -> str:
+    """Return the usual units of a channel, and what each would make of a column."""
+    channel = CHANNELS[name]
+    units = dict.fromkeys((channel.unit, channel.example))
+    known = column.values[np.isfinite(column.values)]
+    values = known if len(known) else np.zeros(1)
+    said = []
+    for unit in units if len(units) > 1 else (channel.unit, f"k{channel.unit}"):
+        size = size_of(unit, channel.unit)
+        ends = (size.value if size else 1.0) * np.array([values.min(), values.max()])
+        if name == "time":
+            lasts = float(np.ptp(ends))
+            rate = in_words((len(values) - 1) / lasts, "Hz", 2) if lasts > 0.0 else "any rate"
+            means = f"{in_words(lasts, 's', 2)} at {rate}"
+        else:
+            means = f"{in_words(ends[0], channel.unit, 2)} to {in_words(ends[1], channel.unit, 2)}"
+        said.append(f"{Suggestion(name, f'{column.number}={unit}')} makes it {means}")
+    return f"say its unit: {', '.join(said)}"
 
 
 def _article(meaning: str) -> str:
@@ -363,9 +388,10 @@ def _article(meaning: str) -> str:
 
 def _ambiguous(path: object, name: str, matches: Sequence[FileColumn]) -> NoReturn:
     choices = ", ".join(str(each) for each in matches)
+    each_of_them = " or ".join(str(Suggestion(name, each.number)) for each in matches[:SHOWN])
     raise ResultError(
         f"{path}: {len(matches)} columns may be the {CHANNELS[name].meaning}: {choices}; say which "
-        f"by its number: {Suggestion(name, matches[0].number)}"
+        f"by its number: {each_of_them}"
     )
 
 
@@ -380,10 +406,17 @@ def _refuse_lack(path: object, table: FileTable, name: str, remedy: str = "") ->
 def _with_columns(path: object, table: FileTable, name: str, why: str, remedy: str = "") -> str:
     """Return why a channel has no column, the columns that there are, and what to say."""
     columns = ", ".join(str(each) for each in table.columns) or "none"
-    example = _example(table, name)
-    stress = "; a stress times the area that it acts on is a force" if AN_AREA in example else ""
-    remedy = remedy or f"say for example {Suggestion(name, example)}{stress}"
+    remedy = remedy or _say(table, name)
     return f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; {remedy}"
+
+
+def _say(table: FileTable, name: str) -> str:
+    """Return how a column is taken for a channel, with a gap for what only the user knows."""
+    example = _example(table, name)
+    fill = f", {FILL}" if GAP in example else ""
+    fill = fill.replace("number", "unit") if example.endswith(GAP) else fill
+    stress = "; a stress times the area that it acts on is a force" if AN_AREA in example else ""
+    return f"say for example {Suggestion(name, example)}{fill}{stress}"
 
 
 def _example(table: FileTable, name: str) -> str:
@@ -400,12 +433,12 @@ def _example(table: FileTable, name: str) -> str:
         return str(number)  # its heading has the unit
     if increasing and column and DAYS[0] < float(np.nanmean(column.values)) < DAYS[1]:
         return f"{number}=d"
-    return f"{number}={channel.example}"
+    return f"{number}={GAP}"
 
 
 def _scale(unit: str, signal: str) -> str:
-    """Return an example of the scale of a raw signal."""
-    return f"2.5 {unit}/({signal})" if "/" in signal else f"2.5 {unit}/{signal}"
+    """Return the scale of a raw signal, without its number."""
+    return f"{GAP} {unit}/({signal})" if "/" in signal else f"{GAP} {unit}/{signal}"
 
 
 def _increases(values: Floats) -> bool:
