@@ -28,8 +28,10 @@ from stiction.analysis.creep.first_slip import first_slip_time, mean_creep_veloc
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.signals.spectrum import rate_spectrogram, spectrogram
 from stiction.arrays import Floats
+from stiction.plotting.analysis import overview
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.analysis.energy import plot_energy
+from stiction.plotting.analysis.rotation import TIMES
 from stiction.plotting.analysis.trials import Trial, plot_trials
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.apparatus.shapes import drawn_misalignment
@@ -1179,3 +1181,49 @@ def test_a_slider_is_drawn_whatever_holds_it(slider):
     for each in (slider, description, st.Rig(slider)):
         assert st.plot(each, ax) is ax
     assert slider.plot(ax) is ax
+
+
+@pytest.fixture(scope="module")
+def turning() -> st.analysis.Analysis:
+    run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="2 kHz")
+    return st.analyse(run)
+
+
+def test_the_force_turns_on_its_arc_and_not_on_the_straight_line(
+    turning: st.analysis.Analysis, tmp_path: Path
+) -> None:
+    figure = figure_of(st.plotting.plot_rotation, turning)
+    ax, bar = figure.axes
+    arc, straight = ax.get_lines()[:2]
+    x, y = np.transpose(arc.get_xydata())
+    assert np.hypot(x, y) == pytest.approx(turning.parts["rotation"].F_0)
+    assert arc.get_linestyle() == "-" != straight.get_linestyle()
+    (paths,) = ax.collections
+    ways = paths.get_paths()
+    assert len(ways) == turning.cycles.sizes["cycle"]
+    for way in ways:  # its middle: the ring-down of a slip begins it, inertia ends it
+        middle = way.vertices[20:60]
+        assert np.hypot(*middle.T) == pytest.approx(np.hypot(x[0], y[0]), rel=0.02)
+    assert len({tuple(each) for each in paths.cmap(paths.norm(paths.get_array()))}) == len(ways)
+    assert bar.get_ylabel() == "time of the loading (s)"
+    assert ax.get_aspect() == 1.0
+    assert "Rotation of the force" in turning.write_html(tmp_path / "a.html").read_text("utf-8")
+    assert "each loading a line" in (tmp_path / "a.html").read_text("utf-8")
+
+
+def test_colours_of_the_loadings_are_ordered_in_print() -> None:
+    """Without colour a later loading is lighter, and the last stands out from the paper."""
+    shades = TIMES(np.linspace(0.0, 1.0, 20))[:, :3] @ (0.2126, 0.7152, 0.0722)
+    assert (np.diff(shades) > 0.0).all()
+    assert shades[-1] < 0.8
+
+
+def test_a_record_without_the_force_across_has_no_figure_of_its_rotation(
+    turning: st.analysis.Analysis,
+) -> None:
+    record = st.Record(time=turning.record.time, force=turning.record.force)
+    found = st.analyse(record)
+    assert "rotation" not in overview.figures(found)
+    assert "rotation" in overview.figures(turning)
+    with pytest.raises(st.ResultError, match="no rotation of the force to draw: the record has"):
+        st.plotting.plot_rotation(found)

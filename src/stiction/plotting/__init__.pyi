@@ -4,6 +4,7 @@ from stiction.plotting.analysis.energy import plot_energy as plot_energy
 from stiction.plotting.analysis.oscillation import plot_oscillation as plot_oscillation
 from stiction.plotting.analysis.oscillation import plot_spectrogram as plot_spectrogram
 from stiction.plotting.analysis.overview import plot_analysis as plot_analysis
+from stiction.plotting.analysis.rotation import plot_rotation as plot_rotation
 from stiction.plotting.analysis.tolerance import plot_tolerance as plot_tolerance
 from stiction.plotting.analysis.trials import plot_trials as plot_trials
 from stiction.plotting.apparatus.schematic import plot_slider as plot_slider

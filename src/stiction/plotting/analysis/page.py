@@ -16,6 +16,10 @@ from stiction.trajectory import Trajectory
 DRAWN = {
     "cycles": ("In short", "The force, with the peaks and troughs of its cycles."),
     "creep": ("Creep", "Creep before slip: of each stick phase, and averaged over all."),
+    "rotation": (
+        "Rotation of the force",
+        "The force in the plane while the spring is loaded, each loading a line.",
+    ),
     "oscillation": ("Oscillation", "The transverse oscillation over time."),
     "energy": ("Energy", "The energy budget of the cycles."),
 }
