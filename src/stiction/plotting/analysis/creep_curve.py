@@ -39,6 +39,8 @@ def creep_theory(
     return {label: before_slip(formula) for label, formula in formulas.items()}
 
 
+MOST = 0.9  # of the bins: so many must stand out of their errors for a logarithmic axis
+TOP, THIN = 1.8, 0.8  # line widths, pt: of the first theory, which lies over the others
 FEW = 20  # stick phases, of which each curve can be seen
 
 
@@ -92,8 +94,9 @@ def plot_creep(
 ) -> Axes:
     """Draw creep curves over the time to slip; slip is at the right.
 
-    The velocity is on a logarithmic axis if the mean is above twice its error everywhere, on a
-    linear one otherwise, where noise has both signs.
+    The velocity is on a logarithmic axis if the mean is positive, and nearly everywhere above twice its error, so
+    that spikes of single phases hide nothing; on a linear one otherwise, where noise has both
+    signs. The first line of theory lies over the others, which are thin.
 
     Parameters
     ----------
@@ -121,14 +124,19 @@ def plot_creep(
         draw_phases(ax, curves, V)
         draw_mean(ax, mean, V)
         to_slip = np.geomspace(0.5 * middle.min(), middle.max(), 400)
-        for (label, line), (color, dashes) in zip((lines or {}).items(), LINES, strict=False):
+        for at, ((label, line), (color, dashes)) in enumerate(
+            zip((lines or {}).items(), LINES, strict=False)
+        ):
             drawn = np.asarray(line(to_slip), dtype=np.float64) / V
-            ax.plot(to_slip, drawn, color=color, linestyle=dashes, linewidth=1.2, label=label)
+            (its,) = ax.plot(to_slip, drawn, color=color, linestyle=dashes, label=label)
+            its.set(linewidth=THIN if at else TOP, zorder=2.9 - 0.1 * at)
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
         label_decades(ax.xaxis, to_slip[0], to_slip[-1])
-        if (value > 2.0 * error).all():
-            ax.set(yscale="log", ylim=(0.5 * value.min() / V, 1.5))
-            if 0.5 * value.min() / V > 0.05:  # less than two decades: write all labels
+        sure = value > 2.0 * error
+        if sure.mean() >= MOST and (value > 0.0).all():
+            lowest = 0.5 * float(value[sure].min()) / V
+            ax.set(yscale="log", ylim=(lowest, 1.5))
+            if lowest > 0.05:  # less than two decades: write all labels
                 ax.yaxis.set_major_formatter(PLAIN)
                 ax.yaxis.set_minor_formatter(PLAIN)
                 ax.yaxis.set_minor_locator(LogLocator(subs=(2.0, 5.0)))
@@ -140,10 +148,14 @@ def plot_creep(
             ax.set_ylim(min(-0.05 * highest, max(-0.4, 1.1 * lowest)), highest)
         ax.set_xlabel("time to slip (s)")
         ax.set_ylabel(r"creep velocity $\dot{X}/V$ (1)")
+        ax.text(
+            0.03, 0.95, "time runs \N{RIGHTWARDS ARROW}", transform=ax.transAxes, va="top",
+            color=GREY, fontsize=7,
+        )  # fmt: skip
         low, high = ax.get_ylim()
         for each in ax.get_lines():  # curves outside are not in the legend
-            its = np.asarray(each.get_ydata(), dtype=np.float64)
-            if not ((its > low) & (its < high)).any():
+            seen_y = np.asarray(each.get_ydata(), dtype=np.float64)
+            if not ((seen_y > low) & (seen_y < high)).any():
                 each.set_label("_outside")
         legend = ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
         legend.get_lines()[0].set_alpha(0.5)

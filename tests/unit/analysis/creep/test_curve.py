@@ -417,6 +417,23 @@ def test_the_figure_says_what_is_drawn(curves):
     assert figure_of(plot_creep, curves, noisy, V).axes[0].get_yscale() == "linear"
 
 
+def test_spikes_of_single_phases_do_not_hide_the_creep(curves):
+    """Two bins without a sure mean set a linear axis, on which all creep lay at the bottom."""
+    mean = st.analysis.mean_creep(curves)
+    spiky = mean["velocity_error"].copy(data=mean["velocity_error"].values)
+    spiky[1] = 10.0 * V
+    lines = creep_theory(V, radians(1), L_X, 2.0321)
+    ax = figure_of(plot_creep, curves, mean.assign(velocity_error=spiky), V, lines).axes[0]
+    assert ax.get_yscale() == "log"
+    low, high = ax.get_ylim()
+    assert 0.0 < low < float(mean["velocity"].min()) / V
+    assert high == 1.5
+    first, second = (each for each in ax.get_lines() if "Eq." in str(each.get_label()))
+    assert first.get_zorder() > second.get_zorder()
+    assert first.get_linewidth() > second.get_linewidth()
+    assert any("time runs" in each.get_text() for each in ax.texts)
+
+
 def test_of_many_phases_the_figure_shows_the_middle_half():
     """A hundred curves of a noisy record were a grey hatching."""
     record = noisy_record(3, 0.0)
