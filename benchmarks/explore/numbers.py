@@ -156,6 +156,31 @@ def by_ringing_cell(
     return known._replace(record=record.model_copy(update={"force": force}))
 
 
+def from_the_start(random: np.random.Generator, *, rests: bool = True, off: float = 0.1) -> Known:
+    """Return irregular stick-slip that begins with the first loading, behind a zero that is off.
+
+    If it `rests`, the drive starts after the recording, and the record begins at rest. In a third
+    of all the spring was loaded, by as much as the zero is off elsewhere: by a share `off` of the
+    peaks, at most.
+    """
+    known = slips(random, noise=(-9.0, -8.0))
+    record, rate = known.record, known.record.loading_rate
+    size = 4.0 * off * random.uniform(-1.0, 1.0)
+    loaded = random.random() < 1.0 / 3.0
+    begin = size if loaded else 0.0  # of the force of the spring, N
+    lasts = (record.force[0] - begin) / rate
+    before = (10 ** random.uniform(-1.0, 0.5) if rests else 0.0) * lasts
+    early = np.arange(0.0, before + lasts, 1.0 / record.sample_rate)
+    first = begin + rate * np.maximum(early - before, 0.0)
+    shift = before + lasts - float(record.time[0])
+    force = np.concatenate([first, record.force]) + (0.0 if loaded else size)
+    drop = float((known.peak - known.trough).mean())
+    force += drop * 10 ** random.uniform(-3.0, -1.0) * random.normal(size=len(force))
+    time = np.concatenate([early, record.time + shift])
+    moved = record.model_copy(update={"time": time, "force": force})
+    return known._replace(record=moved, peak_time=known.peak_time + shift)
+
+
 FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "straight": slips,
     "creeping": partial(slips, creep=0.8),
@@ -170,6 +195,7 @@ FAMILIES: dict[str, Callable[[np.random.Generator], Known]] = {
     "cut off in noise": cut_off_in_noise,
     "zero that settles": settling,
     "behind a filter": behind_filter,
+    "begins at rest": from_the_start,
     "cell that rings": by_ringing_cell,
     "cell that rings for long": partial(by_ringing_cell, quality=(0.9, 1.7)),
 }

@@ -16,8 +16,8 @@ from stiction.analysis.motion.doubts.creep_distance import unseen_creep
 from stiction.analysis.motion.doubts.load_cell import doubt_ringing, with_ringing
 from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
 from stiction.analysis.motion.doubts.warnings import VARIES, turns_round, warnings, warnings_of_run
-from stiction.analysis.motion.doubts.zero import why_no_friction
-from stiction.analysis.motion.drift import Drift, find_drift, is_shown, with_drift
+from stiction.analysis.motion.doubts.zero import why_no_friction, with_zero
+from stiction.analysis.motion.drift import NO_DRIFT, Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
 from stiction.analysis.motion.load_cell import swings_of_cell
 from stiction.analysis.motion.metadata.comparison import compare_metadata
@@ -91,10 +91,10 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
     rings = None if turns or ends else swings_of_cell(record, usual)
     doubts = *doubts, *doubt_ringing(rings)
-    if record.load_variation() <= VARIES:
-        friction = with_drift(friction, record, cycles, drift)
+    drifts = drift if record.load_variation() <= VARIES else NO_DRIFT
+    friction = with_drift(friction, record, cycles, drifts)
     friction = with_supposed_filter(friction, record, usual, stated)
-    friction = with_ringing(friction, rings)
+    friction = with_zero(with_ringing(friction, rings), record, cycles)
     unreal = why_no_friction(record, friction, cycles)
     if unreal:
         friction = friction.without_static(unreal).without_kinetic(unreal)

@@ -2,11 +2,13 @@
 
 import numpy as np
 import pytest
+from benchmarks.explore.numbers import from_the_start, slips
 from scipy.signal import lfilter
 from tests.parts import assess
 
 import stiction as st
 from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.doubts.zero import zero_shown
 from stiction.analysis.motion.drift import find_drift
 
 MOST = 0.15  # beyond two errors, of some 40 cases: 5 % and three standard deviations
@@ -290,3 +292,47 @@ def test_the_line_of_healing(count):
     slope_off, slope_error, off, error = np.transpose(found)
     assert not beyond(slope_off, slope_error, 0.0)
     assert not beyond(off, error, 0.0)
+
+
+@pytest.mark.parametrize("off", [0.03, 0.25])
+def test_friction_of_a_record_that_begins_at_rest(off):
+    """The zero may be there, or the spring was loaded: by 37 errors one of both was excluded."""
+    found = []
+    for number in range(40):
+        known = from_the_start(np.random.default_rng([5, number]), off=off)
+        its = assess(known.record).friction
+        for name, true in (("static", known.peak), ("kinetic", 0.5 * (known.peak + known.trough))):
+            if (measured := getattr(its, name)) is not None:
+                found.append((measured.force - true[1:-1].mean(), measured.error))
+    assert len(found) > 70
+    assert not beyond(*np.transpose(found), 0.0)
+
+
+def test_a_record_that_begins_in_motion_or_in_a_pause_shows_no_zero():
+    """Its errors are those of its slips."""
+    for number in range(30):
+        random = np.random.default_rng([6, number])
+        known = slips(random) if number % 2 else from_the_start(random, rests=False)
+        record = known.record
+        if number % 3 == 0:  # the drive pauses at first, where slips end
+            at = int(np.argmax(record.force > known.trough.min()))
+            force = np.concatenate([np.full(500, record.force[at]), record.force[at:]])
+            time = float(np.median(np.diff(record.time))) * np.arange(len(force))
+            record = record.model_copy(update={"time": time, "force": force})
+        seen, cycles = assess(record), swings(record).lasting
+        assert zero_shown(record, seen.friction, cycles) is None
+        assert not any("start at" in each for each in seen.warnings)
+
+
+def test_friction_has_the_stated_error_of_a_stated_zero():
+    """It had none; and a zero that is stated with its error is not assumed."""
+    sensor = st.Sensor(zero_uncertainty=0.05, zero_drift_uncertainty=0.01)
+    record = from_the_start(np.random.default_rng(2), off=0.1).record
+    plain = record.model_copy(update={"zero": 0.0})
+    stated = record.model_copy(update={"sensors": {"force": sensor}})
+    exact, found = assess(plain).friction.static, assess(stated).friction.static
+    middle = float(swings(record).lasting["peak_time"].mean()) - float(record.time[0])
+    further = np.hypot(0.05, 0.01 * middle)
+    assert found.error == pytest.approx(np.hypot(exact.error, further), rel=1e-6)
+    assert "is assumed" not in str(st.analyse(stated))
+    assert not any("start at" in each for each in assess(stated).warnings)

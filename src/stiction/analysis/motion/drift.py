@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import hypot, isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -55,6 +56,9 @@ class Drift(NamedTuple):
         return abs(self.rate) if self.sure else abs(self.likely)
 
 
+NO_DRIFT = Drift(0.0, np.nan, 0.0, np.nan, stands_out=False)
+
+
 def find_drift(record: Record, cycles: CycleTable) -> Drift:
     """Fit a line to the middles between peaks and troughs, or to a force without cycles.
 
@@ -76,7 +80,7 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
         shared = _settled_by(record.force[slides.first : slides.last])
     else:
         likely = _likely_rate(cycles)
-        return Drift(0.0, np.nan, 0.0, np.nan, stands_out=False, likely=likely)
+        return NO_DRIFT._replace(likely=likely)
     at, middle = (part_means(each, MOST_MEANS) for each in (at, middle))
     rate, error = slope_in_lasting_noise(at, middle)
     if not _goes_on(at, middle, rate):
@@ -137,13 +141,15 @@ def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Dr
     The zero is right at the first sample, as `detrend` takes it. Each is off by what it drifts
     until then: peaks and means by that of the middle of their times, where there are no cycles the
     mean by that where it is seen. A drift may be that of friction instead: then they are right,
-    at that time.
+    at that time. Beyond a stated drift the zero may drift by the uncertainty of that.
     """
-    rate = drift.possible
+    sensor = (record.sensors or {}).get("force")
+    rate = hypot(drift.possible, 0.0 if sensor is None else sensor.zero_drift_uncertainty)
     if rate == drift.shared == 0.0:
         return friction
     first = float(record.time[0])
-    middle = peak = 0.5 * (drift.start + drift.end)
+    seen = 0.5 * (drift.start + drift.end)
+    middle = peak = seen if isfinite(seen) else 0.5 * float(record.time[0] + record.time[-1])
     if len(cycles):
         peak = float(cycles["peak_time"].mean())
         middle = 0.5 * (peak + float(cycles["trough_time"].mean()))

@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.cycle_columns import with_spread
+from stiction.analysis.motion.cycle_columns import table_of, with_spread
+from stiction.analysis.motion.doubts.zero import is_stated, zero_shown
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.arrays import xr
@@ -36,6 +37,7 @@ FRICTION = {
 # Of the spread of peaks: less white noise is not worth a word, as it spreads peaks by half of its
 # standard deviation, by 0 to 1.3 of it in 9 of 10 random records
 NOISE_SHOWS = 0.6
+MAKES = 0.5  # of an error: a cause of less is not worth a word
 OVERSHOOT = 0.01  # of the peaks: a smaller one is not worth a word
 
 
@@ -64,8 +66,10 @@ def section(found: Analysis) -> Section:
     lines += _overshoot(found) + _noise_of_peaks(found)
     if not rows:
         return Section("Friction", lines)
-    if not isinstance(found.source, Trajectory) and found.record.zero is None:
-        lines.append("The zero of the force is assumed: no reading without load is given.")
+    if not isinstance(found.source, Trajectory) and not is_stated(found.record):
+        lines.append(
+            f"The zero of the force is assumed: no reading without load is given.{_zero(found)}"
+        )
     headings = ("friction", "µ", "force", "spread")
     shown = [at for at in range(4) if at != 1 or any(row[1] for row in rows)]  # no µ without a load
     cells = [tuple(row[at] for at in shown) for row in rows]
@@ -83,6 +87,15 @@ def coefficient_in_words(its: Measured) -> str:
 def force_in_words(its: Measured) -> str:
     """Return the force with its error."""
     return with_error(its.force, its.error if its.error > SLIGHT * abs(its.force) else 0.0, "N")
+
+
+def _zero(found: Analysis) -> str:
+    """Return the zero that a record shows at its start, if the errors are those that it makes."""
+    read = zero_shown(found.record, found.friction, table_of(found.cycles))
+    errors = [each.error for each in found.friction[:3] if each is not None]
+    if read is None or abs(read) < MAKES * min(errors):
+        return ""
+    return f" The errors allow for that which the rest at the start shows, {in_words(read, 'N')}."
 
 
 def _overshoot(found: Analysis) -> list[str]:

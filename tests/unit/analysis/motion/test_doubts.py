@@ -128,9 +128,12 @@ def test_a_zero_that_is_off_is_seen_and_taken_off(force) -> None:
     time, newtons = force
     later = np.concatenate([time[:1000], time[999] + 5e-4 + time])
     resting = np.concatenate([np.zeros(1000), newtons])  # the drive starts half a second later
-    assert "at 300 mN: if the spring was unloaded, give zero='0.3 N'" in doubts_in_words(
-        later, resting + 0.3
-    )
+    said = doubts_in_words(later, resting + 0.3)
+    # its static friction, exactly: 0.19930
+    assert "Static friction is 0.1993 and kinetic 0.1581 if the start at 300 mN" in said
+    assert "if the spring was unloaded, give zero='0.3 N'" in said
+    brief = st.analyse(st.Record(time=later, force=resting + 0.3, **KNOWN)).tables()[0].sentences
+    assert any("static friction is 0.1993 and kinetic 0.1581 if" in each for each in brief)
     assert doubts_in_words(later, resting + 0.3, zero="0.3 N") == ""
     with suggest(as_option):  # as the command line writes it
         assert "give --zero '0.3 N'" in doubts_in_words(later, resting + 0.3)

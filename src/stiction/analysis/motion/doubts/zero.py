@@ -3,28 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 
-import numpy as np
-
+from stiction.analysis.motion.changes.initial_rest import NOISE, first_level, initial_rest
+from stiction.analysis.motion.course import BEGINS_UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.metadata.comparison import AT_REST, first_reading
+from stiction.analysis.motion.friction import Friction, Measured
+from stiction.analysis.motion.metadata.comparison import AT_REST
 from stiction.analysis.record import Record
-from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
-from stiction.recording.noise import white_noise
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words
+from stiction.text.units import in_words, to_error
 
 ZERO = Suggestion("zero", of="")
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie
 BOTH_SIGNS = 0.3  # of the largest force: so far it goes the other way where a drive turns
-NOISE = 5.0  # standard deviations: noise alone is as far from zero once in a million readings
-SAME = 1e-9  # of the largest force: readings that differ by less are equal but for rounding
-# Parts of the time up to half of the first loading, two of which are compared
-PARTS = (8, 16, 32, 64)
-FEWEST = 4  # samples in each of them
-CONSTANT = 0.5  # of the average rate of that loading: a spring that is loaded already has all of it
 
 
 def is_about_zero(friction: Friction, cycles: CycleTable) -> bool:
@@ -60,6 +53,44 @@ def why_no_friction(record: Record, friction: Friction, cycles: CycleTable) -> s
     return "the mean force is against the drive" if friction.kinetic.force < 0.0 else ""
 
 
+def is_stated(record: Record) -> bool:
+    """Return whether the zero of a force is stated, perhaps with its uncertainty."""
+    return record.zero is not None or stated_error(record) > 0.0
+
+
+def stated_error(record: Record) -> float:
+    """Return the standard uncertainty of the zero at the first sample, N, as it is stated, or 0."""
+    sensor = (record.sensors or {}).get("force")
+    return 0.0 if sensor is None else sensor.zero_uncertainty
+
+
+def zero_shown(record: Record, friction: Friction, cycles: CycleTable) -> float | None:
+    """Return the reading (N) at rest with which a record begins, if it may be the zero.
+
+    It may not where a zero is stated, or where the force returns so low while the mass slips: then
+    the drive paused, and the spring was loaded.
+    """
+    known = friction.break_away or friction.kinetic
+    if known is None or known.force <= 0.0 or is_stated(record):
+        return None
+    rest = initial_rest(record.force, known.force)
+    if rest is None or rest.reading > BEGINS_UNLOADED * known.force:
+        return None
+    lowest = float(cycles["trough"].min()) if len(cycles) else known.force
+    return rest.reading if rest.reading < lowest else None
+
+
+def with_zero(friction: Friction, record: Record, cycles: CycleTable) -> Friction:
+    """Return the friction with the errors that it has if its zero is that which a record shows.
+
+    A correction is made for an effect that is known (GUM, 3.2.4: JCGM 100:2008). This one is not: a
+    spring that friction holds reads as much. So the values are those of the zero as it is supposed,
+    and the error reaches to those of the other zero. A stated zero has its stated uncertainty.
+    """
+    further = abs(zero_shown(record, friction, cycles) or 0.0) or stated_error(record)
+    return friction.with_errors(break_away=further, static=further, kinetic=further)
+
+
 def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterator[str]:
     """Doubt the zero if a record begins unloaded, or reaches impossible values."""
     largest = largest_magnitude(record.force)
@@ -90,45 +121,42 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
             f"friction is less than half of the static one; give {ZERO}, the reading without load."
         )
         return
-    if friction.break_away is None or record.zero is not None:
+    shown = zero_shown(record, friction, cycles)
+    first, noise = first_level(record.force)
+    read = first if shown is None else shown
+    if is_stated(record) or abs(read) <= max(AT_REST * largest, NOISE * noise):
         return
-    some = first_reading(record)
-    noise = float(np.std(np.diff(some))) / 2.0**0.5
-    within = max(NOISE * noise, SAME * largest)  # of the middle, to either side
-    level = float(np.ptp(some)) < 2.0 * within
-    read = float(np.median(some)) if level else float(some[0])
-    if abs(read) <= max(AT_REST * largest, NOISE * noise):
-        return
-    turned = "; just after a turn of the drive it is not" if read < 0.0 else ""
-    if _begins_at_rest(record, read, friction.break_away.force):
+    if shown is not None:
+        turned = "; just after a turn of the drive it is not" if read < 0.0 else ""
         yield (
-            f"The record begins before the first loading, at {in_words(read, 'N')}: if the spring "
-            f"was unloaded, give {ZERO._replace(value=f'{read:.4g} N')}{turned}."
+            f"{_less(friction, read)} if the start at {in_words(read, 'N')}, before the first "
+            "loading, is the zero: if the spring was unloaded, give "
+            f"{ZERO._replace(value=f'{read:.4g} N')}{turned}. The errors of friction allow for it."
         )
-        return
-    after = ", as after a turn of the drive" if read < 0.0 else ""
-    yield (
-        f"The record does not show the unloaded spring: from its first reading on, "
-        f"{in_words(read, 'N')}, the force rises. The spring was loaded already{after}, or the "
-        f"zero is off: give {ZERO}, the reading without load."
+    elif friction.break_away is not None:
+        after = ", as after a turn of the drive" if read < 0.0 else ""
+        yield (
+            f"The record does not show the unloaded spring: from its first reading on, "
+            f"{in_words(read, 'N')}, the force rises. The spring was loaded already{after}, or the "
+            f"zero is off: give {ZERO}, the reading without load."
+        )
+
+
+def _less(friction: Friction, zero: float) -> str:
+    """Return what friction is by another zero, N, in words."""
+    known = {"static": friction.static, "kinetic": friction.kinetic}
+    if not any(known.values()):
+        known = {"break-away": friction.break_away}
+    shown = {name: _by(each, zero) for name, each in known.items() if each is not None}
+    first, *others = (f"{name} {{}}{number}" for name, number in shown.items())
+    return " and ".join(
+        [first.format("friction is ").capitalize(), *(x.format("") for x in others)]
     )
 
 
-def _begins_at_rest(record: Record, read: float, peak: float) -> bool:
-    """Return whether the force is constant at first, and loaded only then up to a peak (N).
-
-    A drive that starts after the recording leaves the spring as it was. In a force that rises from
-    the first sample on, neighbouring parts differ by as much as half of its loading has it.
-    """
-    force, rise = record.force, peak - read
-    half = int(np.argmax(force >= read + 0.5 * rise))
-    noise = white_noise(force)
-    for parts in PARTS:
-        size = half // parts
-        if size < FEWEST:
-            break
-        before, after = float(force[:size].mean()), float(force[size : 2 * size].mean())
-        error = ERRORS_997 * noise * (2.0 / size) ** 0.5
-        if abs(after - before) + error < CONSTANT * 0.5 * rise / parts:
-            return True
-    return False
+def _by(its: Measured, zero: float) -> str:
+    """Return a coefficient by another zero, N, or the force where the load is unknown."""
+    force = its.force - zero
+    if not isfinite(its.coefficient):
+        return to_error(force, its.error, "N")
+    return to_error(its.coefficient * force / its.force, its.coefficient_error, "1")

@@ -7,6 +7,7 @@ from math import nan, pi
 
 import numpy as np
 
+from stiction.analysis.motion.changes.initial_rest import first_reading
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.metadata.drive_velocity import drive_velocity
@@ -18,7 +19,6 @@ from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.analysis.signals.straight_line import line
-from stiction.arrays import Floats
 
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
 AT_REST, ROUNDING = 0.02, 1e-12  # of the largest force: a reading at rest, and one of zero
@@ -80,18 +80,12 @@ def _transverse_frequency(record: Record) -> StatedQuantity | None:
     return StatedQuantity(name, "Hz", shown, nan, frequency, 1.0, float("inf"), how)
 
 
-def first_reading(record: Record) -> Floats:
-    """Return the first readings of a record."""
-    force: Floats = record.force[: max(8, len(record) // 400)]
-    return force
-
-
 def _zero(record: Record) -> StatedQuantity | None:
     """Return the reading with which a record begins, where that is constant: a zero perhaps.
 
     It is none where the drive loads the spring from the first sample on.
     """
-    some = first_reading(record)
+    some = first_reading(record.force)
     if not len(some) or len(record) < 4 * len(some):
         return None
     largest = largest_magnitude(record.force)
