@@ -13,7 +13,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import cut_off, noisy_end, without_cut_off
 from stiction.analysis.motion.doubts.creep_distance import unseen_creep
-from stiction.analysis.motion.doubts.load_cell import doubt_ringing, with_ringing
+from stiction.analysis.motion.doubts.load_cell import with_ringing
 from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
 from stiction.analysis.motion.doubts.warnings import VARIES, turns_round, warnings, warnings_of_run
 from stiction.analysis.motion.doubts.zero import why_no_friction, with_zero
@@ -88,9 +88,8 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         kind, slips = STICK_SLIP, found.few
     stated = compare_metadata(record, kind, slips, shown, ends)
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
-    doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends)
     rings = None if turns or ends else swings_of_cell(record, usual)
-    doubts = *doubts, *doubt_ringing(rings)
+    doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends, rings)
     drifts = drift if record.load_variation() <= VARIES else NO_DRIFT
     friction = with_drift(friction, record, cycles, drifts)
     friction = with_supposed_filter(friction, record, usual, stated)

@@ -53,6 +53,8 @@ from stiction.analysis.signals.turning_points import TurningPoints, turning_poin
 from stiction.arrays import Floats, xr
 from stiction.trajectory import Trajectory
 
+# A slip before a trough falls by such a part of the usual drop, and lasts for so many samples
+PART, FEWEST_LOW = 0.5, 3
 FEWEST_CYCLES = 3  # cycles beside a ringing, or of a load cell that rings
 BESIDE = 0.1  # of a frequency: so far noise takes that of a line
 FEWEST_SWINGS, FAR_FEWER = 8, 0.75  # swings beside a load cell's own, and cycles over these
@@ -394,7 +396,7 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
         corners = corners._replace(value=np.asarray(corners.value + there))
         least = max(least, fall_by_rounding(record.force))  # a staircase less a wave turns back
         dips = Vertices(*(each[dips.value > least] for each in dips))
-    table = tabulate(record, corners, dips, least)
+    table = _without_first_loading(record, tabulate(record, corners, dips, least))
     over = dying = False
     if len(table):
         rest = record.steady_until(table["start"][-1]) - table["trough_time"][-1]
@@ -405,6 +407,24 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
         none = Vertices(np.zeros(0), np.zeros(0))
         found = found._replace(few=tabulate(record, few.corners(record.time), none, points.least))
     return found._replace(over=over)
+
+
+def _without_first_loading(record: Record, table: CycleTable) -> CycleTable:
+    """Return stick-slip without a first loading: a trough at the end of a rest is not after a slip.
+
+    Where the zero drifts meanwhile, or noise is loud, that end looks like one. But the force was
+    low before it, and did not fall, for as long as slips take, as it falls in them.
+    """
+    if record.slip_speed is not None or not is_stick_slip(table):
+        return table
+    start, level = float(table["start"][0]), float(table["start_force"][0])
+    begin = start - float((table["trough_time"] - table["peak_time"]).max())
+    first, last = np.searchsorted(record.time, [begin, start]).tolist()
+    if not first or last - first < FEWEST_LOW:
+        return table
+    slipped = float(record.force[first:last].max()) - level > PART * table.median("drop")
+    loaded = float(record.force[:last].max()) > 0.5 * (level + float(table["peak"][0]))
+    return table if slipped or loaded else table.part(slice(1, None))
 
 
 def without_open_end(points: TurningPoints, force: Floats) -> TurningPoints:

@@ -129,6 +129,11 @@ def _rate(at: Floats, force: Floats, freedom: int) -> tuple[float, float]:
     return found.slope, error_of_few(found.slope_error * share**0.5, freedom)
 
 
+def shift_of_drift(drift: Drift, lasts: float) -> float:
+    """Return by how much a drift shifts mean friction, N, in a record that lasts so long (s)."""
+    return max(0.5 * drift.possible * lasts, drift.shared)
+
+
 def is_shown(drift: Drift, kind: str) -> bool:
     """Return whether a motion of some kind shows a steady drift, or none, by its force."""
     known = kind in (STICK_SLIP, TRANSITIONAL, HARMONIC, STEADY)

@@ -32,6 +32,11 @@ class CellSwings(NamedTuple):
     peak: float
     rate: float
 
+    @property
+    def shift(self) -> float:
+        """By how much they shift static or kinetic friction, N, at most."""
+        return max(self.peak, 0.5 * self.trough)
+
 
 def swings_of_cell(record: Record, cycles: CycleTable) -> CellSwings | None:
     """Return what the swings of a load cell do to the cycles of a record, None without any.

@@ -91,11 +91,12 @@ def force_in_words(its: Measured) -> str:
 
 def _zero(found: Analysis) -> str:
     """Return the zero that a record shows at its start, if the errors are those that it makes."""
-    read = zero_shown(found.record, found.friction, table_of(found.cycles))
+    shown = zero_shown(found.record, found.friction, table_of(found.cycles))
     errors = [each.error for each in found.friction[:3] if each is not None]
-    if read is None or abs(read) < MAKES * min(errors):
+    if shown is None or abs(shown.reading) < MAKES * min(errors):
         return ""
-    return f" The errors allow for that which the rest at the start shows, {in_words(read, 'N')}."
+    read = in_words(shown.reading, "N")
+    return f" The errors allow for that which the rest at the start shows, {read}."
 
 
 def _overshoot(found: Analysis) -> list[str]:

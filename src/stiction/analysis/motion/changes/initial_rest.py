@@ -28,7 +28,7 @@ class InitialRest(NamedTuple):
     """A rest with which a record begins."""
 
     reading: float  # of the force, N
-    share: float  # of the time up to half of the loading that follows, at least
+    error: float  # of its mean in white noise, N
 
 
 def first_reading(force: Floats) -> Floats:
@@ -64,5 +64,6 @@ def initial_rest(force: Floats, top: float) -> InitialRest | None:
         before, after = float(force[:size].mean()), float(force[size : 2 * size].mean())
         error = ERRORS_997 * noise * (2.0 / size) ** 0.5
         if abs(after - before) + error < CONSTANT * 0.5 * rise / parts:
-            return InitialRest(float(np.median(force[: 2 * size])), 2.0 / parts)
+            reading = float(np.median(force[: 2 * size]))
+            return InitialRest(reading, noise / (2.0 * size) ** 0.5)
     return None

@@ -18,6 +18,7 @@ from stiction.analysis.motion.doubts.cycles import (
     doubt_mean_period,
     doubt_quiet,
 )
+from stiction.analysis.motion.doubts.load_cell import doubt_ringing
 from stiction.analysis.motion.doubts.sampling import (
     doubt_few_samples,
     doubt_filter,
@@ -34,9 +35,10 @@ from stiction.analysis.motion.doubts.units import (
     likely_changes,
     numbers_of,
 )
-from stiction.analysis.motion.doubts.zero import doubt_zero, is_about_zero
-from stiction.analysis.motion.drift import WORTH, Drift, is_shown
+from stiction.analysis.motion.doubts.zero import doubt_zero, is_about_zero, shift_of_zero
+from stiction.analysis.motion.drift import WORTH, Drift, is_shown, shift_of_drift
 from stiction.analysis.motion.friction import Friction
+from stiction.analysis.motion.load_cell import CellSwings
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import SWING
@@ -73,11 +75,13 @@ def warnings(
     stated: Sequence[StatedQuantity],
     drift: Drift,
     ends: Sequence[FlatEnd],
+    rings: CellSwings | None,
 ) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first.
 
-    `stated` is what was compared, `drift` that of the force, sure or not, `ends` where it is cut
-    off.
+    These are of numbers that cannot be true, then those that shift friction, then those of cycles
+    and samples. `stated` is what was compared, `drift` that of the force, sure or not, `ends` where
+    it is cut off, `rings` the swings of the load cell.
     """
     seen = numbers_of(_largest_mu(friction, cycles), stated)
     wrong = {each.quantity: each for each in stated if each.agrees is False}
@@ -87,20 +91,36 @@ def warnings(
         *doubt_clipping(ends),
         *doubt_mean_period(cycles),
         *(doubt_loading(cycles) if kind in (STICK_SLIP, TRANSITIONAL) else ()),
-        *doubt_cycles_apart(cycles),
-        *doubt_quiet(record, friction, cycles),
         *_loading(record, [x for x in stated if x.quantity == LOADING_RATE], seen),
         *_mass(record, wrong.get(SWING), kind, seen),
         *_mains(kind, cycles),
+        *_shifts(record, kind, cycles, friction, drift, rings),
+        *doubt_cycles_apart(cycles),
+        *doubt_quiet(record, friction, cycles),
         *doubt_few_samples(record, cycles),
         *doubt_filter(record, cycles),
         *doubt_drops_in_noise(record, kind, cycles),
-        *_drift(record, drift, kind, cycles),
-        *doubt_zero(record, friction, cycles),
         *doubt_times(record),
         *doubt_repeats(record),
     ]
     return tuple(found)
+
+
+def _shifts(
+    record: Record,
+    kind: str,
+    cycles: CycleTable,
+    friction: Friction,
+    drift: Drift,
+    rings: CellSwings | None,
+) -> list[str]:
+    """Return the doubts about a force that is shifted, the one by most first."""
+    found = [
+        (shift_of_zero(record, friction, cycles), doubt_zero(record, friction, cycles)),
+        (shift_of_drift(drift, record.duration), _drift(record, drift, kind, cycles)),
+        (0.0 if rings is None else rings.shift, doubt_ringing(rings)),
+    ]
+    return [each for _, said in sorted(found, key=lambda its: -its[0]) for each in said]
 
 
 def subtracted_lines(

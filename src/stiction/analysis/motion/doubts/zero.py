@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite
+from math import hypot, inf, isfinite
 
-from stiction.analysis.motion.changes.initial_rest import NOISE, first_level, initial_rest
+from stiction.analysis.motion.changes.initial_rest import (
+    NOISE,
+    InitialRest,
+    first_level,
+    initial_rest,
+)
 from stiction.analysis.motion.course import BEGINS_UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction, Measured
 from stiction.analysis.motion.metadata.comparison import AT_REST
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, to_error
@@ -64,8 +70,8 @@ def stated_error(record: Record) -> float:
     return 0.0 if sensor is None else sensor.zero_uncertainty
 
 
-def zero_shown(record: Record, friction: Friction, cycles: CycleTable) -> float | None:
-    """Return the reading (N) at rest with which a record begins, if it may be the zero.
+def zero_shown(record: Record, friction: Friction, cycles: CycleTable) -> InitialRest | None:
+    """Return the rest with which a record begins, if its reading may be the zero.
 
     It may not where a zero is stated, or where the force returns so low while the mass slips: then
     the drive paused, and the spring was loaded.
@@ -77,7 +83,15 @@ def zero_shown(record: Record, friction: Friction, cycles: CycleTable) -> float 
     if rest is None or rest.reading > BEGINS_UNLOADED * known.force:
         return None
     lowest = float(cycles["trough"].min()) if len(cycles) else known.force
-    return rest.reading if rest.reading < lowest else None
+    return rest if rest.reading < lowest else None
+
+
+def shift_of_zero(record: Record, friction: Friction, cycles: CycleTable) -> float:
+    """Return by how much a zero that is off shifts friction, N; all of it if that is unreal."""
+    if why_no_friction(record, friction, cycles):
+        return inf
+    shown = zero_shown(record, friction, cycles)
+    return 0.0 if shown is None else abs(shown.reading)
 
 
 def with_zero(friction: Friction, record: Record, cycles: CycleTable) -> Friction:
@@ -87,7 +101,8 @@ def with_zero(friction: Friction, record: Record, cycles: CycleTable) -> Frictio
     spring that friction holds reads as much. So the values are those of the zero as it is supposed,
     and the error reaches to those of the other zero. A stated zero has its stated uncertainty.
     """
-    further = abs(zero_shown(record, friction, cycles) or 0.0) or stated_error(record)
+    shown = zero_shown(record, friction, cycles)
+    further = stated_error(record) if shown is None else hypot(shown.reading, shown.error)
     return friction.with_errors(break_away=further, static=further, kinetic=further)
 
 
@@ -122,9 +137,13 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
         )
         return
     shown = zero_shown(record, friction, cycles)
+    if is_stated(record) or (shown is None and friction.break_away is None):
+        return
     first, noise = first_level(record.force)
-    read = first if shown is None else shown
-    if is_stated(record) or abs(read) <= max(AT_REST * largest, NOISE * noise):
+    read, hidden = first, NOISE * noise
+    if shown is not None:
+        read, hidden = shown.reading, ERRORS_997 * shown.error
+    if abs(read) <= max(AT_REST * largest, hidden):
         return
     if shown is not None:
         turned = "; just after a turn of the drive it is not" if read < 0.0 else ""
@@ -133,7 +152,7 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
             "loading, is the zero: if the spring was unloaded, give "
             f"{ZERO._replace(value=f'{read:.4g} N')}{turned}. The errors of friction allow for it."
         )
-    elif friction.break_away is not None:
+    else:
         after = ", as after a turn of the drive" if read < 0.0 else ""
         yield (
             f"The record does not show the unloaded spring: from its first reading on, "
