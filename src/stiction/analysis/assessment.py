@@ -24,7 +24,7 @@ from stiction.analysis.motion.metadata.comparison import compare_metadata
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE, other_velocity
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.regime.evidence import Regime
-from stiction.analysis.motion.regime.kinds import STICK_SLIP, UNDETERMINED
+from stiction.analysis.motion.regime.kinds import STICK_SLIP, TRANSITIONAL, UNDETERMINED
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
@@ -88,7 +88,9 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
         kind, slips = STICK_SLIP, found.few
     stated = compare_metadata(record, kind, slips, shown, ends)
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
-    rings = None if turns or ends else swings_of_cell(record, usual)
+    slips_on = regime.kind in (STICK_SLIP, TRANSITIONAL) and not (turns or ends)
+    seen = record.with_force(found.force) if found.lines else record
+    rings = swings_of_cell(seen, usual) if slips_on else None
     doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends, rings)
     drifts = drift if record.load_variation() <= VARIES else NO_DRIFT
     friction = with_drift(friction, record, cycles, drifts)
