@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
+import numpy as np
+
 import stiction as st
 from stiction.auditing import Audit
 from stiction.auditing.simulated_test import OSCILLATES, SLIDES, final_state
@@ -13,6 +15,9 @@ from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.text.unit_text import registry
 
 OFF = 0.5  # of a number that theory states without a doubt, by which the simulation may differ
+SWINGS, FINE = 10.0, 200.0  # counted at first, and samples of each
+COUNTED = 0.2  # of so many swings: they change, and one may begin before the count
+PRINTED = 5e-3  # of a frequency, to three digits
 TIMES = ("time until the first slip", "period, mean")
 TOLD = re.compile(r"cycles of (.+?) in which the force falls by (.+?)\.(?: |$)")
 NO_NUMBER = re.compile(r"\b(nan|inf)\b")
@@ -123,6 +128,24 @@ def theory_without_doubt(found: Audit) -> bool:
     return True
 
 
+def swings_of_the_test(found: Audit) -> bool:
+    """The first swings across the drive are those of a finer simulation, counted another way."""
+    part = next(each for each in found.tables() if each.title == "Transverse oscillation")
+    shown = found.to_dict()["transverse_oscillation"]["first"]
+    if part.table is None or not shown:
+        return part.table is None or not shown
+    told = registry().Quantity(part.table.rows[0][1]).to("Hz").magnitude
+    frequency = shown[0]["frequency"]["value"]
+    rests = found.observation.run.stick_intervals
+    begin = float(rests[np.argmax(np.diff(rests[:10], axis=1)), 1]) if len(rests) else 0.0
+    lasts = begin + SWINGS / frequency
+    run = st.simulate(found.slider, lasts, sample_rate=FINE * frequency)
+    v_y = run.samples["v_y"][run.samples["time"] > begin]
+    crossings = np.count_nonzero(np.diff(np.signbit(v_y - v_y.mean())))
+    near = abs(0.5 * crossings / SWINGS - 1.0) < COUNTED
+    return bool(near and abs(told / frequency - 1.0) < PRINTED)
+
+
 def reads_well(found: Audit) -> bool:
     """No sentence and no cell holds what is no number."""
     return NO_NUMBER.search(str(found)) is None
@@ -139,5 +162,6 @@ RULES: tuple[Callable[[Audit], bool], ...] = (
     sliding_has_no_cycles,
     dies_out_once,
     theory_without_doubt,
+    swings_of_the_test,
     reads_well,
 )

@@ -286,7 +286,7 @@ def sections(found: Audit) -> list[Section]:
         Section("Predicted and simulated", violated_assumptions(found), numbers(found)),
         Section("Is it stick?", stick(found)),
         Section(LOAD_CELL, load_cell(found)),
-        Section("Transverse oscillation", transverse(found)),
+        Section("Transverse oscillation", *transverse(found)),
         Section("What to change", *changes(found)),
     ]
 

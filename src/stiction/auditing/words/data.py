@@ -6,6 +6,7 @@ from math import nan
 from typing import TYPE_CHECKING, Any
 
 from stiction.auditing.advice import Remedy
+from stiction.auditing.oscillation import Oscillation, oscillation_of
 from stiction.auditing.pairs import Pair
 from stiction.auditing.words.numbers import peak
 from stiction.storage.table_files import number
@@ -39,6 +40,7 @@ def data(found: Audit) -> dict[str, Any]:
             name: with_unit(getattr(found.prediction, name), its) for name, its in THEORY.items()
         },
         "simulated": of_test(found.observation),
+        "transverse_oscillation": _swings(oscillation_of(found.observation)),
         "changes": [_change(each) for each in found.remedies],
     }
 
@@ -54,6 +56,20 @@ def of_test(seen: SimulatedTest) -> dict[str, Any]:
     shares = {name: with_unit(share, "") for name, share in seen.shares._asdict().items()}
     reached = {"time": with_unit(seen.settled, "s"), "travel": with_unit(seen.travel, "m")}
     return {"mu_static": with_unit(peak(seen), ""), **means, "shares": shares, "reached": reached}
+
+
+def _swings(shown: Oscillation) -> dict[str, Any]:
+    """Return the swings across the drive at both ends of each simulated creep."""
+    parts = ("first", [shown.first]), ("after_slip", shown.later), ("last", shown.last)
+    units = {"frequency": "Hz", "amplitude": "m", "at_rest": ""}
+    rows = {
+        name: [
+            {of: with_unit(getattr(each, of), its) for of, its in units.items()}
+            for each in filter(None, swings)
+        ]
+        for name, swings in parts
+    }
+    return rows | {"dies_out": with_unit(shown.dead, "s")}
 
 
 def _change(each: Remedy | Pair) -> dict[str, Any]:

@@ -3,34 +3,49 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from math import isfinite, pi, sin
-from typing import TYPE_CHECKING, Any
+from math import isfinite, nan, pi
+from typing import TYPE_CHECKING
 
-import numpy as np
-
-from stiction import theory
-from stiction.analysis.creep.first_slip import along_force, force_direction, slips_at_once
+from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.analysis.motion.regime.kinds import TRANSVERSE
+from stiction.auditing.oscillation import (
+    DEAD,
+    SWINGS,
+    Oscillation,
+    oscillation_of,
+    theoretical_oscillation,
+)
+from stiction.auditing.prediction import SEEN
 from stiction.auditing.simulated_test import SLIDES
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
-from stiction.system.slider import Slider
-from stiction.system.tensors import damping_tensor
-from stiction.text.units import advice, in_words
+from stiction.text.quantity_text import percent
+from stiction.text.sections import Table
+from stiction.text.units import advice, in_words, span
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
 SINGLE = 0.5  # of critical damping: every swing is a sixth of the one before
-SOON = 10.0  # e-folds while the spring is loaded: it dies out in the first half of that
+GROWN = 1.2  # times the first swings: larger ones have grown
+DIGITS = 3  # of medians of swings
 
 
-def transverse(found: Audit) -> list[str]:
-    """Return the transverse oscillation, and the sample rate that shows it."""
+def transverse(found: Audit) -> tuple[list[str], Table | None]:
+    """Return the transverse oscillation of the test, and the sample rate that shows it."""
     if found.prediction.amplitude == 0.0:
-        return ["Without misalignment the transverse spring is not excited."]
+        return ["Without misalignment the transverse spring is not excited."], None
     without = _without_creep(found)
-    return [without] if without else [*_during_creep(found)]
+    if without:
+        return [without], None
+    shown = oscillation_of(found.observation)
+    if shown.first is None:
+        natural = in_words(found.prediction.f_y, "Hz")
+        return [
+            f"The transverse natural frequency is {natural}. In the simulated test the mass creeps "
+            "without swings across the drive."
+        ], None
+    return [*_during_creep(found, shown)], _beside_theory(found, shown)
 
 
 def _without_creep(found: Audit) -> str:
@@ -59,7 +74,7 @@ def _without_creep(found: Audit) -> str:
             f"{natural} A transverse oscillation needs creep, and this mass {hardly}. What "
             f"remains of it can be seen in a run sampled at {rate}."
         )
-    swings, decay = oscillation(found.slider)
+    swings, decay = theoretical_oscillation(found.slider)
     ratio = decay / (2.0 * pi * swings)
     if ratio > SINGLE:
         return (
@@ -78,51 +93,81 @@ def _without_creep(found: Audit) -> str:
             f"{natural} A transverse oscillation needs creep, and here the first stick ends in a "
             f"slip: the mass swings along the force of both springs, at {in_words(swings, 'Hz')}."
         )
-    if decay * max(p.load_up, found.slider.loading_time) > SOON:
-        return (
-            f"{natural} A transverse oscillation begins with creep, and dies out within some "
-            f"{in_words(5.0 / decay, 's', 1)}: dampers, or friction that rises with "
-            f"speed, damp it. To see it, sample at {rate}."
-        )
     return ""
 
 
-def _during_creep(found: Audit) -> Iterator[str]:
-    """Yield the oscillation during creep: its size, what becomes of it, and what shows it."""
-    p, seen = found.prediction, found.observation
-    swings, decay = oscillation(found.slider)
-    end, then = "slip", "the oscillation dies out: friction falls too little with speed to drive it"
-    if seen.comes_to == SLIDES:
-        end, then = "steady sliding", "the oscillation dies out"
-    elif decay < 0.0:
-        then = "the amplitude grows with its period"
+def _during_creep(found: Audit, shown: Oscillation) -> Iterator[str]:
+    """Yield the oscillation during creep: what becomes of it, and what shows it."""
+    seen = found.observation
+    becomes = _what_becomes(shown)
+    yield f"During creep the mass oscillates across the drive in the simulated test{becomes}"
+    resting = max(each.at_rest for each in shown.swings)
     yield (
-        f"During creep the mass oscillates across the drive at {in_words(swings, 'Hz')}, by "
-        f"{in_words(p.amplitude, 'm')} (V sin φ/ω_y) or "
-        f"{in_words(p.amplitude * found.slider.k_y, 'N')}. Towards {end} the frequency "
-        f"falls, as sin θ, and {then}."
+        "Theory is linear: it takes a mass that never rests."
+        + (
+            f" This mass rests for up to {percent(resting)} of its swings, which are slower and "
+            "larger for that."
+            if resting > HARDLY
+            else ""
+        )
     )
     yield (
-        f"To see it, sample at {advice(p.sample_rate, 'Hz')}; below "
-        f"{in_words(2.0 * swings, 'Hz')} it appears at another frequency."
+        f"To see it, sample at {advice(SEEN * shown.fastest, 'Hz')}; below "
+        f"{in_words(2.0 * shown.fastest, 'Hz')} it appears at another frequency."
     )
     if seen.coarse:
         yield (
             "This test lasts so long that it was sampled at "
-            f"{in_words(seen.record.sample_rate, 'Hz')} only: a period of the oscillation has "
-            f"{in_words(seen.record.sample_rate / swings, '', 2)} samples."
+            f"{in_words(seen.record.sample_rate, 'Hz')} only; both ends of each creep were "
+            "simulated again."
         )
 
 
-def oscillation(slider: Slider) -> tuple[float, float]:
-    """Return frequency (Hz) and rate of decay (1/s) of the transverse oscillation early in creep.
+def _what_becomes(shown: Oscillation) -> str:
+    """Return what becomes of the swings before slip or steady sliding, as the end of a sentence."""
+    first = shown.first.amplitude if shown.first else nan
+    last = max((each.amplitude for each in shown.last), default=0.0)
+    most = shown.largest.amplitude if shown.largest else last
+    dies = isfinite(shown.dead) or last < DEAD * first
+    if most > GROWN * first:
+        grows = ": its swings get slower and larger"
+        return f"{grows}, and die out before slip." if dies else f"{grows} towards slip."
+    if isfinite(shown.dead):
+        return f", and dies out: after {in_words(shown.dead, 's', 2)} it is below a tenth."
+    return ", and dies out." if dies else ", and gets smaller."
 
-    It goes along the force at the end of the first stick, on the springs, the mass and the dampers
-    in that direction, by (E6) of docs/explanation/estimates.md. If the rate is negative, it lasts.
-    """
-    (k, m), e = along_force(slider), np.array(force_direction(slider))
-    speed = slider.drive_speed * abs(sin(slider.misalignment) / e[1])
-    law: Any = slider.law
-    slope = float(law.slope(speed)) * slider.normal_load
-    decay = 0.5 * (float(e @ damping_tensor(slider) @ e) + slope) / m
-    return float(theory.natural_frequency(k, m)) / (2.0 * pi), decay
+
+def _beside_theory(found: Audit, shown: Oscillation) -> Table:
+    """Return the simulated swings at both ends of creep beside those of linear theory."""
+    p, k_y = found.prediction, found.slider.k_y
+    natural, _ = theoretical_oscillation(found.slider)
+    end = "steady sliding" if found.observation.comes_to == SLIDES else "a slip"
+    parts = [
+        ("as creep begins", [shown.first] if shown.first else []),
+        ("after a slip", shown.later),
+        ("the largest of the first creep", [shown.largest] if shown.largest else []),
+        (f"before {end}", shown.last),
+    ]
+    rows = [
+        (
+            name,
+            _range([each.frequency for each in swings], "Hz"),
+            _range([each.amplitude for each in swings], "m"),
+            _range([each.amplitude * k_y for each in swings], "N"),
+            percent(max(each.at_rest for each in swings)),
+        )
+        for name, swings in parts
+        if swings
+    ]
+    A = p.amplitude
+    theory = in_words(natural, "Hz"), in_words(A, "m"), in_words(A * k_y, "N"), percent(0.0)
+    heads = f"swings ({SWINGS} each)", "frequency", "amplitude", "of k_y u_y", "at rest"
+    return Table(heads, [*rows, ("linear theory, V sin φ/ω_y", *theory)])
+
+
+def _range(values: list[float], unit: str) -> str:
+    """Return the range of values in words, or one where they agree to three digits."""
+    low, high = min(values), max(values)
+    if in_words(low, unit, DIGITS) == in_words(high, unit, DIGITS):
+        return in_words(low, unit, DIGITS)
+    return span(low, high, unit, DIGITS)
