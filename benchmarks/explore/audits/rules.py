@@ -35,6 +35,15 @@ def numbers(found: Audit) -> list[tuple[str, ...]]:
     return [] if table is None else list(table.rows)
 
 
+def verdict_answers_first(found: Audit) -> bool:
+    """The verdict begins with whether it sticks; what is no artefact is not called one."""
+    if not found.observation.run.status.ok:
+        return True
+    first = sentences(found, "Verdict").split(". ")[0]
+    told = re.search(r"stick|rest|creep|[Vv]ibrates|too fast", first) is not None
+    return told and (bool(found.slider.misalignment) or "artefact" not in first)
+
+
 def verdict_and_margin(found: Audit) -> bool:
     """The stretch of misalignments that holds its own has the verdict of linear theory."""
     of = found.misalignment
@@ -91,7 +100,7 @@ def advice_works(found: Audit) -> bool:
     works = [each for each in found.advices if each.works]
     none = words.startswith("None of these")
     stable = all(each.growth < 0.0 and each.tried.comes_to == SLIDES for each in works)
-    return stable and none == bool(found.advices and not works)
+    return stable and none == bool(found.advices and not any(e.works for e in found.remedies))
 
 
 def tried_is_a_change(found: Audit) -> bool:
@@ -152,6 +161,7 @@ def reads_well(found: Audit) -> bool:
 
 
 RULES: tuple[Callable[[Audit], bool], ...] = (
+    verdict_answers_first,
     verdict_and_margin,
     verdict_and_motion,
     nothing_to_change,

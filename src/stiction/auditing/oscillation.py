@@ -27,7 +27,7 @@ SILENT = 1e-3  # of V sin(phi)/omega_y: smaller swings may be noise of the solve
 DEAD = 0.1  # of the first swings: if ten are smaller, the oscillation has died out
 
 
-class Swings(NamedTuple):
+class CreepSwings(NamedTuple):
     """Successive swings across the drive: medians of them.
 
     Parameters
@@ -45,31 +45,31 @@ class Swings(NamedTuple):
     at_rest: float
 
 
-class Oscillation(NamedTuple):
+class TransverseSwings(NamedTuple):
     """The transverse oscillation during creep, as a simulated test shows it.
 
     Parameters
     ----------
-    first : Swings or None
+    first : CreepSwings or None
         The first of the first creep; None where the test shows none.
-    later : list of Swings
+    later : list of CreepSwings
         The first after each slip.
-    last : list of Swings
+    last : list of CreepSwings
         The last before each slip, or before steady sliding.
-    largest : Swings or None
+    largest : CreepSwings or None
         The largest of the first creep, and those beside them.
     dead : float
         When the swings of the first creep have died out, s after it begins; NaN if they last.
     """
 
-    first: Swings | None
-    later: list[Swings]
-    last: list[Swings]
-    largest: Swings | None
+    first: CreepSwings | None
+    later: list[CreepSwings]
+    last: list[CreepSwings]
+    largest: CreepSwings | None
     dead: float
 
     @property
-    def swings(self) -> list[Swings]:
+    def swings(self) -> list[CreepSwings]:
         """All of them."""
         return [*filter(None, [self.first, self.largest]), *self.later, *self.last]
 
@@ -79,15 +79,15 @@ class Oscillation(NamedTuple):
         return max((each.frequency for each in self.swings), default=nan)
 
 
-def oscillation_of(seen: SimulatedTest) -> Oscillation:
+def oscillation_of(seen: SimulatedTest) -> TransverseSwings:
     """Measure the transverse oscillation of a simulated test.
 
     In each loading the mass creeps from the end of its longest rest on, until it is as fast as the
     drive. Both ends of that are simulated again, finely, from states of the test.
     """
-    first: Swings | None = None
-    largest: Swings | None = None
-    later, last, dead = list[Swings](), list[Swings](), nan
+    first: CreepSwings | None = None
+    largest: CreepSwings | None = None
+    later, last, dead = list[CreepSwings](), list[CreepSwings](), nan
     for number, (begin, near, end) in enumerate(_creeps(seen)):
         if not begin < end:
             continue
@@ -100,7 +100,7 @@ def oscillation_of(seen: SimulatedTest) -> Oscillation:
         late = _swings(seen, *_again(seen, near, end), slice(-SWINGS, None))
         if late and (number or not isfinite(dead)):
             last.append(late)
-    return Oscillation(first, later, last, largest, dead)
+    return TransverseSwings(first, later, last, largest, dead)
 
 
 def theoretical_oscillation(slider: Slider) -> tuple[float, float]:
@@ -144,7 +144,7 @@ def _again(seen: SimulatedTest, begin: float, end: float) -> tuple[Floats, Float
 
 def _swings(
     seen: SimulatedTest, time: Floats, u_y: Floats, sticks: Floats, part: slice
-) -> Swings | None:
+) -> CreepSwings | None:
     """Return some of the swings, each from a turning point to the next but one."""
     turns = extrema(u_y)[1:-1]
     at, legs = time[turns], np.abs(np.diff(u_y[turns]))
@@ -155,10 +155,10 @@ def _swings(
         return None
     rest = stuck_share(float(begin[0]), float(end[-1]), sticks)
     period = float(np.median(end - begin))
-    return Swings(1.0 / period, 0.5 * float(np.median(heights[loud][::2][part])), rest)
+    return CreepSwings(1.0 / period, 0.5 * float(np.median(heights[loud][::2][part])), rest)
 
 
-def _of_whole(seen: SimulatedTest, begin: float, end: float) -> tuple[Swings | None, float]:
+def _of_whole(seen: SimulatedTest, begin: float, end: float) -> tuple[CreepSwings | None, float]:
     """Return the largest swings of the first creep, and when swings have died out, s after `begin`.
 
     None and NaN if the test is sampled too coarsely to tell, NaN if they last.

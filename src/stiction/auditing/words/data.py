@@ -6,7 +6,7 @@ from math import nan
 from typing import TYPE_CHECKING, Any
 
 from stiction.auditing.advice import Remedy
-from stiction.auditing.oscillation import Oscillation, oscillation_of
+from stiction.auditing.oscillation import TransverseSwings, oscillation_of
 from stiction.auditing.pairs import Pair
 from stiction.auditing.words.numbers import peak
 from stiction.storage.table_files import number
@@ -58,7 +58,7 @@ def of_test(seen: SimulatedTest) -> dict[str, Any]:
     return {"mu_static": with_unit(peak(seen), ""), **means, "shares": shares, "reached": reached}
 
 
-def _swings(shown: Oscillation) -> dict[str, Any]:
+def _swings(shown: TransverseSwings) -> dict[str, Any]:
     """Return the swings across the drive at both ends of each simulated creep."""
     parts = ("first", [shown.first]), ("after_slip", shown.later), ("last", shown.last)
     units = {"frequency": "Hz", "amplitude": "m", "at_rest": ""}

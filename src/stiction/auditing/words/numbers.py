@@ -13,6 +13,7 @@ from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.assumptions import creep_suppositions, suppositions
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip
 from stiction.friction import has_state
+from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
@@ -64,6 +65,7 @@ def numbers(found: Audit) -> Table:
         ("force drop, mean", p.drop, mean_of(seen, "drop", "N"), "N", rough),
         ("period, mean", p.period, mean_of(seen, "period", "s"), "s", rough),
         ("apparent stiffness, mean", apparent_stiffness(s), loading(seen), "N/m", rough),
+        *_growth(found),
     ]
     lines = [
         (
@@ -74,6 +76,15 @@ def numbers(found: Audit) -> Table:
         for name, theory, shown, unit, guide in rows
     ]
     return Table(("quantity", "theory", "simulated"), lines)
+
+
+def _growth(found: Audit) -> list[tuple[str, float, str, str, bool]]:
+    """Return the row of the time in which small disturbances of steady sliding grow or decay."""
+    if found.sliding.verdict not in (STABLE, UNSTABLE):
+        return []
+    way = "decay" if found.sliding.stable else "growth"
+    name = f"{way} of small disturbances, factor of e in"
+    return [(name, 1.0 / abs(found.sliding.growth_rate), "", "s", False)]
 
 
 def mean_of(seen: SimulatedTest, quantity: str, unit: str) -> str:

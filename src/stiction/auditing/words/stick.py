@@ -10,7 +10,13 @@ import numpy as np
 from stiction.analysis.motion.regime.kinds import HARMONIC, IRREGULAR, STICK_SLIP, TRANSVERSE
 from stiction.analysis.motion.rest import HELD, share_held
 from stiction.arrays import Floats, Indices
-from stiction.auditing.simulated_test import CALM, SimulatedTest, end_of_loading, relative_speed
+from stiction.auditing.simulated_test import (
+    CALM,
+    SLIDES,
+    SimulatedTest,
+    end_of_loading,
+    relative_speed,
+)
 from stiction.friction import has_state
 from stiction.text.quantity_text import percent
 from stiction.text.units import in_words
@@ -24,22 +30,34 @@ FEW = 3  # rests in a loading: fewer are not those of a transverse oscillation
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 
 
-def stick(found: Audit) -> list[str]:
-    """Return how much of the apparent stick is creep."""
-    seen, s = found.observation, found.slider
+def answer(found: Audit) -> str:
+    """Return whether it is static friction, or the apparatus: the first sentence of the verdict."""
+    seen = found.observation
     if seen.blind:
-        return ["The load cell shows nothing that could be taken for stick."]
+        return "The load cell shows nothing that could be taken for stick."
     if not len(seen.table) and (share := _following(seen)) > 0.5:
-        return [
+        return (
             f"For {percent(share)} of the loading the mass is as fast as the drive to within "
             f"{percent(CALM)}: nothing sticks."
-            + (
-                " The load cell shows a rising force while friction turns."
-                if s.misalignment
-                else ""
-            )
-        ]
-    whole = "of each cycle" if len(seen.table) else "of the loading"
+        )
+    what, _ = _why(found, _share_of_inertia(found))
+    if what:
+        return what
+    rest, slow = seen.shares.rest, seen.shares.rest + seen.shares.creep
+    return (
+        f"The mass hardly sticks: it rests for {percent(rest)} {_whole(seen)}, and is slower than "
+        f"the drive for {percent(slow)}."
+    )
+
+
+def stick(found: Audit) -> list[str]:
+    """Return how much of the apparent stick is creep, in numbers."""
+    seen, s = found.observation, found.slider
+    if seen.blind or (not len(seen.table) and _following(seen) > 0.5):
+        rises = "The load cell shows a rising force while friction turns."
+        turns = s.misalignment and not seen.blind
+        return [f"{answer(found)} {rises}" if turns else answer(found)]
+    whole = _whole(seen)
     vibrates, inertia = seen.motion in VIBRATES, _share_of_inertia(found)
     slowly = "creeps" if s.misalignment or has_state(s.law) else "slides slowly"
     slowly = "gains or loses speed" if _hastens(seen, inertia) else slowly
@@ -52,8 +70,9 @@ def stick(found: Audit) -> list[str]:
     ]
     if s.misalignment == 0.0:
         lines.append("There is no misalignment, so friction does not turn.")
-    if why := _why(found, inertia):
-        lines.append(why)
+    _, details = _why(found, inertia)
+    if details:
+        lines.append(details)
     if seen.motion == STICK_SLIP:
         lines.append(
             "The apparent kinetic coefficient is the mean of peak and trough. The mass overshoots "
@@ -67,18 +86,26 @@ def _hastens(seen: SimulatedTest, inertia: float) -> bool:
     return inertia > 0.5 * seen.shares.creep
 
 
-def _why(found: Audit, inertia: float) -> str:
-    """Return why the mass is slower than the drive for a while; nothing where that is too short."""
+def _whole(seen: SimulatedTest) -> str:
+    """Return the time that shares are of, in words."""
+    return "of each cycle" if len(seen.table) else "of the loading"
+
+
+def _why(found: Audit, inertia: float) -> tuple[str, str]:
+    """Return why the mass is slower than the drive for a while, and the details.
+
+    Both are empty where that is too short.
+    """
     seen, misaligned = found.observation, found.slider.misalignment != 0.0
     if seen.motion in VIBRATES:
         rests = "it rests for a moment in each swing" if seen.shares.rest else "it never rests"
-        return f"The mass vibrates about steady sliding; {rests}."
+        return f"The mass vibrates about steady sliding; {rests}.", ""
     if has_state(found.slider.law) and seen.shares.creep > 0.0:
+        if not misaligned:
+            return "The creep is due to the law of friction.", ""
         return (
-            "Friction with internal state creeps by itself. An audit of the same apparatus with "
-            "phi=0deg shows how much the misalignment adds."
-            if misaligned
-            else "The creep is due to the law of friction."
+            "Friction with internal state creeps by itself.",
+            "An audit of the same apparatus with phi=0deg shows how much the misalignment adds.",
         )
     moments = _rests_for_moments(seen) if misaligned else ""
     if moments or (misaligned and seen.shares.creep - inertia > seen.shares.rest):
@@ -93,17 +120,23 @@ def _why(found: Audit, inertia: float) -> str:
             creep = "mostly creep"
         elif _long_rest(seen):
             creep = "rest, then creep with short rests,"
+        before = " before steady sliding" if seen.comes_to == SLIDES else ""
         return (
-            f"The apparent stick is {creep} under a turning friction force: an artefact "
-            f"of the misalignment. {moments}The mass covers {far}. The largest force shows how far "
-            f"friction has turned; it is not evidence of static friction."
+            f"The apparent stick{before} is {creep} under a turning friction force: an artefact of "
+            "the misalignment. The largest force shows how far friction has turned; it is not "
+            "evidence of static friction.",
+            f"{moments}The mass covers {far}.",
         )
     if _hastens(seen, inertia) and seen.shares.creep > seen.shares.rest:
         return (
             "The drive is too fast for creep: the mass takes as long to gain its speed, and to "
-            "lose it, as to swing on its spring."
+            "lose it, as to swing on its spring.",
+            "",
         )
-    return "The apparent stick is mostly true rest." if seen.shares.rest > HARDLY else ""
+    if seen.shares.rest > HARDLY:
+        share = f"it truly sticks for {percent(seen.shares.rest)} {_whole(seen)}"
+        return f"The apparent stick is mostly true rest: {share}.", ""
+    return "", ""
 
 
 def _rests_for_moments(seen: SimulatedTest) -> str:

@@ -11,7 +11,7 @@ from stiction.analysis.motion.regime.kinds import TRANSVERSE
 from stiction.auditing.oscillation import (
     DEAD,
     SWINGS,
-    Oscillation,
+    TransverseSwings,
     oscillation_of,
     theoretical_oscillation,
 )
@@ -96,7 +96,7 @@ def _without_creep(found: Audit) -> str:
     return ""
 
 
-def _during_creep(found: Audit, shown: Oscillation) -> Iterator[str]:
+def _during_creep(found: Audit, shown: TransverseSwings) -> Iterator[str]:
     """Yield the oscillation during creep: what becomes of it, and what shows it."""
     seen = found.observation
     becomes = _what_becomes(shown)
@@ -123,7 +123,7 @@ def _during_creep(found: Audit, shown: Oscillation) -> Iterator[str]:
         )
 
 
-def _what_becomes(shown: Oscillation) -> str:
+def _what_becomes(shown: TransverseSwings) -> str:
     """Return what becomes of the swings before slip or steady sliding, as the end of a sentence."""
     first = shown.first.amplitude if shown.first else nan
     last = max((each.amplitude for each in shown.last), default=0.0)
@@ -137,7 +137,7 @@ def _what_becomes(shown: Oscillation) -> str:
     return ", and dies out." if dies else ", and gets smaller."
 
 
-def _beside_theory(found: Audit, shown: Oscillation) -> Table:
+def _beside_theory(found: Audit, shown: TransverseSwings) -> Table:
     """Return the simulated swings at both ends of creep beside those of linear theory."""
     p, k_y = found.prediction, found.slider.k_y
     natural, _ = theoretical_oscillation(found.slider)

@@ -16,6 +16,7 @@ from stiction.analysis.motion.regime.kinds import (
 )
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.simulated_test import OSCILLATES, SLIDES, SMALL, UNSETTLED, SimulatedTest
+from stiction.auditing.words.stick import answer
 from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
 from stiction.linear_stability.linear import STABLE, UNSTABLE
@@ -40,13 +41,13 @@ SEEN = {  # kinds of motion, in a sentence
 
 
 def verdict(found: Audit) -> list[str]:
-    """Return the motion of the apparatus, and its margin to another one."""
+    """Return whether it is static friction, the motion, and its margin to another one."""
     early = [each for each in (found.observation, found.sliding_on) if not each.run.status.ok]
     doubts = implausible(found.slider.law)
     if early:
         ended = f"The simulated test ended early: {early[0].run.status.value}."
         return [*doubts, ended, stability(found)]
-    return [*doubts, *motions(found), stability(found), margin(found)]
+    return [*doubts, answer(found), *motions(found), stability(found), margin(found)]
 
 
 def motions(found: Audit) -> list[str]:
@@ -162,20 +163,20 @@ def mean_in_words(values: np.ndarray, unit: str) -> str:
 
 def stability(found: Audit) -> str:
     """Return the stability of steady sliding in a sentence."""
-    growth, frequency = found.sliding.growth_rate, float(found.sliding.frequencies[0])
+    frequency = float(found.sliding.frequencies[0])
     if found.sliding.verdict not in (STABLE, UNSTABLE):
         return (
             "Steady sliding is on the boundary of stability: disturbances neither grow nor decay."
         )
-    stable, time = found.sliding.stable, in_words(1.0 / abs(growth), "s")
+    stable = found.sliding.stable
     swing = f", oscillating at {in_words(frequency, 'Hz')}" if frequency > 0.0 else ""
     if stable and found.sliding_on.comes_to == OSCILLATES:
         return (
-            f"Steady sliding is stable only to disturbances far below 1 % of the drive's speed, "
-            f"which decay by a factor of e in {time}{swing}: in a test it does not last."
+            "Steady sliding is stable only to disturbances far below 1 % of the drive's speed"
+            f"{swing}: in a test it does not last."
         )
-    what = f"stable: small disturbances {'decay' if stable else 'grow'} by a factor of e in {time}"
-    return f"Steady sliding is {what if stable else 'un' + what}{swing}."
+    what = "stable: small disturbances decay" if stable else "unstable: small disturbances grow"
+    return f"Steady sliding is {what}{swing}."
 
 
 def margin(found: Audit) -> str:
