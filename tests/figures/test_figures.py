@@ -810,6 +810,15 @@ def test_a_close_up_marks_every_cycle_in_it() -> None:
         )
 
 
+def test_trials_show_the_start_where_swings_are_not_small_beside_it() -> None:
+    """Both were simulated from rest, and the loading was cut off."""
+    time = np.arange(0.0, 10.0, 0.01)
+    loading = np.minimum(time, 3.6)
+    before = st.Record(time=time, force=loading + 0.6 * np.sin(4.0 * time) * (time > 4.0))
+    (ax,) = plot_trials(before, [Trial("a damper", st.Record(time=time, force=loading))])
+    assert ax.get_ylim()[0] <= 0.0
+
+
 def test_trials_show_what_is_small_beside_the_loading() -> None:
     time = np.arange(0.0, 10.0, 0.01)
     loading = np.minimum(time, 3.6)

@@ -160,7 +160,7 @@ def test_advice_is_tried_and_says_when_it_does_not_help(found):
     told = {row[0].split()[0]: row[-1] for row in rows}
     assert told["stiffness"] == "no value in that range"
     assert told["drive"].startswith("no remedy: ")
-    assert told["misalignment"].startswith("steady sliding, reached after ")
+    assert told["misalignment"] == "steady sliding"
 
 
 def test_an_advised_damper_is_what_the_closed_form_says(found):
@@ -242,7 +242,7 @@ def test_an_advice_says_when_and_on_how_much_travel_it_slides_steadily(found):
         assert its.settled == pytest.approx(last, abs=1.05 * coarse)
         assert its.travel == 1e-3 * its.settled
         row = next(row for row in changes(found)[1].rows if NAMES[path] == row[0])
-        time, way = re.search(r"reached after (.+), on (.+) of travel", row[-1]).groups()
+        time, way = row[-3:-1]
         assert quantity(time) == pytest.approx(its.settled, rel=0.05)  # two digits
         assert quantity(way) == pytest.approx(its.travel, rel=0.05)
 

@@ -17,7 +17,7 @@ from stiction.auditing.simulated_test import (
 from stiction.auditing.words.verdict import (
     ROUGHLY,
     final_motion,
-    motion_and_travel,
+    settling,
     travel,
     where,
 )
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from stiction.auditing.report import Audit
 
 ALMOST = 0.1  # of the present force drop: a change that leaves less is nearly a remedy
+HEADINGS = "change", "now", "stable", "tried", "settles after", "travel", "from rest"
 NAMES = {
     "phi": "misalignment φ",
     "drive.velocity": "drive velocity V",
@@ -56,7 +57,7 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
     undecided = any(each.tried and each.tried.comes_to == UNSETTLED for each in every)
     none = f"None of these {'is seen to make' if undecided else 'makes'} it {goal}"
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else none
-    lines = [f"{what}. Each change was simulated from rest; the last column shows the result."]
+    lines = [f"{what}. Each change was simulated from rest; the last columns show the result."]
     if remedies:
         lines.append(
             "The mildest change, by the factor, stands first. The travel is the way of the drive "
@@ -74,7 +75,7 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
             "Nothing has to be changed for a test that is started from steady sliding, as long as "
             "no disturbance stops the mass."
         )
-    return lines, Table(("change", "now", "stable", "tried", "simulated from rest"), rows)
+    return lines, Table(HEADINGS, rows)
 
 
 def name_of(found: Audit, path: str) -> str:
@@ -93,14 +94,14 @@ def _change(found: Audit, advice: Remedy) -> tuple[str, ...]:
     name, now = name_of(found, advice.path), in_words(advice.now, advice.unit)
     if advice.tried is None:
         if advice.cut:
-            return name, now, "", "none", "not tried"
+            return name, now, "", "none", "", "", "not tried"
         tried = "none"
         if advice.critical:
             tried = " to ".join(in_words(end, advice.unit) for end in advice.critical.between)
-        return name, now, "nowhere", tried, "no value in that range"
+        return name, now, "nowhere", tried, "", "", "no value in that range"
     stable = where(advice.critical, True) if advice.critical else "now"
-    then = value_of(found, advice.path, advice.then, advice.unit)
-    return name, now, stable, then, _result(found, advice.tried, advice.works)
+    then = in_words(advice.then, advice.unit)
+    return name, now, stable, then, *_result(found, advice.tried, advice.works)
 
 
 def settings(found: Audit, each: Remedy | Pair) -> list[str]:
@@ -128,30 +129,36 @@ def in_symbols(pair: Pair) -> str:
 
 
 def _change_of_two(found: Audit, pair: Pair) -> tuple[str, ...]:
-    name = f"{name_of(found, 'phi')}, {name_of(found, pair.path)}"
+    symbols = (NAMES[each.path].rpartition(" ")[2] for each in pair.changes)
+    name = ", ".join(symbols) if pair.tried else f"φ, {_symbol(found, pair.path)}"
     if pair.tried is None:
         if pair.cut:
-            return name, "", "", "none", "not tried"
+            return name, "", "", "none", "", "", "not tried"
         tried = f"to {ANGLES[-1]:g} deg and {FACTORS[-1]:g} times"
-        return name, "", "nowhere", tried, "no values in that range"
+        return name, "", "nowhere", tried, "", "", "no values in that range"
     now, then = (
         ", ".join(in_words(value, each.unit) for each, value in zip(pair.changes, its, strict=True))
         for its in zip(*((each.now, each.then) for each in pair.changes), strict=True)
     )
-    return name, now, "together", then, _result(found, pair.tried, pair.works)
+    return name, now, "together", then, *_result(found, pair.tried, pair.works)
 
 
-def _result(found: Audit, seen: SimulatedTest, works: bool) -> str:
-    """Return what the simulation with a change shows."""
+def _symbol(found: Audit, path: str) -> str:
+    return name_of(found, path).rpartition(" ")[2]
+
+
+def _result(found: Audit, seen: SimulatedTest, works: bool) -> tuple[str, str, str]:
+    """Return when and where the simulation with a change settles, and what it comes to."""
     if works:
-        return motion_and_travel(seen)
+        return (*settling(seen), final_motion(seen))
     if not seen.run.status.ok:
-        return f"not known: the simulation was cut at {in_words(float(seen.record.time[-1]), 's')}"
+        end = in_words(float(seen.record.time[-1]), "s")
+        return "", "", f"not known: the simulation was cut at {end}"
     if seen.comes_to == UNSETTLED:
-        return f"not decided: {final_motion(seen)}"
+        return "", "", f"not decided: {final_motion(seen)}"
     what, drop = f"no remedy: {final_motion(seen)}", seen.mean("drop")
     if seen.comes_to == OSCILLATES and isfinite(drop):
         if drop < ALMOST * found.observation.mean("drop"):
             what = f"almost: {final_motion(seen)}"
         what += f", force drop {in_words(drop, 'N')}"
-    return what
+    return "", "", what

@@ -113,17 +113,22 @@ def motion_and_travel(seen: SimulatedTest) -> str:
 
 def time_and_travel(seen: SimulatedTest) -> str:
     """Return when steady sliding is reached, and how far the drive goes until then, in words."""
-    whole = float(seen.run.samples["time"][-1])
-    time = in_words(seen.settled if isfinite(seen.settled) else whole, "s", ROUGHLY)
-    return f"after {'' if isfinite(seen.settled) else 'more than '}{time}, {travel(seen)}"
+    return f"after {settling(seen)[0]}, {travel(seen)}"
 
 
 def travel(seen: SimulatedTest) -> str:
     """Return how far the drive goes until steady sliding is reached, in words."""
+    return f"on {settling(seen)[1]} of travel"
+
+
+def settling(seen: SimulatedTest) -> tuple[str, str]:
+    """Return when steady sliding is reached, and how far the drive goes until then."""
+    whole = float(seen.run.samples["time"][-1])
     if isfinite(seen.travel):
-        return f"on {in_words(seen.travel, 'm', ROUGHLY)} of travel"
-    whole = seen.run.slider.drive_speed * float(seen.run.samples["time"][-1])
-    return f"on more than {in_words(whole, 'm', ROUGHLY)} of travel"
+        return in_words(seen.settled, "s", ROUGHLY), in_words(seen.travel, "m", ROUGHLY)
+    way = seen.run.slider.drive_speed * whole
+    times = in_words(whole, "s", ROUGHLY), in_words(way, "m", ROUGHLY)
+    return f"more than {times[0]}", f"more than {times[1]}"
 
 
 def short_rest(seen: SimulatedTest) -> str:

@@ -32,6 +32,7 @@ SEEN = 0.02  # of the visible range: smaller swings are as thin as a line
 LASTING = 0.5  # of the range a quarter of the time before: less dies out
 # of the time shown, and of the force's range: less of the test before would mislead
 WIDE, WHOLE = 0.1, 0.5
+LARGE = 0.1  # of the largest force: with a smaller visible range the loading is cut off
 ROUNDING = 1e-6  # of the force: smaller variations are rounding
 
 
@@ -51,8 +52,8 @@ def plot_trials(
     shorter, it ends, and where next to nothing of it would be seen, or less than a swing, a band
     is the range of its force. Of a trial that goes on with more swings than a panel can show, the
     last few are drawn, and it is said of how many. Where swings that die out are too fast to be
-    seen one by one, a pale band is their range, and the line their mean. Forces are shown about
-    what both come to, the loading from nothing is cut off: an oscillation may be small beside it.
+    seen one by one, a pale band is their range, and the line their mean. The start from rest is
+    shown, down to zero force, but where both come to swings that are small beside it.
 
     Parameters
     ----------
@@ -116,6 +117,12 @@ def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[s
     title, record = trial
     low, high = later(factor, before, record)
     start, end, count = time_range(record, SEEN * (high - low) / factor)
+    most = factor * max(float(np.abs(each.force).max()) for each in (before, record))
+    if (
+        start <= float(record.time[0]) and high - low >= LARGE * most
+    ):  # the start belongs to the test: from unloaded springs
+        first = factor * float(record.force[0])
+        low, high = min(low, first, 0.0), max(high, first, 0.0)
     window = (end - start, high - low)
     drawn: dict[str, Artist] = {}
     force, then = factor * before.force, (before.time >= start) & (before.time <= end)
