@@ -20,6 +20,7 @@ from stiction.analysis.protocols.velocity_steps import velocity_steps as velocit
 from stiction.analysis.protocols.yaw import apparent_friction as apparent_friction
 from stiction.analysis.record import record_of as record_of
 from stiction.analysis.report import Analysis as Analysis
+from stiction.analysis.several import mean_over as mean_over
 from stiction.analysis.several import side_by_side as side_by_side
 from stiction.analysis.signals.ridge import follow_ridge as follow_ridge
 from stiction.analysis.signals.spectrum import spectrogram as spectrogram

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.parts import functions
-from stiction.analysis.parts.cycles import each_cycle
+from stiction.analysis.parts.cycles import each_cycle, turns_with_drive
 from stiction.analysis.record import Record
 from stiction.arrays import xr
 from stiction.storage.files import placeable, whole, write_text
@@ -37,7 +37,7 @@ def numbers(found: Analysis) -> dict[str, Any]:
 def full_report(found: Analysis) -> list[Section]:
     """Return the report with the first cycles, and with how a record was read from its file."""
     parts, count = found.tables(), found.cycles.sizes["cycle"]
-    if count:
+    if count and not turns_with_drive(found):
         at = [part.title for part in parts].index("Cycles") + 1
         more = rows_left_out(count, "cycles", "cycles.csv")
         parts.insert(at, Section("Cycle by cycle", more, each_cycle(found.cycles)))

@@ -6,11 +6,14 @@ from collections import Counter
 from collections.abc import Mapping
 from math import isfinite, nan
 
-from stiction.analysis.motion.cycle_columns import mean_in_words
+import numpy as np
+
+from stiction.analysis.motion.cycle_columns import mean_in_words, with_spread
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.parts.brief import warnings_in_short
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
 from stiction.analysis.report import Analysis
+from stiction.analysis.signals.correlated_noise import statistics
 from stiction.arrays import xr
 from stiction.text.sections import Section, Table
 from stiction.text.units import with_error
@@ -97,6 +100,45 @@ def section(found: Mapping[str, Analysis]) -> Section:
         tuple(COLUMNS[at] for at in kept), [tuple(row[at] or "none" for at in kept) for row in rows]
     )
     return Section("Side by side", lines, table)
+
+
+def mean_over(found: Mapping[str, Analysis]) -> Section:
+    """Return the mean friction of the strokes of one test, each as telling, with its error.
+
+    The error is that by their scatter: a zero that is off shifts the ways forth and back apart.
+
+    Parameters
+    ----------
+    found : mapping of str to Analysis
+        From `stiction.analyse`, by the names of the strokes.
+
+    Examples
+    --------
+    >>> import numpy as np, stiction as st
+    >>> time = np.arange(0.0, 10.0, 1e-3)
+    >>> found = {
+    ...     name: st.analyse(st.Record(time=time, force=1.0 + height * (time % 2.0)))
+    ...     for name, height in {"forth": 0.1, "back": 0.1004}.items()
+    ... }
+    >>> print(st.analysis.mean_over(found).table.rows[0][:2])
+    ('static', '2')
+    """
+    rows = []
+    for name in FRICTIONS:
+        known = [each for x in found.values() if (each := getattr(x.friction, name)) is not None]
+        if len(known) < 2:
+            continue
+        of_load = all(isfinite(each.coefficient) for each in known)
+        values = np.array([each.coefficient if of_load else each.force for each in known])
+        mean, error, spread = statistics(values)
+        unit = "1" if of_load else "N"
+        shown = with_error(mean, error, unit)
+        rows.append((name, f"{len(known)}", shown, with_spread(spread, mean, unit)))
+    if not rows:
+        return Section("Mean of the strokes", ["Fewer than two of them have a friction."])
+    headings = ("friction", "strokes", "mean", "standard deviation")
+    lines = ["The error of the mean is that by the scatter of the strokes, each as telling."]
+    return Section("Mean of the strokes", lines, Table(headings, rows))
 
 
 def _row(name: str, found: Analysis) -> tuple[str, ...]:

@@ -151,7 +151,8 @@ class RecordOptions:
         times of the file begin again. Example: --block 2.
     stroke
         Number of the stroke to read, from 1, where the drive goes to and fro and the record has its
-        displacement. On a way back, forces and displacements are turned round. Example: --stroke 2.
+        displacement. On a way back, forces and displacements are turned round. With all, `stiction
+        analyse` gives a row for each. Example: --stroke 2.
     begin
         Time at which the part to read begins, in the times of the file: after running in, say.
         Example: --begin "20 s".
@@ -182,7 +183,7 @@ class RecordOptions:
     separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
     wrap: str | None = None
     block: int | None = None
-    stroke: int | None = None
+    stroke: int | Literal["all"] | None = None
     begin: str | None = None
     end: str | None = None
     sidecar: Path | None = None

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, TypeVar
 
-from pydantic import BeforeValidator, Field
+from pydantic import BeforeValidator, Field, ValidatorFunctionWrapHandler, WrapValidator
 
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.formats.channels import CHANNELS
@@ -75,12 +75,17 @@ def _column(value: object) -> str:
 Column = Annotated[Read[str], BeforeValidator(_column)]
 
 
+def _or_all(value: Any, whole: ValidatorFunctionWrapHandler) -> Any:
+    """Return "all", or a whole number."""
+    return value if value == "all" else whole(value)
+
+
 class AskedPart(NamedTuple):
     """The part of a record that is asked for: between two times, s, and of that a stroke."""
 
     begin: float | None = None
     end: float | None = None
-    stroke: int | None = None
+    stroke: int | str | None = None
 
 
 class ReadingOptions(Described):
@@ -105,7 +110,7 @@ class ReadingOptions(Described):
     block : int, optional
         Which of several blocks, counted from 1: a block begins where the times begin again.
     stroke : int, optional
-        Which stroke of a drive that goes to and fro, counted from 1.
+        Which stroke of a drive that goes to and fro, counted from 1, or ``"all"``, a record each.
     begin, end : float or str, optional
         Of the part that is read, s, in the times of the file; by default all.
     """
@@ -123,7 +128,7 @@ class ReadingOptions(Described):
     separator: Literal["tab", "comma", "semicolon", "space", "bar"] | None = None
     wrap: Annotated[Read[float] | None, BeforeValidator(_wrap)] = None
     block: Annotated[Whole, Field(ge=1)] | None = None
-    stroke: Annotated[Whole, Field(ge=1)] | None = None
+    stroke: Annotated[Whole, Field(ge=1), WrapValidator(_or_all)] | None = None
     begin: Instant | None = None
     end: Instant | None = None
 

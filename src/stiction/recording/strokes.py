@@ -14,6 +14,8 @@ from stiction.recording.measurement import Measurement
 from stiction.recording.part import part_of
 from stiction.text.suggestion import Suggestion
 
+ALL = "all"  # of the strokes are asked for
+EACH = Suggestion("stroke", ALL, of="st.read_records")
 ENDS = 0.25  # of the reach, about its middle: beyond it the drive is at one end or at the other
 AT_AN_END = 0.02  # of the reach: so near its end a drive turns, or dwells
 WHOLE = 0.5  # of the reach: a part at the beginning or the end of a record that is less is left out
@@ -65,33 +67,47 @@ def _turns(position: Floats, reach: float) -> list[int]:
 def stroke_of(path: object, found: Measurement, number: int) -> Measurement:
     """Return one stroke of a record, counted from 1, in the direction of its drive.
 
+    Raises
+    ------
+    ResultError
+        If the record has no displacement, or not so many strokes.
+    """
+    parts = all_strokes(path, found)
+    if not 1 <= number <= len(parts):
+        one = "" if len(parts) > 1 else ": the drive does not turn"
+        raise ResultError(
+            f"{path}: has {number_of(len(parts), 'stroke')}{one}; there is no stroke {echo(number)}"
+        )
+    return parts[number - 1]
+
+
+def all_strokes(path: object, found: Measurement) -> list[Measurement]:
+    """Return the strokes of a record, each in the direction of its drive.
+
     On the way back, forces and displacements along the drive have the other sign: they are turned
     round, as a test of one direction has them.
 
     Raises
     ------
     ResultError
-        If the record has no displacement, or not so many strokes.
+        If the record has no displacement.
     """
     name = next((x for x in ("drive_position", "position") if x in found.channels), None)
     if name is None:
         raise ResultError(
-            f"{path}: which samples are stroke {echo(number)} follows from the displacement of the "
-            f"drive; say its column and unit, such as {Suggestion('drive_position', 'stage=mm')}"
+            f"{path}: which samples are a stroke follows from the displacement of the drive; say "
+            f"its column and unit, such as {Suggestion('drive_position', 'stage=mm')}"
         )
     parts = strokes(found.channels[name])
-    if not 1 <= number <= len(parts):
-        one = "" if len(parts) > 1 else ": the drive does not turn"
-        raise ResultError(
-            f"{path}: has {number_of(len(parts), 'stroke')}{one}; there is no stroke {echo(number)}"
-        )
-    samples, way = parts[number - 1]
-    return part_of(found, samples, f"stroke {number} of {len(parts)}", way)
+    return [
+        part_of(found, samples, f"stroke {number} of {len(parts)}", way)
+        for number, (samples, way) in enumerate(parts, 1)
+    ]
 
 
 def by_strokes() -> str:
     """Return how a record of a drive that goes to and fro is divided, for a message."""
     return (
         "the strokes by themselves: where a file has the drive's displacement, "
-        f"{Suggestion('stroke', 1)} reads the first"
+        f"{Suggestion('stroke', 1)} reads the first, and {EACH} each of them"
     )

@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.export import full_report
 from stiction.cli import main
 from stiction.recording.strokes import strokes
 
@@ -98,6 +99,60 @@ def test_an_analysis_of_a_record_to_and_fro_says_how_to_read_a_stroke(path):
     assert "stroke=1 of st.read_record reads the first" in " ".join(whole.split())
     found = st.analyse(st.read_record(path, stroke=2))
     assert "back and forth" not in str(found)
+
+
+def test_all_strokes_are_read_at_once_and_have_a_row_each_and_their_mean(path, tmp_path, capsys):
+    """Each needed a command: "unable to convert "all" into int"."""
+    found = st.read_records(path, stroke="all")
+    each = [st.read_record(path, stroke=number) for number in range(1, 6)]
+    assert [x.force.tolist() for x in found] == [x.force.tolist() for x in each]
+    with pytest.raises(st.ResultError, match=r"has 5 strokes.*stroke=1 for one of them"):
+        st.read_record(path, stroke="all")
+    folder = tmp_path / "o"
+    asked = ["--stroke", "all", "--normal-load", "1N", "-o", str(folder)]
+    with pytest.raises(SystemExit) as ended:
+        main(["analyse", str(path), *asked])
+    assert ended.value.code == 0
+    said = capsys.readouterr().out
+    assert all(f"to-and-fro.csv, stroke {number}" in " ".join(said.split()) for number in (1, 5))
+    assert "Mean of the strokes" in said
+    assert "Mean of the strokes" in (folder / "report.txt").read_text("utf-8")
+
+
+def test_the_mean_of_strokes_has_the_error_of_their_scatter():
+    """A zero that is off by 0.1 N shifts the ways forth and back apart; their mean stays."""
+    time, inside = np.arange(0.0, 12.0, 5e-3), 0
+    for number in range(20):
+        random = np.random.default_rng([31, number])
+        found = {}
+        for stroke in range(6):
+            level = 2.0 + 0.1 * (-1.0) ** stroke + 0.02 * random.normal()
+            force = level + 0.5 * (time % 1.0) + 1e-3 * random.normal(size=len(time))
+            found[f"stroke {stroke}"] = st.analyse(
+                st.Record(time=time, force=force, normal_load=5.0)
+            )
+        (row,) = [row for row in st.analysis.mean_over(found).table.rows if row[0] == "static"]
+        mean, error = map(float, row[2].split(" ± "))
+        assert row[1] == "6"
+        inside += abs(mean - 0.5) < 2.0 * error
+    assert inside >= 18
+
+
+def test_swings_of_a_drive_that_turns_are_not_cycles_of_slips():
+    """ "2 cycles ... force at the trough after slip -500 mN" stood below "Undetermined"."""
+    seen = 0
+    for number in range(12):
+        random = np.random.default_rng([32, number])
+        time = np.arange(0.0, 40.0, 0.01)
+        turn = np.clip(8.0 * np.sin(2.0 * np.pi * time / random.uniform(4.0, 9.0)), -1.0, 1.0)
+        force = 0.5 * turn + 10 ** random.uniform(-3.0, -2.0) * random.normal(size=len(time))
+        found = st.analyse(st.Record(time=time, force=force, normal_load=1.0))
+        parts = {part.title: part for part in full_report(found)}
+        assert found.regime.kind == "undetermined"
+        seen += found.cycles.sizes["cycle"] > 0
+        assert parts["Cycles"].table is None
+        assert "Cycle by cycle" not in parts
+    assert seen > 6
 
 
 def test_a_spring_that_is_loaded_backwards_after_a_turn_is_no_zero_that_is_off():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any, TypedDict, Unpack
+from typing import Any, Literal, TypedDict, Unpack
 
 from stiction.analysis.record import Record
 from stiction.errors import DescriptionError, Fault, Faults, ResultError
@@ -13,7 +13,7 @@ from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.part import part_between
 from stiction.recording.request import AskedPart, ReadingOptions
 from stiction.recording.stored import read_stored, root_attributes
-from stiction.recording.strokes import stroke_of
+from stiction.recording.strokes import ALL, all_strokes, stroke_of
 from stiction.result.file import FIT_KIND, RECORD_KIND, refuse_kinds
 from stiction.storage.kinds import use_of
 from stiction.text.suggestion import Suggestion, as_argument, as_argument_elsewhere, suggest
@@ -37,7 +37,7 @@ class ReadArguments(TypedDict, total=False):
     separator: str | None
     wrap: str | None
     block: int | None
-    stroke: int | None
+    stroke: int | Literal["all"] | None
     begin: Quantity | None
     end: Quantity | None
     normal_load: Quantity | None
@@ -83,9 +83,10 @@ def read_record(
         The length after which a displacement starts again, or "none".
     block : int, optional
         Which of several blocks, from 1: a block begins where the times of the file begin again.
-    stroke : int, optional
+    stroke : int or "all", optional
         Which stroke of a drive that goes to and fro, from 1, between two turns of its displacement.
-        Forces and displacements of a way back are turned round.
+        Forces and displacements of a way back are turned round. With ``"all"``, `read_records`
+        returns a record of each.
     begin, end : float or str, optional
         Of the part to read, in the times of the file: after running in, before a gap.
 
@@ -128,7 +129,13 @@ def _only_record(
             f"{path}: holds {len(found)} blocks: {listed}. Say {Suggestion('block', 1)} for one of "
             "them; st.read_records(path) reads all"
         )
-    return _record(path, found[0])
+    strokes = _records(path, found[0])
+    if len(strokes) > 1:
+        raise ResultError(
+            f"{path}: has {len(strokes)} strokes, which are as many records: say "
+            f"{Suggestion('stroke', 1)} for one of them; st.read_records(path) reads all"
+        )
+    return strokes[0]
 
 
 @suggest(as_argument)
@@ -166,7 +173,8 @@ def read_records(
     faults = Faults()
     for path in _all_files([paths] if isinstance(paths, str | Path) else paths):
         with faults.of_part():
-            found += [_record(path, each) for each in _measurements(path, sidecar, dict(said))]
+            for each in _measurements(path, sidecar, dict(said)):
+                found += _records(path, each)
     faults.refuse()
     return tuple(found)
 
@@ -208,7 +216,8 @@ def read_sources(
                 continue
             blocks = read_records(path, sidecar=sidecar, **said)
             for number, record in enumerate(blocks, 1):
-                found[f"{name}, block {number}" if len(blocks) > 1 else name] = record
+                part = "stroke" if said.get("stroke") == ALL else "block"
+                found[f"{name}, {part} {number}" if len(blocks) > 1 else name] = record
     faults.refuse()
     return found
 
@@ -291,13 +300,21 @@ def _measurements(
     return [stored._replace(known={**stored.known, **changed}, asked=ReadingOptions(**part).part)]
 
 
-def _record(path: str | Path, found: Measurement) -> Record:
-    """Return the record of a measurement, or of a part of it, with faults that name the file."""
+def _records(path: str | Path, found: Measurement) -> list[Record]:
+    """Return the record of a measurement, or of a part of it; or of each of its strokes."""
     begin, end, stroke = found.asked
     if begin is not None or end is not None:
         found = part_between(path, found, begin, end)
-    if stroke is not None:
-        found = stroke_of(path, found, stroke)
+    parts = [found]
+    if stroke == ALL:
+        parts = all_strokes(path, found)
+    elif isinstance(stroke, int):
+        parts = [stroke_of(path, found, stroke)]
+    return [_record(path, each) for each in parts]
+
+
+def _record(path: str | Path, found: Measurement) -> Record:
+    """Return the record of a measurement, with faults that name the file."""
     known = {**found.known}
     if isinstance(turned := known.get("turned"), float):
         known["turned"] = f"{turned!r} rad"  # of an angle a record asks for the unit

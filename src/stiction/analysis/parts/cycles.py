@@ -10,6 +10,7 @@ import numpy as np
 from stiction.analysis.motion.cycle_columns import mean_in_words, table_of, with_spread
 from stiction.analysis.motion.doubts.creep_distance import hidden_way, way_of_lag
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
+from stiction.analysis.motion.regime.kinds import TO_AND_FRO
 from stiction.arrays import xr
 from stiction.storage.table_files import number
 from stiction.text.columns import SHOWN, Quantity, grid
@@ -42,6 +43,8 @@ def section(found: Analysis) -> Section:
     count = found.cycles.sizes["cycle"]
     if not count:
         return Section("Cycles", ["None."])
+    if turns_with_drive(found):
+        return Section("Cycles", ["Not shown: the force turns with the drive, and not by slips."])
     rows, off = [], _error_of_rate(found)
     for quantity in found.summary["quantity"].values:
         row = found.summary.sel(quantity=quantity)
@@ -67,6 +70,11 @@ def section(found: Analysis) -> Section:
         columns = ", ".join(COLUMNS[name] for name in unknown if found.missing[name] == why)
         lines.append(f"Not given: {columns}; {why}.")
     return Section("Cycles", lines, table)
+
+
+def turns_with_drive(found: Analysis) -> bool:
+    """Return whether the swings of a force are those of a drive that goes back and forth."""
+    return any(name in found.regime.evidence for name in TO_AND_FRO)
 
 
 def _error_of_rate(found: Analysis) -> float:

@@ -22,6 +22,7 @@ from stiction.analysis.motion.regime.kinds import (
     STEADY,
     STICK_SLIP,
     STUCK,
+    TO_AND_FRO,
     TRANSITIONAL,
     TRANSVERSE,
     UNDETERMINED,
@@ -62,7 +63,6 @@ IMPOSED = {  # by the evidence
     "plateaus": "The force goes back and forth between two levels, as where the drive does so, or "
     "the load changes in steps.",
 }
-TO_AND_FRO = ("forth", "plateaus")  # of these
 
 
 def find(found: Analysis) -> str:

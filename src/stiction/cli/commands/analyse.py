@@ -48,6 +48,10 @@ def analyse(
 
         stiction analyse slow.csv fast.csv --time ms --force mN -o records.csv
 
+    So are the strokes of a drive that goes to and fro, with their mean:
+
+        stiction analyse data.csv --time ms --force mN --drive-position um --stroke all
+
     Parameters
     ----------
     result
@@ -67,7 +71,7 @@ def analyse(
     from stiction.progress.display import show_progress
     from stiction.storage.files import folder_or_file
 
-    if results:
+    if results or (measured is not None and measured.stroke == "all"):
         _analyse_several([result, *results], output, trust, measured)
         return
     source = source_in(result, measured, trust)
@@ -105,7 +109,7 @@ def _analyse_several(
     from stiction.analysis.export import full_report
     from stiction.analysis.measurement.reading import read_sources
     from stiction.analysis.report import analyse as understand
-    from stiction.analysis.several import section, side_by_side
+    from stiction.analysis.several import mean_over, section, side_by_side
     from stiction.cli.tables import as_file, print_sections
     from stiction.plotting.analysis.page import write_several
     from stiction.plotting.page.html import SUFFIXES
@@ -122,8 +126,10 @@ def _analyse_several(
         for number, (name, source) in enumerate(sources.items()):
             found[name] = understand(source)
             report((number + 1) / len(sources))
-    table = section(found)
-    print_sections(f"{len(found)} records", [table])
+    tables = [section(found)]
+    if said.get("stroke") == "all":
+        tables.append(mean_over(found))
+    print_sections(f"{len(found)} records", tables)
     if target.suffix.lower() in SUFFIXES:
         with show_progress("drawing"):
             paths = [write_several(found, target)]
@@ -131,7 +137,7 @@ def _analyse_several(
         paths = write_tables({"records": side_by_side(found)}, target, {})
     else:
         make_folder(target)
-        text = as_file(f"{len(found)} records", [table])
+        text = as_file(f"{len(found)} records", tables)
         text += "".join("\n\n" + as_file(x, full_report(each)) for x, each in found.items())
         paths = write_tables({"records": side_by_side(found)}, target / "records.csv", {})
         paths.append(write_text(text, target / "report.txt"))
