@@ -95,8 +95,8 @@ def plot_creep(
     """Draw creep curves over the time to slip; slip is at the right.
 
     The velocity is on a logarithmic axis if the mean is positive, and nearly everywhere above twice
-    its error, so that spikes of single phases hide nothing; on a linear one otherwise, where noise has both
-    signs. The first line of theory lies over the others, which are thin.
+    its error, so that spikes of single phases hide nothing; on a linear one otherwise, where noise
+    has both signs. The first line of theory lies over the others, which are thin.
 
     Parameters
     ----------
