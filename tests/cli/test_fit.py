@@ -51,7 +51,17 @@ def test_a_record_from_its_file_to_a_verdict(record_file, libraries, tmp_path, c
     said = capsys.readouterr().out
     assert "mN" in said  # the guess of the file is shown
     assert len(re.findall(r"^ phi +\S+ deg +\S+ to ", said, re.M)) == 1
-    assert said.count("mu_inf ") == 1  # its interval stands in the table alone
+    assert len(re.findall(r"^ mu_inf ", said, re.M)) == 1
+    parts = (
+        "In short",
+        "Fit",
+        "Notes on the fit",
+        "Mechanism",
+        f"Warnings about {data}",
+        "Read as",
+    )
+    found = [re.search(rf"^{re.escape(part)}$", said, re.M).start() for part in parts]
+    assert found == sorted(found)  # the answer first, how the file was read last
     assert "Experimental" in said
     assert "Compared with" in said
     assert "called 1, 2" in said.lower()

@@ -221,6 +221,8 @@ def sections(found: RecordComparison) -> list[Section]:
         Section(CHANGES, changes(found, found.fit)),
     ]
     fitted = found.fit.tables() if rotates(found) else [found.fit.without_values()]
+    if fitted[0].title == "In short":
+        fitted[0] = fitted[0]._replace(title="Fit in short")  # an audit has its own verdict
     parts += [*(found.odds.tables() if found.odds else ()), *fitted]
     shared = found.fit.explanation, found.fit.narrow_priors, found.fit.disputed
     return say_once(parts, [words.strip() for words in shared if words])

@@ -217,20 +217,43 @@ class Fit(Report):
 
     def tables(self) -> list[Section]:
         """Return the report: what is known, and what the records do not say."""
-        return [self.without_values() if self.meaningless else self._with_values()]
+        return [self.without_values()] if self.meaningless else self._with_values()
 
     def without_values(self) -> Section:
         """Return the report of a fit whose values mean nothing: what speaks against them."""
         compared = f"Compared with {self.simulations} simulated records."
         return Section("Fit", [*self.doubts, WITHHELD, compared, *self.disturbances])
 
-    def _with_values(self) -> Section:
-        sentences = self.doubts
+    def _in_short(self) -> Section:
+        """Return the doubts, if there are any, what is known, and what is not."""
+        lines = self.doubts
+        short = short_names(x.name for x in self.estimates)
+        if self.known:
+            known = (
+                f"{short[x.name]} {middle(x)} ({interval(x.low, x.high, x.median, x.unit)})"
+                for x in self.known
+            )
+            lines.append(f"With 95 % intervals: {', '.join(known)}.")
         if self.unidentified:
-            sentences.append(
+            lines.append(
                 f"Not identifiable from these records: {', '.join(self.unidentified)}. The "
                 f"posterior is more than {percent(NARROWER)} as wide as the prior."
             )
+        return Section("In short", lines)
+
+    def _with_values(self) -> list[Section]:
+        """Return the result in short, the table of all parameters, and notes on it."""
+        remarks = dict.fromkeys(self.unidentified, "not identifiable")
+        remarks |= dict.fromkeys(self.beyond, "beyond its prior")
+        short = short_names(x.name for x in self.estimates)  # the sentences have the whole name
+        rows = [row(x, short[x.name], remarks.get(x.name, "")) for x in self.estimates]
+        headings = ("parameter", "posterior", "its 95 %", "95 % of prior", "width", "coverage")
+        table = Section("Fit", [], Table(headings, rows))
+        return [self._in_short(), table, Section("Notes on the fit", self._notes())]
+
+    def _notes(self) -> list[str]:
+        """Return what the estimates suppose, and what the columns of their table mean."""
+        sentences = []
         if "phi" in self.plan.priors and not sign_seen(self.plan.conditions):
             sentences.append("These channels do not show the sign of phi: it is that of the prior.")
         if "phi" in self.plan.priors and self.plan.slider.cell_angle is None:
@@ -246,12 +269,7 @@ class Fit(Report):
         )
         own = [x.name for x in self.estimates if x.name in MEANINGS]
         sentences += [f"{name} is the {MEANINGS[name]}." for name in own]
-        remarks = dict.fromkeys(self.unidentified, "not identifiable")
-        remarks |= dict.fromkeys(self.beyond, "beyond its prior")
-        short = short_names(x.name for x in self.estimates)  # the sentences have the whole name
-        rows = [row(x, short[x.name], remarks.get(x.name, "")) for x in self.estimates]
-        headings = ("parameter", "posterior", "its 95 %", "95 % of prior", "width", "coverage")
-        return Section("Fit", sentences, Table(headings, rows))
+        return sentences
 
     @property
     def rig(self) -> Rig:

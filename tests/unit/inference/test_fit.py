@@ -27,7 +27,7 @@ from stiction.inference.observation import (
     observe_all,
     trend,
 )
-from stiction.inference.posterior import WITHHELD, row
+from stiction.inference.posterior import WITHHELD, middle, row
 from stiction.inference.priors import Normal, Uniform
 from stiction.inference.rig import Rig, load_of_records
 from stiction.inference.simulated.jitter import Jitter, move, stretch
@@ -200,8 +200,13 @@ def test_coverage_is_measured_on_records_left_out_and_reported(found, tmp_path):
     assert all(x.coverage == pytest.approx(0.95, abs=0.05) for x in found.estimates)
     stored = xr.open_dataset(found.save(tmp_path / "fit.nc"))["phi"].attrs
     assert stored["coverage_of_95_percent_intervals"] == found["phi"].coverage
-    assert "Experimental" in str(found.tables()[0])
-    shown = found.tables()[0].table
+    brief, shown, notes = found.tables()
+    assert "Experimental" in str(notes)
+    assert brief.title == "In short"
+    (line,) = (each for each in brief.sentences if each.startswith("With 95 % intervals: "))
+    for x in found.estimates:  # each once: as known, or as not identifiable
+        assert (f"{x.name.split('.')[-1]} {middle(x)} (" in line) is (x in found.known)
+    shown = shown.table
     known = [row for row in shown.rows if row[1] != "not identifiable"]
     upright = str(Section("", [], shown._replace(rows=known))).splitlines()
     assert max(map(len, upright)) < 80  # no line of a usual terminal is folded
@@ -252,11 +257,11 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     moved = record.model_copy(update={"force": record.force + 1.2})
     wrong = st.fit(moved, rig, simulations=SIMULATIONS, library=libraries)
     assert wrong.beyond == ["friction.mu_0", "friction.mu_inf"]
-    part = replace(wrong, farther=0.5).tables()[0]
+    part, table, _ = replace(wrong, farther=0.5).tables()
     assert "beyond which the records point: friction.mu_0" in part.sentences[0]
     # nothing is said of their values
     assert not any(each.startswith("friction.mu") for each in part.sentences)
-    assert {row[1] for row in part.table.rows if row[0].startswith("mu")} == {"beyond its prior"}
+    assert {row[1] for row in table.table.rows if row[0].startswith("mu")} == {"beyond its prior"}
     assert "mu_0" not in repr(wrong)
     assert "in doubt, see print(fit)" in repr(wrong)
     assert wrong.doubts[0] in str(wrong)
@@ -283,10 +288,10 @@ def test_a_force_of_the_other_sign_is_refused(rig, record, libraries):
 def test_the_axis_of_the_load_cell_is_told_where_it_is_supposed(found):
     """Forces along the drive that were taken for k_x u_x: 2 of 8 intervals held phi, not 8."""
     told = "A load cell along the drive reads k_y u_y sin φ as well"
-    assert told in str(found.tables()[0])
+    assert told in str(found.tables()[-1])
     slider = found.plan.slider.replace(cell_angle="0 deg")
     along = replace(found, plan=found.plan._replace(slider=slider))
-    assert told not in str(along.tables()[0])
+    assert told not in str(along)
 
 
 def test_a_library_that_cannot_be_enough_is_refused_before_it_is_simulated(rig, record, tmp_path):
@@ -614,7 +619,7 @@ def test_a_name_that_several_parameters_share_is_refused(found):
     estimates = (x._replace(name=names.get(x.name, x.name)) for x in found.estimates)
     both = replace(found, estimates=tuple(estimates))
     assert both["springs.cell.k_x"].median == found["k_y"].median
-    rows = {row[0] for row in both.tables()[0].table.rows}
+    rows = {row[0] for row in both.tables()[1].table.rows}
     assert rows == {"phi", *names.values(), "mu_0", "mu_inf", "jitter"}
     with pytest.raises(ResultError, match=r"several parameters: springs\.arm\.k_x, springs\.cell"):
         both["k_x"]

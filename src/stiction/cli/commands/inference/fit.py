@@ -122,7 +122,7 @@ def fit(
         found = infer(
             given, known, simulations=simulations, library=kept, seed=seed, progress=report
         )
-    sections, groups = [*origins(records, given), *warnings(records, given), *found.tables()], {}
+    sections, groups = found.tables(), {}
     plots: dict[str, Any] = {"posterior": found, "corner": found}
     if mechanism:
         with show_progress("simulating and telling mechanisms apart") as report:
@@ -130,8 +130,9 @@ def fit(
                 given, known, simulations=simulations // SHARE, library=kept, seed=seed,
                 progress=report,
             )  # fmt: skip
-        sections += odds.tables()
+        sections = [*sections, *odds.tables()]
         groups["mechanism"], plots["mechanism"] = odds.data, odds
+    sections = [*sections, *warnings(records, given), *origins(records, given)]
     print_sections(", ".join(map(str, records)), sections)
     say(f"wrote {found.save(output, **groups)}")
     if figures is not None:
