@@ -25,6 +25,7 @@ from stiction.result.rest import REST
 from stiction.simulation import MOST_STEPS, automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
+from stiction.system.slider import Slider
 from stiction.text.sections import Report, Section, Table
 from stiction.text.toml import read_toml
 from stiction.text.units import Quantity, in_words
@@ -118,9 +119,10 @@ def add_sample_rate(description: Description) -> Description:
 @read_together
 @with_progress("simulating")
 def compare(
-    description: Description | str | Path,
+    description: Slider | Description | str | Path,
     laws: Sequence[Law | Mapping[str, Any] | str | Path],
     *,
+    duration: Quantity | None = None,
     max_steps: int = MOST_STEPS,
     progress: Callable[[float], None] | None = None,
 ) -> Comparison:
@@ -128,14 +130,16 @@ def compare(
 
     Parameters
     ----------
-    description : Description, str or Path
-        The description, or its file; only its friction law is replaced.
+    description : Slider, Description, str or Path
+        The system, its description, or its file; only its friction law is replaced.
     laws : sequence of FrictionLaw, StateLaw, mapping, str or Path
         Each is a friction law; a table as in a description; the same as text, e.g.
         ``'{law = "coulomb", mu_0 = 0.15}'``; a description file, whose table [friction] is
         used; ``file.py:Class``; or a law's name, e.g. ``"coulomb"``. A name alone gets
         parameters that make the law comparable with the description's own, see `comparable`;
         the name of the description's own law means that law, which is run once.
+    duration : float or str, optional
+        How long each run lasts, s: of a slider, or in place of that of a description.
     max_steps : int, optional
         Limit of the steps of each run.
     progress : callable, optional
@@ -160,8 +164,10 @@ def compare(
     >>> base = st.Description.of(slider, "20 ms")
     >>> list(st.compare(base, ["coulomb", "lugre"]))
     ['exponential-weakening', 'coulomb', 'lugre']
+    >>> st.compare(slider, ["coulomb"], duration="20 ms")["coulomb"].status.ok
+    True
     """
-    description = add_sample_rate(description_of(description))
+    description = add_sample_rate(description_of(description, duration))
     own = description.slider.law
     others = read_laws(description, [laws] if isinstance(laws, str | Path) else laws)
     all_laws = [own, *(law for law in others if law is not own)]

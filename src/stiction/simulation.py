@@ -22,7 +22,7 @@ from stiction.solver.accuracy import tolerance
 from stiction.solver.compilation.refusal import REFUSED, reasons
 from stiction.solver.integrate import Room, Solution, integrate
 from stiction.storage.version import own_version
-from stiction.system.description import STAND_IN, Description, description_of
+from stiction.system.description import STAND_IN, Description, description_of, system_and_start
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.text.samples import as_numbers, samples_to_si
@@ -37,7 +37,7 @@ ROUNDING = 1e-12  # of a duration: a time that is nearer to the end is the end
 @read_together
 @with_progress("simulating")
 def simulate(
-    slider: Slider,
+    slider: Slider | Description | str | Path,
     duration: Quantity | None = None,
     *,
     sample_rate: Quantity | None = None,
@@ -56,8 +56,9 @@ def simulate(
 
     Parameters
     ----------
-    slider : Slider
-        The system.
+    slider : Slider, Description, str or Path
+        The system. Of a description, or its file, this is its slider, which starts from its initial
+        state; its settings count in `run`, and here the arguments do.
     duration : float or str, optional
         How long to simulate, s; until the programs of drive and load end, if they do.
     sample_rate : float or str, optional
@@ -78,7 +79,7 @@ def simulate(
         off by no more than 30 times that, but for a few random systems. See "How right it is" in
         the documentation (docs/explanation/how-right.md).
     initial : Initial, optional
-        The state to start from; by default the paper's.
+        The state to start from; by default that of a description, or the paper's.
     regularisation : float or str, optional
         delta (m/s, at least 1e-11): replace the set-valued law by
         ``F s/sqrt(|s|^2 + delta^2)``.
@@ -121,6 +122,12 @@ def simulate(
     array([0.   , 0.003, 0.02 ])
     """
     faults = Faults()
+    described = not isinstance(slider, Slider)
+    slider, initial = system_and_start(slider, initial)
+    with faults.of_part():
+        if described and isinstance(slider, Slider) and duration is None and times is None:
+            remedy = "say how long, as in '5 s'; st.run takes that of a description"
+            raise DescriptionError.of("duration", f"is missing; {remedy}")
     with faults.of_part():
         if times is not None and sample_rate is not None:
             raise DescriptionError.of("times", "take the place of sample_rate; give one of the two")
@@ -136,7 +143,7 @@ def simulate(
     }
     stated = {name: value for name, value in given.items() if value is not None}
     with faults.of_part():
-        description = Description.of(slider, duration, initial=initial, **stated)
+        description = Description.of(slider, duration, initial=initial, **stated)  # type: ignore[arg-type]
     faults.refuse()
     return run(description, times=times, max_steps=max_steps, progress=progress)
 

@@ -72,8 +72,8 @@ def test_what_is_unambiguous_is_taken_and_else_the_remedy_is_named(tmp_path):
             st.DescriptionError, match=r"no duration; .*st\.Description\.of\(slider"
         ):
             verb(PAPER)
-    with pytest.raises(st.DescriptionError, match=r"st\.run\(description\) simulates a whole"):
-        st.simulate(description, "20 ms")
+    with pytest.raises(st.DescriptionError, match=r"duration: is missing; .*st\.run takes"):
+        st.simulate(description)
     (tmp_path / "study.zarr").mkdir()
     with pytest.raises(st.ResultError, match=r"is a folder.*st\.map\(path\) draws a map"):
         st.plot(tmp_path / "study.zarr")

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise, takewhile
 from math import isnan, nan
+from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -21,8 +22,9 @@ from stiction.arrays import Floats, xr
 from stiction.errors import DescriptionError
 from stiction.linear_stability import steady_sliding
 from stiction.names import draw
+from stiction.system.description import Description
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
-from stiction.system.slider import Slider
+from stiction.system.slider import Slider, slider_of
 from stiction.text.units import Quantities, with_error
 
 Kind = Literal["soft", "hard", "not determined", "none"]
@@ -131,14 +133,19 @@ class OnsetEstimate(NamedTuple):
 
 
 def find_onset(
-    slider: Slider, path: str, values: Quantities, *, most_blocks: int = 40, rtol: float = 1e-6
+    slider: Slider | Description | str | Path,
+    path: str,
+    values: Quantities,
+    *,
+    most_blocks: int = 40,
+    rtol: float = 1e-6,
 ) -> Onset:
     """Sweep a parameter up and down to find the onset and amplitude of an oscillation.
 
     Parameters
     ----------
-    slider : Slider
-        With a steady drive and load, and any friction law.
+    slider : Slider, Description, str or Path
+        With a steady drive and load, and any friction law; or the file of a description.
     path : str
         The parameter, see `stiction.linear_stability.critical`.
     values : sequence of float or str
@@ -176,6 +183,7 @@ def find_onset(
     >>> found.kind
     'hard'
     """
+    slider = slider_of(slider)
     sliders = [change_parameter(slider, path, value) for value in values]
     numbers = np.array([read(each, path) for each in sliders])
     if len(numbers) < 3 or not (np.diff(numbers) > 0).all():

@@ -330,18 +330,40 @@ def with_duration(raw: Mapping[str, Any]) -> Mapping[str, Any]:
     return {**raw, "run": {**settings, "duration": until - start}}
 
 
-def description_of(source: Description | str | Path) -> Description:
-    """Return a description as it is, or read it from a file.
+def description_of(
+    source: Slider | Description | str | Path, duration: Quantity | None = None
+) -> Description:
+    """Return the description that is given, that of a file, or of a slider that runs so long.
+
+    A `duration` takes the place of that of a description.
 
     Raises
     ------
     DescriptionError
-        If it is neither.
+        If it is none of these, or a slider without a duration.
     """
     if isinstance(source, Slider):
-        remedy = "make it one: st.Description.of(slider, '5 s')"
-        raise DescriptionError.of("description", f"a Slider has no duration; {remedy}")
-    return source if isinstance(source, Description) else Description.from_toml(source)
+        if duration is None:
+            remedy = "give duration='5 s', or make it one: st.Description.of(slider, '5 s')"
+            raise DescriptionError.of("description", f"a Slider has no duration; {remedy}")
+        return Description.of(source, duration)
+    found = source if isinstance(source, Description) else Description.from_toml(source)
+    if duration is None:
+        return found
+    read = read_arguments(Settings, duration=duration)
+    return found._replace(run=found.run.model_copy(update={"duration": read.duration}))
+
+
+def system_and_start(source: Any, initial: Initial | None) -> tuple[Any, Initial | None]:
+    """Return a slider and the state it starts from: of a description or its file, those in it.
+
+    Anything else is returned as it is: who reads it refuses it. An `initial` that is given counts.
+    """
+    if isinstance(source, str | Path):
+        source = Description.from_toml(source)
+    if not isinstance(source, Description):
+        return source, initial
+    return source.slider, source.initial if initial is None else initial
 
 
 def table(value: Any) -> dict[str, Any]:

@@ -12,12 +12,13 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import DescriptionError, Fault, Instruction, echo
+from stiction.errors import DescriptionError, Fault, Instruction, echo, without_middle
 from stiction.storage.kinds import DESCRIPTION, STUDY, use_of
 from stiction.text.paths import keys_of, with_changes
 from stiction.text.validation import unknown_name
 
 Reader = Callable[[dict[str, Any]], Any]
+LONGEST_PATH = 240  # characters of a path in a message
 LARGEST = 2**24  # bytes of a description: a table of a million values
 DEEPEST = 16  # tables and lists inside one another; descriptions have five
 TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; descriptions are not"
@@ -74,7 +75,7 @@ def read_toml(path: str | Path) -> dict[str, Any]:
         message = f"{type(path).__name__} is not a description; give its file, or its text in TOML"
         raise DescriptionError.of("path", message)
     written = isinstance(path, str) and "\n" in path
-    where = "the text" if written else str(path)
+    where = "the text" if written else without_middle(str(path), LONGEST_PATH)
     text = str(path) if written else ""
     try:
         text = text or _text_of(Path(path))

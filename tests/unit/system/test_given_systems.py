@@ -1,0 +1,42 @@
+"""A system is given as a slider, a description or its file, wherever one is asked for."""
+
+import numpy as np
+import pytest
+
+import stiction as st
+
+SLIDER = st.presets.nakano_popov_2020()
+DESCRIBED = st.Description.of(SLIDER, "20 ms", initial=st.Initial(u_x="1 um"), sample_rate="2 kHz")
+
+
+@pytest.fixture
+def path(tmp_path):
+    file = tmp_path / "rig.toml"
+    file.write_text(DESCRIBED.to_toml())
+    return file
+
+
+def test_simulate_takes_a_description_or_its_file_with_their_start(path):
+    start = DESCRIBED.initial
+    plain = st.simulate(SLIDER, "10 ms", initial=start, sample_rate="1 kHz")
+    for given in (DESCRIBED, path, str(path)):
+        run = st.simulate(given, "10 ms", sample_rate="1 kHz")
+        assert np.array_equal(run.samples["u_x"], plain.samples["u_x"])
+    other = st.simulate(DESCRIBED, "10 ms", initial=st.Initial(), sample_rate="1 kHz")
+    assert other.samples["u_x"][0] == 0.0
+
+
+def test_simulate_of_a_description_asks_for_a_duration_and_names_run(path):
+    for given in (DESCRIBED, path):
+        with pytest.raises(st.DescriptionError, match=r"duration: is missing; .*st\.run"):
+            st.simulate(given)
+    with pytest.raises(st.DescriptionError, match="is not a Slider"):
+        st.simulate(3.0, "1 s")
+
+
+def test_compare_takes_a_slider_with_a_duration(path):
+    found = st.compare(SLIDER, ["coulomb"], duration="5 ms")
+    assert [float(each.samples["time"][-1]) for each in found.values()] == [0.005] * 2
+    shorter = st.compare(path, ["coulomb"], duration="5 ms")
+    assert [float(each.samples["time"][-1]) for each in shorter.values()] == [0.005] * 2
+    assert len(shorter["coulomb"].samples["time"]) == 11  # its own sample rate is unchanged
