@@ -2,8 +2,9 @@
 
 K. Nakano and V. L. Popov, "Dynamic stiction without static friction: The role of friction vector
 rotation", Phys. Rev. E 102, 063001 (2020), cited below as the paper; equation numbers are those of
-its preprint, arXiv:2008.01854. Arguments broadcast against each other; everything is in SI units
-and every angle in radians. A value that the theory does not give is NaN.
+its preprint, arXiv:2008.01854. Arguments broadcast against each other; numbers are in SI units
+and angles in radians, while text has its unit, as in ``"1 mm/s"`` and ``"1 deg"``. A value
+that the theory does not give is NaN.
 
 The creep before slip (Eq. 7) is quasistatic: friction keeps its magnitude F_0 = mu_0 W and turns,
 the spring follows with k_x u_x = F_0 cos(theta), u_y is constant. With s = V t/l_x the angle obeys
@@ -29,22 +30,77 @@ bound of w climbs to the root and never passes it: no bracket, no failure.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import wraps
+from inspect import signature
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from stiction.arguments import is_numeric, name_arguments
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, echo
-from stiction.system.slider import Slider
-from stiction.text.units import unit_on
+from stiction.system.description import Description
+from stiction.system.slider import Slider, slider_of
+from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantity, unit_on
+from stiction.text.validation import read_number
 
 # Zeros and infinities below are limits (no misalignment, no end of creep), not accidents.
 SI = {None, "1", "kg", "m", "s", "m/s", "s/m", "N", "N/m", "N*s/m", "rad"}
 REMEDY = ".to_base_units().magnitude of a quantity, or the values of an array, in SI"
 
+KINDS = {  # of arguments that may be given as text with a unit, by their names
+    **dict.fromkeys(("V",), VELOCITY),
+    **dict.fromkeys(("F_0", "W", "normal_load"), FORCE),
+    **dict.fromkeys(("l_x", "u_x", "D_c"), LENGTH),
+    **dict.fromkeys(("phi", "theta"), Kind("an angle", "rad", "1 deg")),
+    **dict.fromkeys(("k_x", "k_y", "stiffness"), Kind("a stiffness", "N/m", "1 kN/m")),
+    **dict.fromkeys(("m", "mass"), Kind("a mass", "kg", "250 g")),
+    "t": TIME,
+    "c_x": Kind("a damping coefficient", "N*s/m", "1 N s/m"),
+    "slope": Kind("a slope of friction over speed", "s/m", "1 s/m"),
+}
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def _units(function: F) -> F:
+    """Decorate a formula: text with a unit becomes a number in SI; numbers are taken as they are.
+
+    A bare angle is in radians, as in the equations.
+    """
+    names = tuple(signature(function).parameters)
+
+    @wraps(function)
+    def read(*args: Any, **values: Any) -> Any:
+        if any(map(_is_text, args)) or any(map(_is_text, values.values())):
+            args = tuple(map(_in_si, names, args)) + args[len(names) :]
+            values = {name: _in_si(name, value) for name, value in values.items()}
+        return function(*args, **values)
+
+    return cast(F, read)
+
+
+def _is_text(value: Any) -> bool:
+    return isinstance(value, str) or (
+        isinstance(value, list | tuple) and _is_text(next(iter(value), 0))
+    )
+
+
+def _in_si(name: str, value: Any) -> Any:
+    """Return text, or a list of text, as numbers in SI where it is a quantity."""
+    if name not in KINDS or not _is_text(value):
+        return value
+    if isinstance(value, str):
+        return read_number(name, value, KINDS[name])
+    return np.array([_in_si(name, each) for each in value])
+
+
 _limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")
 
 
+@_units
 @_limits
 def natural_frequency(stiffness: ArrayLike, mass: ArrayLike) -> Floats:
     """Angular natural frequency sqrt(stiffness/mass), rad/s (omega_x, omega_y of the paper).
@@ -66,6 +122,7 @@ def natural_frequency(stiffness: ArrayLike, mass: ArrayLike) -> Floats:
     return np.sqrt(stiffness / mass)
 
 
+@_units
 def friction_force(mu_0: ArrayLike, normal_load: ArrayLike) -> Floats:
     """Friction at vanishing slip speed, F_0 = mu_0 W (N); mu_0 (-), normal load W (N).
 
@@ -79,6 +136,7 @@ def friction_force(mu_0: ArrayLike, normal_load: ArrayLike) -> Floats:
     return mu_0 * normal_load
 
 
+@_units
 @_limits
 def slip_length(F_0: ArrayLike, k_x: ArrayLike) -> Floats:
     """Elongation that carries the whole friction, F_0/k_x (m), of Eq. (8); F_0 (N), k_x (N/m).
@@ -93,6 +151,7 @@ def slip_length(F_0: ArrayLike, k_x: ArrayLike) -> Floats:
     return F_0 / k_x
 
 
+@_units
 @_limits
 def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Right-hand side of Eq. (7): du_x/dt of the quasistatic creep (m/s).
@@ -119,6 +178,7 @@ def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
     return V * (np.cos(phi) - np.sin(phi) * x / np.sqrt((1.0 - x) * (1.0 + x)))
 
 
+@_units
 @_limits
 def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Time at which the friction force has turned to `theta` (s): closed form of Eq. (7).
@@ -147,6 +207,7 @@ def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
     return s * l_x / V
 
 
+@_units
 def creep_force_angle(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Angle theta of the friction force to the x axis during creep (rad): Eq. (7), solved.
 
@@ -174,6 +235,7 @@ def creep_force_angle(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
     return np.where(delta < rest, np.pi / 2 - delta, phi + rest)[()]  # the less rounded of the two
 
 
+@_units
 def creep_elongation(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Elongation during creep, u_x(t) = l_x cos(theta) (m): the solution of Eq. (7).
 
@@ -189,6 +251,7 @@ def creep_elongation(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike)
     return np.asarray(l_x, dtype=np.float64) * np.sin(delta)
 
 
+@_units
 @_limits
 def creep_velocity(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Laboratory velocity during creep, X'(t) = V sin(phi) cos(theta - phi)/sin(theta) (m/s).
@@ -210,6 +273,7 @@ def creep_velocity(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
     return V * np.where((phi == 0) & (rest == 0), V * t > l_x, ratio)
 
 
+@_units
 def creep_velocity_approximation(
     t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
 ) -> Floats:
@@ -232,6 +296,7 @@ def creep_velocity_approximation(
     return _creep_expansion(t, V, phi, l_x, power=1)
 
 
+@_units
 def creep_velocity_as_printed(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Eq. (8) as printed, V phi (phi + s^2/sqrt(1 - s^2)), s = V t/l_x (m/s), for comparison only.
 
@@ -247,6 +312,7 @@ def creep_velocity_as_printed(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: A
     return _creep_expansion(t, V, phi, l_x, power=2)
 
 
+@_units
 @_limits
 def transverse_deflection(F_0: ArrayLike, k_y: ArrayLike) -> Floats:
     """Mean transverse elongation during creep, F_0/k_y (m); F_0 (N), k_y (N/m). From Eq. (9).
@@ -261,6 +327,7 @@ def transverse_deflection(F_0: ArrayLike, k_y: ArrayLike) -> Floats:
     return F_0 / k_y
 
 
+@_units
 def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike) -> Floats:
     """Largest amplitude of the transverse oscillation without reversal of slip (m). From Eq. (9).
 
@@ -284,6 +351,7 @@ def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike)
     return np.asarray(np.abs(V * np.sin(phi)) / omega_y)[()]
 
 
+@_units
 def oscillation_frequency(theta: ArrayLike, k_x: ArrayLike, k_y: ArrayLike, m: ArrayLike) -> Floats:
     """Angular frequency at which the mass swings along the friction force during creep (rad/s).
 
@@ -312,6 +380,7 @@ def oscillation_frequency(theta: ArrayLike, k_x: ArrayLike, k_y: ArrayLike, m: A
     return omega
 
 
+@_units
 @_limits
 def damping_number(
     F_0: ArrayLike, V: ArrayLike, phi: ArrayLike, m: ArrayLike, k_x: ArrayLike
@@ -338,21 +407,29 @@ def damping_number(
 
 
 @name_arguments
-def damping_number_of(slider: Slider, V: float, phi: float | None = None) -> float:
+@_units
+def damping_number_of(
+    slider: Slider | Description | str | Path, V: Quantity, phi: Quantity | None = None
+) -> float:
     """Damping number A of Eq. (10) of a slider that is driven at `V` (m/s), dimensionless.
 
-    `phi` (rad) is by default the slider's misalignment. The signs of both do not matter.
+    `phi` (rad) is by default the slider's misalignment. The signs of both do not matter. The
+    slider may be that of a description, or of its file.
 
     Examples
     --------
     >>> import stiction as st
     >>> round(st.theory.damping_number_of(st.presets.nakano_popov_2020(), 1e-3), 1)
     3623.9
+    >>> round(st.theory.damping_number_of(st.presets.nakano_popov_2020(), "1 mm/s", "1 deg"), 1)
+    3623.9
     """
-    angle = abs(slider.misalignment if phi is None else phi)
-    return float(damping_number(slider.F_0, abs(V), angle, slider.masses[0], slider.k_x))
+    slider, speed = slider_of(slider), float(V)  # type: ignore[arg-type]
+    angle = abs(slider.misalignment if phi is None else float(phi))  # type: ignore[arg-type]
+    return float(damping_number(slider.F_0, abs(speed), angle, slider.masses[0], slider.k_x))
 
 
+@_units
 def damping_ratio(A: ArrayLike, theta: ArrayLike) -> Floats:
     """Damping ratio zeta = A sin^3(theta) of Eq. (10); A = `damping_number`, theta in rad.
 
@@ -367,6 +444,7 @@ def damping_ratio(A: ArrayLike, theta: ArrayLike) -> Floats:
     return zeta
 
 
+@_units
 @_limits
 def critical_angle(A: ArrayLike) -> Floats:
     """Force angle at which zeta = 1 in Eq. (10), arcsin(A^(-1/3)) (rad): slow slip turns fast.
@@ -383,6 +461,7 @@ def critical_angle(A: ArrayLike) -> Floats:
     return np.arcsin(np.where(A >= 1.0, 1.0 / np.cbrt(A), np.nan))
 
 
+@_units
 @_limits
 def first_stick_duration(
     F_0: ArrayLike, V: ArrayLike, phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike
@@ -411,6 +490,7 @@ def first_stick_duration(
     return np.asarray(F_0 / (np.abs(V) * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi))))[()]
 
 
+@_units
 def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
     """Angle of the spring force to the x axis while the object rests, from u = 0 (rad).
 
@@ -435,6 +515,7 @@ def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
     return angle
 
 
+@_units
 @_limits
 def critical_misalignment(
     V: ArrayLike, mu: ArrayLike, slope: ArrayLike, *, c_x: ArrayLike = 0.0, W: ArrayLike = 1.0
@@ -473,6 +554,7 @@ def critical_misalignment(
     return np.arctan(np.sqrt(weakening / (c_x + W * mu / V)))
 
 
+@_units
 @_limits
 def critical_stiffness(
     a: ArrayLike, b: ArrayLike, D_c: ArrayLike, W: ArrayLike, V: ArrayLike, m: ArrayLike

@@ -17,7 +17,8 @@ from stiction.drive.pieces import Constant, Hold, Ramp, Reversal, Step
 from stiction.drive.program import DriveProgram, LoadProgram
 from stiction.drive.steady import ConstantVelocity
 from stiction.errors import DescriptionError, Faults, echo
-from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantities, Quantity, to_si
+from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantities, Quantity
+from stiction.text.validation import read_number
 
 
 def velocity_steps(
@@ -213,12 +214,7 @@ def _each(asked: Argument) -> list[tuple[str, Any]]:
 
 
 def _number(path: str, value: Any, kind: Kind, positive: bool) -> float:
-    from pydantic_core import PydanticCustomError
-
-    try:
-        number = to_si(value, kind)
-    except PydanticCustomError as error:
-        raise _fault(path, error.message()) from None
+    number = read_number(path, value, kind)
     if positive and not number > 0.0:
         raise _fault(path, f"must be greater than 0, is {echo(value)}")
     return number

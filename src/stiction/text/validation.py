@@ -41,12 +41,14 @@ from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import (
     QUANTITY,
     SMALLEST,
+    Kind,
     Radians,
     as_float,
     bare,
     fault,
     hints_of,
     kind_of,
+    to_si,
     unit_of,
     unit_on,
 )
@@ -327,6 +329,16 @@ def read_arguments(kind: Callable[..., T], **given: Any) -> T:
         return kind(**given)
     except DescriptionError as error:
         raise error.at() from None
+
+
+def read_number(path: str, value: Any, kind: Kind) -> float:
+    """Return a quantity in SI; a fault names its path."""
+    from pydantic_core import PydanticCustomError
+
+    try:
+        return to_si(value, kind)
+    except PydanticCustomError as error:
+        raise DescriptionError.of(path, error.message()) from None
 
 
 def faults(error: ValidationError, path: str, known: Iterable[str]) -> list[Fault]:

@@ -40,3 +40,22 @@ def test_compare_takes_a_slider_with_a_duration(path):
     shorter = st.compare(path, ["coulomb"], duration="5 ms")
     assert [float(each.samples["time"][-1]) for each in shorter.values()] == [0.005] * 2
     assert len(shorter["coulomb"].samples["time"]) == 11  # its own sample rate is unchanged
+
+
+def test_theory_takes_text_with_units_and_bare_angles_in_radians(path):
+    phi, told = np.radians(1.0), st.theory.creep_velocity("1 s", "1 mm/s", "1 deg", l_x="2 mm")
+    assert told == pytest.approx(float(st.theory.creep_velocity(1.0, 1e-3, phi, 2e-3)), rel=1e-12)
+    two = st.theory.creep_velocity(["500 ms", "1 s"], "1 mm/s", phi, 2e-3)
+    assert np.allclose(two, st.theory.creep_velocity([0.5, 1.0], 1e-3, phi, 2e-3), rtol=1e-12)
+    own = st.theory.damping_number_of(SLIDER, 1e-3)
+    for given in (SLIDER, DESCRIBED, path):
+        assert st.theory.damping_number_of(given, "1 mm/s") == pytest.approx(own, rel=1e-12)
+    with pytest.raises(st.DescriptionError, match=r"V: .*m/s"):
+        st.theory.damping_number_of(SLIDER, "1 mm")
+
+
+def test_plots_and_onsets_take_descriptions(path):
+    ax = st.plotting.plot_law(path, "20 mm/s")
+    assert ax.get_xlim()[1] == pytest.approx(20.0)
+    with pytest.raises(st.DescriptionError, match="fastest"):
+        st.plotting.plot_law(SLIDER, "20 mm")

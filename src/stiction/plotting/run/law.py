@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
@@ -10,18 +12,25 @@ from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import PURPLE, style
-from stiction.system.slider import Slider
+from stiction.system.description import Description
+from stiction.system.slider import Slider, slider_of
 from stiction.text.quantity_text import metric_prefix
+from stiction.text.units import VELOCITY, Quantity
+from stiction.text.validation import read_number
 
 
-def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = None) -> Axes:
+def plot_law(
+    slider: Slider | Description | str | Path,
+    fastest: Quantity | None = None,
+    ax: Axes | None = None,
+) -> Axes:
     """Draw the friction coefficient of a slider over slip speed.
 
     Parameters
     ----------
-    slider : Slider
-        The system.
-    fastest : float, optional
+    slider : Slider, Description, str or Path
+        The system, or the file of its description.
+    fastest : float or str, optional
         Largest slip speed, m/s; by default ten times that of the drive.
     ax : Axes, optional
         Drawn on; by default a new figure as wide as a column.
@@ -29,11 +38,14 @@ def plot_law(slider: Slider, fastest: float | None = None, ax: Axes | None = Non
     Examples
     --------
     >>> import stiction as st
-    >>> ax = st.plotting.plot_law(st.presets.nakano_popov_2020())
+    >>> ax = st.plotting.plot_law(st.presets.nakano_popov_2020(), "20 mm/s")
     """
+    slider = slider_of(slider)
+    speed = 10.0 * slider.drive_speed
+    if fastest is not None:
+        speed = read_number("fastest", fastest, VELOCITY)
     with style():
         ax = panel(ax, 2.2)
-        speed = 10.0 * slider.drive_speed if fastest is None else fastest
         draw_law(ax, slider, speed)
     return ax
 
