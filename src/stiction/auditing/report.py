@@ -35,7 +35,7 @@ from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
-from stiction.inference.rig import Rig, load_of_records, rig_of
+from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
@@ -225,6 +225,8 @@ def audit(
     >>> st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
     <Audit: settling; steady sliding is stable>
     """
+    beside = record if progress is None or callable(progress) else progress
+    refuse_swapped(slider, beside, "the rig comes first: st.audit(rig, record=record)")
     rig = rig_of(slider)
     inform = progress or silent
     before = FITTING if record is not None else 0.0

@@ -27,7 +27,7 @@ from stiction.inference.observation import (
 )
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
-from stiction.inference.rig import Rig, load_of_records, rig_of
+from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
 from stiction.inference.simulated.library import Library, build, library_folder, refuse_too_few
@@ -97,6 +97,7 @@ def fit(
     DescriptionError
         If nothing is uncertain, or the rig is not of a kind that can be fitted.
     """
+    refuse_swapped(rig, records, "the rig comes second: st.fit(records, rig)")
     known = rig_of(rig)
     check(known, simulations)
     place = library_folder(library)

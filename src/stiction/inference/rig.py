@@ -187,6 +187,32 @@ def rig_of(source: Any, changes: Mapping[str, Any] | None = None, trust: bool = 
     return Rig(slider_of(source), {})
 
 
+def is_rig(source: Any) -> bool:
+    """Return whether this is a rig, a slider, a description or a path of one, not a record."""
+    if isinstance(source, str | Path):
+        return Path(source).suffix.lower() == ".toml"
+    return isinstance(source, Rig) or (
+        isinstance(getattr(source, "slider", source), Slider)
+        and (
+            not hasattr(source, "samples")  # a run is a record
+        )
+    )
+
+
+def refuse_swapped(rig: Any, records: Any, remedy: str) -> None:
+    """Refuse a rig in the place of records, or records in that of a rig.
+
+    Raises
+    ------
+    DescriptionError
+        With the order of both, the `remedy`.
+    """
+    many = not isinstance(rig, str | Rig) and isinstance(rig, Sequence) and not is_rig(rig)
+    measured = hasattr(rig, "force") or hasattr(rig, "samples")  # a record or a run
+    if is_rig(records) or many or measured:
+        raise DescriptionError.of("", remedy)
+
+
 def load_of_records(rig: Rig) -> float:
     """Return the normal load (N) of a rig's records; NaN if that is uncertain, or varies.
 

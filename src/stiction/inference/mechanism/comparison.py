@@ -28,7 +28,7 @@ from stiction.inference.mechanism.rivals import (
 )
 from stiction.inference.mechanism.static_check import ELASTIC, StaticCheck
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
-from stiction.inference.rig import Rig, load_of_records, rig_of
+from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import explain_unlike
@@ -91,6 +91,7 @@ def mechanism(
     DescriptionError
         If the rig is not of a kind that can be fitted, or is exactly aligned.
     """
+    refuse_swapped(rig, records, "the rig comes second: st.mechanism(records, rig)")
     known = rig_of(rig)
     check(known)
     if known.slider.phi == 0.0 and "phi" not in known.priors:

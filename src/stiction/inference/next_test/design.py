@@ -49,7 +49,7 @@ from stiction.inference.observation import (
     record_from,
 )
 from stiction.inference.posterior import RARE, unlike
-from stiction.inference.rig import Rig
+from stiction.inference.rig import Rig, refuse_swapped
 from stiction.inference.simulated.library import (
     have_cycles,
     library_folder,
@@ -135,6 +135,7 @@ def design(
     ResultError
         If the record cannot be used, or too few of the simulated rigs stick and slip.
     """
+    refuse_swapped(rig, record, "the rig comes first: st.design(rig, record)")
     faults, place = Faults(), None
     with faults.of_part():
         place = library_folder(library)
