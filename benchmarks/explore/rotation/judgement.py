@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from math import hypot, pi, sqrt
+from math import pi, sqrt
 from typing import NamedTuple
 
 import numpy as np
 
 import stiction as st
 from benchmarks.explore.misalignment import LONGEST_RUN, Generator, rig
-from stiction.analysis.rotation.findings import BOTH, GROWING, MOST, SOME, TURNING, UNDETERMINED
+from stiction.analysis.rotation.findings import (
+    BOTH,
+    GROWING,
+    HALF,
+    MOST,
+    SOME,
+    TURNING,
+    UNDETERMINED,
+)
 from stiction.analysis.rotation.loading import loadings
 
 NEAR = 0.05  # of the rise: a truth so close to the limit of two conclusions is of either
@@ -87,13 +95,16 @@ def look(rng: Generator) -> Judged | None:
         return None
     exact = np.stack([run.samples[name] for name in ("spring_x", "spring_y")])
     path = loadings(record.time, exact, analysis.cycles).mean()
-    (x_0, x), (y_0, y) = path.x[[0, -1]], path.y[[0, -1]]
-    r_0, r = hypot(x_0, y_0), hypot(x, y)
-    grows = (r - r_0) / (x - x_0)
+    size = np.hypot(path.x, path.y)
+    r_0, r = size[[0, -1]]
+    grows = (r - r_0) / (path.x[-1] - path.x[0])
+    halves = np.diff(size[[0, HALF, -1]]) / np.diff(path.x[[0, HALF, -1]])
     true, right = UNDETERMINED, found.kind == UNDETERMINED
     for kind, low, high in ((TURNING, -np.inf, SOME), (BOTH, SOME, MOST), (GROWING, MOST, np.inf)):
         true = kind if low <= grows < high else true
         right |= found.kind == kind and low - NEAR < grows < high + NEAR
+    if halves.min() < SOME + NEAR and halves.max() > MOST - NEAR:
+        right |= found.kind == BOTH  # one after the other
     errors = {}
     if np.isfinite(found.change):
         off = np.abs(np.abs(found.angle) - np.arctan2(np.abs(path.y[[0, -1]]), path.x[[0, -1]]))

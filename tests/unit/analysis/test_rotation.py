@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.rigs import SOFT_TESTER
 
 import stiction as st
 from stiction.analysis.parts import rotation
@@ -54,6 +55,22 @@ def test_an_arc_is_a_force_that_turns_about_its_zero(side, known):
     assert abs(found.zero - zero) < 2.0 * found.zero_error
     truth = rotation_of(record_of(TURN, 0.0, 1, 0.0, 1e-9), cycles_of())
     assert (np.abs(found.angle - truth.angle) < 2.0 * found.angle_error).all()
+
+
+@pytest.mark.parametrize("angle", [25.0, 40.0, 60.0])
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_a_force_that_grows_and_then_turns_does_both(side, angle):
+    """By its ends alone that of a soft rig, which turns by 40 deg after it has grown, only grew."""
+    half = EACH // 2
+    size = F_0 * np.append(np.linspace(0.3, 1.0, half), np.ones(EACH - half))
+    turn = np.radians(np.append(np.full(half, angle), np.linspace(angle, 2.0, EACH - half)))
+    along, across = size * np.cos(turn), side * size * np.sin(turn)
+    found = rotation_of(record_of(across, 2e-3, 1, 0.0, 0.005, along), cycles_of(along[-1], 0.0))
+    assert found.kind == BOTH
+    assert found.change > 0.8  # the first tenth of a loading is left out
+    slow = SOFT_TESTER.loading_time
+    run = st.simulate(SOFT_TESTER, 6.0 * slow, sample_rate=500.0 / slow)
+    assert st.analyse(run).parts["rotation"].kind == BOTH
 
 
 @pytest.mark.parametrize(("slope", "known"), [*product([0.0, 0.05, -0.05], [None, 0.02])])

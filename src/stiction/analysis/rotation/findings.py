@@ -24,6 +24,7 @@ TURNING, GROWING, BOTH, UNDETERMINED = "turning", "growing", "both", "not determ
 SOME, MOST = 0.2, 0.8  # of the rise of the force along: limits of turning and growing
 BETTER = 4.0  # times: so much better must an arc or a line fit than the other
 FREE = BINS - 2.0  # degrees of freedom of a line
+HALF = BINS // 2  # the part in the middle of a loading
 SCATTERING = ("change", "F_0", "zero")
 FITTED = {*SCATTERING, *(f"{name}_error" for name in SCATTERING)}
 
@@ -145,14 +146,43 @@ def _by_path(its: MeanLoading) -> Rotation:
 
 
 def _by_zero(its: MeanLoading, zero_error: float, gain_error: float = 0.0) -> Rotation:
-    """Return what the magnitudes show, as the zero of the force across is known."""
-    (x_0, x), (y_0, y) = its.x[[0, -1]], its.y[[0, -1]]
+    """Return what the magnitudes show, as the zero of the force across is known.
+
+    A force that first grows and then turns, or the other way round, does both, though its ends
+    alone may show it grow.
+    """
+    whole = _growth(its, 0, -1, zero_error, gain_error)
+    halves = (_growth(its, *ends, zero_error, gain_error) for ends in ((0, HALF), (HALF, -1)))
+    kind = BOTH if {each.kind for each in halves} == {TURNING, GROWING} else whole.kind
+    found = _ends(kind, its)._replace(
+        change=whole.change, change_error=whole.error, zero=0.0, zero_error=zero_error, stated=True
+    )
+    if kind != TURNING:
+        return found
+    arc = best_arc(its, zero_error)
+    of_gain = gain_error * float((its.y**2).mean()) / its.peak
+    return found._replace(F_0=arc.F_0, F_0_error=hypot(arc.F_0_error, of_gain))
+
+
+class _Growth(NamedTuple):
+    """Relative change of the magnitude between two parts of a loading, and the kind that it is."""
+
+    change: float
+    error: float
+    kind: str
+
+
+def _growth(
+    its: MeanLoading, first: int, last: int, zero_error: float, gain_error: float
+) -> _Growth:
+    (x_0, x), (y_0, y) = its.x[[first, last]], its.y[[first, last]]
     r_0, r = hypot(x_0, y_0), hypot(x, y)
+    share = (last % BINS - first) / (BINS - 1.0)  # of the time of a loading
     error = r / r_0 * hypot(
         its.x_error * hypot(x / r**2, x_0 / r_0**2),
         its.y_error * hypot(y / r**2, y_0 / r_0**2),
         zero_error * (y / r**2 - y_0 / r_0**2),
-        its.drift * its.lasts * y / r**2,
+        its.drift * share * its.lasts * y / r**2,
         gain_error * ((y / r) ** 2 - (y_0 / r_0) ** 2),
     )  # fmt: skip
     change = r / r_0 - 1.0
@@ -164,11 +194,4 @@ def _by_zero(its: MeanLoading, zero_error: float, gain_error: float = 0.0) -> Ro
         kind = GROWING
     elif low > SOME and high < MOST:
         kind = BOTH
-    found = _ends(kind, its)._replace(
-        change=change, change_error=error, zero=0.0, zero_error=zero_error, stated=True
-    )
-    if kind != TURNING:
-        return found
-    arc = best_arc(its, zero_error)
-    of_gain = gain_error * float((its.y**2).mean()) / its.peak
-    return found._replace(F_0=arc.F_0, F_0_error=hypot(arc.F_0_error, of_gain))
+    return _Growth(change, error, kind)
