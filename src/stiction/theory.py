@@ -424,9 +424,16 @@ def damping_number_of(
     >>> round(st.theory.damping_number_of(st.presets.nakano_popov_2020(), "1 mm/s", "1 deg"), 1)
     3623.9
     """
-    slider, speed = slider_of(slider), float(V)  # type: ignore[arg-type]
-    angle = abs(slider.misalignment if phi is None else float(phi))  # type: ignore[arg-type]
+    slider, speed = slider_of(slider), _one_number("V", V)
+    angle = abs(slider.misalignment if phi is None else _one_number("phi", phi))
     return float(damping_number(slider.F_0, abs(speed), angle, slider.masses[0], slider.k_x))
+
+
+def _one_number(name: str, value: Any) -> float:
+    """Return a quantity in SI, whose unit was read before."""
+    if not isinstance(value, bool | np.bool_) and is_numeric(value) and np.ndim(value) == 0:
+        return float(value)
+    raise DescriptionError.of(name, f"must be one number, or one with its unit, is {echo(value)}")
 
 
 @_units

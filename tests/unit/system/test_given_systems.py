@@ -59,3 +59,13 @@ def test_plots_and_onsets_take_descriptions(path):
     assert ax.get_xlim()[1] == pytest.approx(20.0)
     with pytest.raises(st.DescriptionError, match="fastest"):
         st.plotting.plot_law(SLIDER, "20 mm")
+
+
+@pytest.mark.parametrize("value", [None, {}, True, [1e-3, 2e-3], [1e-3, "2 mm/s"]])
+@pytest.mark.parametrize("name", ["V", "phi"])
+def test_what_is_no_single_quantity_is_refused_by_name(name, value):
+    if name == "phi" and value is None:
+        return  # the slider's own
+    given = {"V": 1e-3, name: value}
+    with pytest.raises(st.DescriptionError, match=rf"^{name}: must be one number"):
+        st.theory.damping_number_of(st.presets.nakano_popov_2020(), **given)
