@@ -26,6 +26,12 @@ def work(parts=2, progress=None):
     return progress is not None
 
 
+@pytest.fixture(autouse=True)
+def no_level(monkeypatch):
+    """The command line sets one, as a user may."""
+    monkeypatch.setattr(logging.getLogger("stiction"), "level", logging.NOTSET)
+
+
 @pytest.fixture
 def shown(monkeypatch):
     """A user waits; the title of what is shown, and each fraction."""

@@ -182,10 +182,10 @@ def test_the_error_of_a_load_is_that_of_a_mean_over_as_many_samples_as_it_stays_
 @pytest.mark.parametrize(
     ("read", "remedy"),
     [
-        (st.read_record, "say force='2=mN'"),
-        (st.read_records, "say force='2=mN'"),
-        (st.analyse, "say force='2=mN' of st.read_record"),
-        (lambda path: main(["analyse", str(path)]), "say --force '2=mN'"),
+        (st.read_record, "force='2={}'"),
+        (st.read_records, "force='2={}'"),
+        (st.analyse, "force='2={}' of st.read_record"),
+        (lambda path: main(["analyse", str(path)]), "--force '2={}'"),
     ],
 )
 def test_a_remedy_is_what_whoever_called_can_write(tmp_path, capsys, read, remedy):
@@ -195,7 +195,8 @@ def test_a_remedy_is_what_whoever_called_can_write(tmp_path, capsys, read, remed
         read(path)
     told = capsys.readouterr().err or str(error.value)
     assert told.rstrip().endswith(
-        f"{path}: column 2 'force' states no unit of the force along the drive; {remedy}"
+        f"{path}: column 2 'force' states no unit of the force along the drive; say its unit: "
+        f"{remedy.format('N')} makes it 1 N to 2 N, {remedy.format('mN')} makes it 1 mN to 2 mN"
     )
 
 

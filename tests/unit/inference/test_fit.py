@@ -706,7 +706,7 @@ def test_a_record_of_coefficients_takes_the_load_of_its_rig(record, rig, tmp_pat
         uncertain,
         Rig(rig.slider.replace(load=st.protocols.load_ramp(["2 N", "4 N"], ramp="1 s")), {}),
     ):
-        with pytest.raises(st.ResultError, match="states none for certain: say for example normal"):
+        with pytest.raises(st.ResultError, match="states none for certain: say normal_load="):
             read_source(path, rig_load=load_of_records(unclear))
     assert read_source(path, rig_load=load, normal_load="2 N").normal_load == 2.0
     beside.write_text('[record]\nnormal_load = "3 N"\n')

@@ -197,6 +197,8 @@ def test_python_reports_every_fault_too():
     with pytest.raises(st.DescriptionError, match=r"Coulomb\.mu_0: must not be below 0"):
         st.Coulomb(mu_0=-0.1)
     with pytest.raises(st.DescriptionError, match="is not a Slider"):
+        st.simulate(3.0, 1.0)
+    with pytest.raises(st.DescriptionError, match=r"^my\.toml: No such file"):
         st.simulate("my.toml", 1.0)
     with pytest.raises(st.DescriptionError, match=r"^sample_rate: "):
         st.simulate(st.presets.nakano_popov_2020(), 1.0, sample_rate="10 m")

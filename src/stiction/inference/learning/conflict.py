@@ -85,5 +85,5 @@ class Conflict(NamedTuple):
         near = np.argsort(((places - place) ** 2).sum(axis=1))[:NEAREST]
         others = np.abs(values - middle.library[:, 0])[near]
         low, _, high = np.percentile(apart[near], CENTRAL)
-        share = (np.count_nonzero(others >= abs(own)) + 1.0) / (len(others) + 1.0)
+        share = float(np.count_nonzero(others >= abs(own)) + 1.0) / (len(others) + 1.0)
         return cls(own, 0.5 * float(high - low), share)
