@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import partial
+from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from stiction.arguments import end_reading, read_together
 from stiction.arrays import same_fields
 from stiction.auditing import chain
 from stiction.auditing.advice import LEVERS, Remedy, advise
+from stiction.auditing.oscillation import TransverseSwings, oscillation_of
 from stiction.auditing.pairs import Pair, advise_pairs
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import (
@@ -123,6 +124,11 @@ class Audit(Report):
         """Whether it oscillates from rest, but continues to slide once sliding."""
         rest, sliding = self.observation.comes_to, self.sliding_on.comes_to
         return rest == OSCILLATES and sliding == SLIDES and self.sliding.stable
+
+    @cached_property
+    def oscillation(self) -> TransverseSwings:
+        """The transverse oscillation of the test from rest, parts of which are simulated again."""
+        return oscillation_of(self.observation)
 
     @property
     def remedies(self) -> list[Remedy | Pair]:

@@ -6,6 +6,7 @@ from tests.rigs import PIN_ON_PLATE
 
 import stiction as st
 from stiction.analysis.signals.reversals import extrema
+from stiction.auditing import report
 from stiction.auditing.oscillation import oscillation_of, theoretical_oscillation
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import coarse_rate, simulate_test
@@ -50,6 +51,16 @@ def test_the_report_has_the_swings_of_the_test_and_marks_theory():
     assert "Hz; below 98" in lines[2]  # of the test, of which a sample rate is no matter
     shown = found.to_dict()["transverse_oscillation"]
     assert in_words(shown["first"][0]["frequency"]["value"], "Hz", 3) == rows["as creep begins"][0]
+
+
+def test_an_audit_measures_its_oscillation_once(monkeypatch):
+    """Text, page and numbers each simulated parts of the test again."""
+    found, looked = st.audit(PAPER), []
+    measured = report.oscillation_of
+    monkeypatch.setattr(report, "oscillation_of", lambda x: looked.append(x) or measured(x))
+    assert str(found) == str(found)
+    assert found.to_dict()["transverse_oscillation"]["first"]
+    assert looked == [found.observation]
 
 
 def test_swings_have_died_out_when_it_is_said():

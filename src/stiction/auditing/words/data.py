@@ -6,7 +6,7 @@ from math import nan
 from typing import TYPE_CHECKING, Any
 
 from stiction.auditing.advice import Remedy
-from stiction.auditing.oscillation import TransverseSwings, oscillation_of
+from stiction.auditing.oscillation import TransverseSwings
 from stiction.auditing.pairs import Pair
 from stiction.auditing.words.numbers import peak
 from stiction.storage.table_files import number
@@ -40,7 +40,7 @@ def data(found: Audit) -> dict[str, Any]:
             name: with_unit(getattr(found.prediction, name), its) for name, its in THEORY.items()
         },
         "simulated": of_test(found.observation),
-        "transverse_oscillation": _swings(oscillation_of(found.observation)),
+        "transverse_oscillation": _swings(found.oscillation),
         "changes": [_change(each) for each in found.remedies],
     }
 

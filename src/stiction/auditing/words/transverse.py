@@ -12,7 +12,6 @@ from stiction.auditing.oscillation import (
     DEAD,
     SWINGS,
     TransverseSwings,
-    oscillation_of,
     theoretical_oscillation,
 )
 from stiction.auditing.prediction import SEEN
@@ -38,7 +37,7 @@ def transverse(found: Audit) -> tuple[list[str], Table | None]:
     without = _without_creep(found)
     if without:
         return [without], None
-    shown = oscillation_of(found.observation)
+    shown = found.oscillation
     if shown.first is None:
         natural = in_words(found.prediction.f_y, "Hz")
         return [
