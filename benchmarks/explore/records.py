@@ -20,8 +20,7 @@ from rich.table import Table
 from scipy.signal import lfilter  # type: ignore[attr-defined]
 
 import stiction as st
-from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.motion.regime.classify import motion_of
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
@@ -340,11 +339,43 @@ def brief_sliding(random: np.random.Generator) -> Labelled:
     return st.Record(time=1e-3 * np.arange(size), force=force), 0, (STEADY,)
 
 
+def varying_load(random: np.random.Generator, time: Floats) -> Floats:
+    """Return a load over its mean that varies by 3 to 40 %: smoothly, at random, or by jumps."""
+    period, phase = time[-1] * random.uniform(0.03, 0.35), random.uniform(0, 6)
+    turns = 2 * pi * time / period + phase
+    kind = random.integers(4)
+    if kind == 0:
+        wave = np.sin(turns) + random.uniform(0, 0.6) * np.sin(1.73 * turns)
+    elif kind == 1:
+        pole = np.exp(-4.0 * time[1] / period)
+        wave = lfilter([1.0], [1.0, -pole], random.normal(size=len(time)))
+        wave -= wave.mean()
+    else:
+        wave = turns / pi % 2 - 1 if kind == 2 else np.sign(np.sin(turns))
+    return 1.0 + 0.5 * random.uniform(0.03, 0.4) * wave / np.abs(wave).max()
+
+
+def sliding_under_load(random: np.random.Generator) -> Labelled:
+    """Return sliding under a measured load that varies, after a loading or not."""
+    time = np.linspace(0.0, 60.0, int(10 ** random.uniform(3, 4.3)))
+    load, noise = varying_load(random, time), 10 ** random.uniform(-3.5, -2.3, 2)
+    force = load.copy()
+    if random.integers(2):
+        force = np.minimum(force, time / random.uniform(1, 8))
+    if random.integers(2):
+        force += random.uniform(-0.15, 0.15)  # a zero that is not known, or adhesion
+    force += noise[0] * random.normal(size=len(time))
+    load += noise[1] * random.normal(size=len(time))
+    coefficient = random.uniform(0.1, 0.8)
+    record = st.Record(time=time, force=coefficient * force, load=load)
+    return record, 0, (STEADY, SETTLING)
+
+
 LABELLED: tuple[Callable[[np.random.Generator], Labelled], ...] = (
     hum, few_samples, wild_slips, wild_sliding, irregular, harmonic, short, long, wandering,
     sliding, brief_vibration, brief_harmonic, brief_slips, settling, loading, brief_sliding,
     hum_over_loading, random_times, on_a_wave, irregular_on_a_wave, in_noise,
-    irregular_in_noise, irregular_few_samples, irregular_in_steps,
+    irregular_in_noise, irregular_few_samples, irregular_in_steps, sliding_under_load,
 )  # fmt: skip
 
 
@@ -365,8 +396,7 @@ class Judged(NamedTuple):
 def judge(make: Callable[[np.random.Generator], Labelled], seed: int, number: int) -> Judged:
     """Draw a record and judge what is seen of it."""
     record, count, kinds = make(np.random.default_rng([seed, number]))
-    seen = swings(record)
-    motion = regime_of(record, seen)
+    _, seen, motion = motion_of(record)
     counted = count is None or abs(seen.cycles.sizes["cycle"] - count) <= 1
     return Judged(counted, motion.kind in kinds, motion.kind, motion.confidence)
 

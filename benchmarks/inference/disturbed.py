@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 import stiction as st
 from benchmarks.inference.fits import CYCLES, JITTER, NOISE, PER_CYCLE, RIGS, rig_of
-from stiction.analysis.motion.changes.free_swings import without_free_swings
 from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.load_cell.free_swings import without_free_swings
 from stiction.errors import ResultError
 from stiction.inference.cycles import Cycles
 from stiction.inference.features import features

@@ -19,7 +19,7 @@ from stiction.analysis.motion.doubts.warnings import VARIES, turns_round, warnin
 from stiction.analysis.motion.doubts.zero import why_no_friction, with_zero
 from stiction.analysis.motion.drift import NO_DRIFT, Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
-from stiction.analysis.motion.load_cell import swings_of_cell
+from stiction.analysis.motion.load_cell.swings import swings_of_cell
 from stiction.analysis.motion.metadata.comparison import compare_metadata
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE, other_velocity
 from stiction.analysis.motion.metadata.quantity import StatedQuantity

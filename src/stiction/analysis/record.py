@@ -411,23 +411,27 @@ class Record(Described):
         """
         if self.load is None or not self.normal_load or not np.ptp(self.load) > 0.0:
             return np.ones(len(self))
-        load = uniform_mean(self.load, self._averaged_load()[1])
+        load = uniform_mean(self.load, self.averaged_over)
         return np.asarray(np.where(load > 0.0, load, np.nan) / self.normal_load)
 
     def load_noise(self) -> float:
         """Return the relative standard error of the load, or of its mean where it does not vary."""
         if self.load is None or not self.normal_load or not np.ptp(self.load) > 0.0:
             return 0.0
-        noise, width = self._averaged_load()
-        count = width if self.load_variation() > 0.0 else len(self)
-        return float(noise / count**0.5 / abs(self.load.mean()))
+        count = self.averaged_over if self.load_variation() > 0.0 else len(self)
+        return float(self._noise_of_load() / count**0.5 / abs(self.load.mean()))
 
-    def _averaged_load(self) -> tuple[float, int]:
-        """Return the noise of a sample of `load`, N, and over how many it is averaged."""
-        load = np.zeros(1) if self.load is None else self.load
-        noise = white_noise(load) if len(self) > ORDER else 0.0
-        wanted = (noise / (SHARP * float(load.mean()))) ** 2
-        return noise, int(max(1.0, min(wanted, LONGEST_MEAN * len(self))))
+    @property
+    def averaged_over(self) -> int:
+        """Number of samples over which the load is averaged, as its noise requires."""
+        if self.load is None:
+            return 1
+        wanted = (self._noise_of_load() / (SHARP * float(self.load.mean()))) ** 2
+        return int(max(1.0, min(wanted, LONGEST_MEAN * len(self))))
+
+    def _noise_of_load(self) -> float:
+        """Return the noise of a sample of `load`, N."""
+        return 0.0 if self.load is None or len(self) <= ORDER else white_noise(self.load)
 
     def load_variation(self) -> float:
         """Return how far `load` varies beyond its noise, from least to largest, over its mean.

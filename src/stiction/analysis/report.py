@@ -18,10 +18,9 @@ from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_columns import CycleTable, summary
-from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.motion.regime.classify import motion_of
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import apart, oscillation_by_phase, transverse_oscillation
 from stiction.analysis.parts import functions
@@ -184,8 +183,9 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         source = read_source(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
-    found = swings(record)
-    regime = regime_of(record, found)
+    _, found, regime = motion_of(record)
+    if found.load is not None:
+        found = found._replace(force=found.force + found.load.share)
     missing: dict[str, str] = {}
     dataset = cache(CycleTable.as_dataset)  # some of the tables are one and the same
     cycles = dataset(found.lasting)

@@ -9,13 +9,7 @@ import numpy as np
 
 from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.changes.few_slips import FEW, few_slips
-from stiction.analysis.motion.changes.free_swings import (
-    FreeSwing,
-    RingingCell,
-    free_swing,
-    ringing_cell,
-    without_free_swings,
-)
+from stiction.analysis.motion.changes.mean_load import FollowedLoad, under_mean_load
 from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
@@ -34,6 +28,13 @@ from stiction.analysis.motion.disturbance import (
     lasts_through_loading,
     may_be_carried,
     slow_wave,
+)
+from stiction.analysis.motion.load_cell.free_swings import (
+    FreeSwing,
+    RingingCell,
+    free_swing,
+    ringing_cell,
+    without_free_swings,
 )
 from stiction.analysis.motion.rest import STICKING, rest_share
 from stiction.analysis.record import Record, as_record
@@ -134,7 +135,7 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     >>> cycles.sizes["cycle"], cycles["period"].values.round(3).tolist()
     (3, [2.0, 2.0, 2.0])
     """
-    return swings(as_record(source)).cycles
+    return swings(under_mean_load(as_record(source))).cycles
 
 
 class Swings(NamedTuple):
@@ -168,6 +169,8 @@ class Swings(NamedTuple):
         Number of swings that were left out because jumps of the drive's velocity make them.
     cell : RingingCell or None
         The load cell whose swings would count as cycles; `force` is without them.
+    load : FollowedLoad or None
+        The load that the force follows: swings and `force` are those under its mean.
     """
 
     table: CycleTable
@@ -183,6 +186,7 @@ class Swings(NamedTuple):
     few: CycleTable | None = None
     driven: int = 0
     cell: RingingCell | None = None
+    load: FollowedLoad | None = None
 
     @property
     def lasting(self) -> CycleTable:

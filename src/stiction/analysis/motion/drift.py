@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.levels import levels
+from stiction.analysis.motion.changes.mean_load import under_mean_load
 from stiction.analysis.motion.changes.shared import shared_change
 from stiction.analysis.motion.changes.sliding import Sliding, sliding
 from stiction.analysis.motion.cycle_columns import CycleTable
@@ -214,7 +215,7 @@ def detrend(record: Record) -> Record:
     >>> bool(np.ptp(cycles["peak"].values) < 0.001)
     True
     """
-    drift = find_drift(record, swings(record).lasting)
+    drift = find_drift(record, swings(under_mean_load(record)).lasting)
     if not np.isfinite(drift.error):
         return record
     return record.with_force(record.force - drift.rate * np.maximum(record.time - drift.start, 0.0))

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.changes.free_swings import RingingCell, through
+from stiction.analysis.motion.load_cell.free_swings import RingingCell, through
 from stiction.analysis.signals.hum import without_bands
 from stiction.analysis.signals.robust import block_means
 from stiction.arrays import Floats

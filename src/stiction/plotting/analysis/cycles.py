@@ -9,14 +9,14 @@ from matplotlib.axes import Axes
 from matplotlib.markers import CARETDOWN, CARETUP
 from numpy.typing import NDArray
 
-from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.motion.changes.mean_load import under_mean_load
+from stiction.analysis.motion.regime.classify import motion_of
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.plotting.page.canvas import grid_of
-from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, RED, style
+from stiction.plotting.page.style import BLUE, GREY, ORANGE, PAGE, PALE, RED, style
 from stiction.plotting.run.lines import draw_line
 from stiction.plotting.run.time_series import name_time
 from stiction.text.quantity_text import metric_prefix
@@ -54,8 +54,8 @@ def plot_cycles(
     >>> axes = st.plotting.plot_cycles(run)
     """
     record = as_record(source)
-    found = swings(record)
-    return plot_motion(record, found.cycles, regime_of(record, found).kind, axes)
+    _, found, regime = motion_of(record)
+    return plot_motion(record, found.cycles, regime.kind, axes)
 
 
 def plot_motion(
@@ -64,13 +64,16 @@ def plot_motion(
     """Draw what `plot_cycles` draws, where cycles and kind of motion are known."""
     if not len(record):
         raise ResultError("the record has no samples; there is nothing to draw")
+    steady = under_mean_load(record)
     many = cycles.sizes["cycle"] > FEW
     with style():
         panels = grid_of(axes, (PAGE, 4.4 if many else 2.6), 2 if many else 1, 1)
-        draw_cycles(panels[0], record, cycles)
+        draw_cycles(panels[0], steady, cycles)
         panels[0].set_title(kind.capitalize())
+        if steady is not record:
+            _draw_as_measured(panels[0], record)
         if many and len(panels) > 1:
-            _zoom(panels[0], panels[1], record, cycles)
+            _zoom(panels[0], panels[1], steady, cycles)
         for ax in panels:
             name_time(ax)
     return np.array(panels, dtype=object)
@@ -92,16 +95,30 @@ def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
             (marks,) = ax.plot(time, factor * force, color=color, markersize=size, label=name)
             marks.set(marker=marker, linestyle="none")
     if cycles.sizes["cycle"]:
-        ax.legend(
-            loc="lower right",
-            bbox_to_anchor=(1.0, 1.0),  # above, so as not to hide troughs
-            borderaxespad=0.2,
-            ncols=2,
-            markerscale=4.0 / size,
-        )
+        _name_lines(ax, markerscale=4.0 / size)
     ax.margins(y=MARGIN)
     _leave_out_wild(ax, factor * record.force)
     ax.set_ylabel(f"spring force ({prefix}N)")
+
+
+def _name_lines(ax: Axes, markerscale: float = 1.0) -> None:
+    """Add a legend above the panel, where it hides no trough."""
+    ax.legend(
+        loc="lower right",
+        bbox_to_anchor=(1.0, 1.0),
+        borderaxespad=0.2,
+        ncols=4,
+        markerscale=markerscale,
+    )
+
+
+def _draw_as_measured(ax: Axes, record: Record) -> None:
+    """Draw the force as it was measured behind that under the mean load, and name both."""
+    factor, _ = metric_prefix(record.force)
+    ax.lines[0].set_label("under the mean load")
+    measured = draw_line(ax, record.time, factor * record.force, ORANGE, 0.5)
+    measured.set(label="as measured", zorder=0.5)
+    _name_lines(ax)
 
 
 def _leave_out_wild(ax: Axes, force: Floats) -> None:

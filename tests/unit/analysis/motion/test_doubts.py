@@ -24,7 +24,7 @@ from stiction.analysis.motion.doubts.creep_distance import hidden_way
 from stiction.analysis.motion.doubts.load_cell import with_ringing
 from stiction.analysis.motion.doubts.sampling import usual_fall, with_smear, with_supposed_filter
 from stiction.analysis.motion.friction import Friction, Measured, friction_of
-from stiction.analysis.motion.load_cell import CellSwings
+from stiction.analysis.motion.load_cell.swings import CellSwings
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS
 from stiction.presets.preset import on_a_line

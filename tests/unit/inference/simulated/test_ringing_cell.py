@@ -5,7 +5,7 @@ import pytest
 from scipy.signal import bilinear, lfilter, lfilter_zi
 
 import stiction as st
-from stiction.analysis.motion.changes.free_swings import RingingCell, without_free_swings
+from stiction.analysis.motion.load_cell.free_swings import RingingCell, without_free_swings
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.robust import block_means
 from stiction.inference.observation import Noise, noise_of_means, observe

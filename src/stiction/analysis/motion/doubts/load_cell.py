@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.load_cell import CellSwings
+from stiction.analysis.motion.load_cell.swings import CellSwings
 from stiction.text.units import in_words
 
 

@@ -7,7 +7,7 @@ from math import log10, pi
 
 import numpy as np
 
-from stiction.analysis.motion.changes.free_swings import RingingCell
+from stiction.analysis.motion.changes.mean_load import followed_load
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.doubts.clipping import doubt_clipping
@@ -38,7 +38,8 @@ from stiction.analysis.motion.doubts.units import (
 from stiction.analysis.motion.doubts.zero import doubt_zero, is_about_zero, shift_of_zero
 from stiction.analysis.motion.drift import WORTH, Drift, is_shown, shift_of_drift
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.load_cell import CellSwings
+from stiction.analysis.motion.load_cell.free_swings import RingingCell
+from stiction.analysis.motion.load_cell.swings import CellSwings
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import SWING
@@ -154,7 +155,14 @@ def subtracted_lines(
 def _doubt_load(record: Record) -> Iterator[str]:
     """Say that a measured load varies, and which analysis suits it."""
     varies = record.load_variation()
-    if varies > VARIES:
+    load = followed_load(record)
+    if load is not None:
+        yield (
+            f"The normal load varies by {percent(varies)} of its mean, and the force follows it, "
+            f"by {load.slope:.3g} of it: kind of motion, cycles and their forces are those under "
+            "the mean load. Coefficients of friction are force over load at the same instant."
+        )
+    elif varies > VARIES:
         yield (
             f"The normal load varies by {percent(varies)} of its mean. Coefficients of "
             "friction are force over load at the same instant; kind of motion, cycles and forces "

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from stiction.analysis.motion.changes.cycles import parts_of, steady_change
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
-from stiction.analysis.motion.load_cell import swings_of_cell
+from stiction.analysis.motion.load_cell.swings import swings_of_cell
 from stiction.analysis.motion.loading import late_rate, rounding_of_rates
 from stiction.analysis.motion.metadata.quantity import ALIKE, StatedQuantity, median_error
 from stiction.analysis.motion.regime.force_course import FASTEST

@@ -8,6 +8,7 @@ import numpy as np
 
 from stiction.analysis.motion.changes.cycles import BELOW
 from stiction.analysis.motion.changes.levels import levels
+from stiction.analysis.motion.changes.mean_load import followed_load
 from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import BEGINS_UNLOADED, COURSE_PARTS
@@ -81,8 +82,18 @@ def classify(source: Trajectory | Record) -> Regime:
     >>> st.analysis.classify(st.Record(time=time, force=0.1 * (time % 2.0))).kind
     'stick-slip'
     """
-    record = as_record(source)
-    return regime_of(record, swings(record))
+    return motion_of(as_record(source))[2]
+
+
+def motion_of(record: Record) -> tuple[Record, Swings, Regime]:
+    """Return a record with its swings and its kind of motion.
+
+    Where the force follows a load that varies, the record is that under the mean load.
+    """
+    load = followed_load(record)
+    steady = record if load is None else load.taken_from(record)
+    found = swings(steady)._replace(load=load)
+    return steady, found, regime_of(steady, found)
 
 
 def regime_of(record: Record, found: Swings) -> Regime:
@@ -92,7 +103,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if rests_throughout(record.time, record.slip_speed, record.sticks):
         return Regime(STUCK, 1.0, {"rests": record.duration})
     if record.slip_speed is None:
-        if np.ptp(record.force) == 0.0:
+        if np.ptp(record.force) == 0.0 and found.load is None:
             return Regime(UNDETERMINED, 0.0, {"unchanging": float(record.force[0])})
         if (pulls := strokes(record)) is not None:
             return Regime(UNDETERMINED, 0.0, {"forth": pulls[0], "back": pulls[1]})

@@ -8,7 +8,7 @@ from tests.parts import assess
 import stiction as st
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.load_cell import swings_of_cell
+from stiction.analysis.motion.load_cell.swings import swings_of_cell
 from stiction.analysis.motion.loading import loading_rate
 
 

@@ -11,12 +11,12 @@ from tests.drawn import inside
 from tests.parts import assess
 
 import stiction as st
-from stiction.analysis.motion.changes.free_swings import (
+from stiction.analysis.motion.cycles import swings
+from stiction.analysis.motion.load_cell.free_swings import (
     free_swing,
     ringing_cell,
     without_free_swings,
 )
-from stiction.analysis.motion.cycles import swings
 from stiction.analysis.signals.even_grid import even_grid
 
 TIME = np.arange(0.0, 60.0, 2e-3)  # s
