@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 from stiction.analysis.creep.curve import integral
 from stiction.analysis.creep.loading_curve import BEFORE_SLIP
 from stiction.analysis.record import Record
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 from stiction.recording.noise import white_noise
 from stiction.text.quantity_text import percent
+from stiction.trajectory import Trajectory
 
 PARTS = 16  # of a stick phase, over each of which the load is averaged: their changes are its own
 # Largest change of the load in a stick phase, as a share of it: for the exponent of the divergence,
@@ -26,6 +28,10 @@ NOISE = 4.3  # standard deviations of a sample: three of a difference of two
 # Fewer rises are not compared; the quantile of their beginnings, from which up to `BEFORE_SLIP`
 # there are so many levels
 FEWEST_RISES, LOWER, LEVELS = 4, 0.8, 10
+# Of a bin: a rest that takes more is no stick of the transverse oscillation; and of the velocity
+# in the next bin, which by Eq. (7) is 1.1 to 1.2 times as large: less is partly rest
+PARTLY, MOSTLY = 0.25, 0.88
+OTHERS = 0.1  # of the phases: where more are at rest in a bin, others may be so in parts of it
 
 
 def at_one_load(curves: xr.Dataset, record: Record) -> xr.Dataset:
@@ -37,6 +43,49 @@ def at_one_load(curves: xr.Dataset, record: Record) -> xr.Dataset:
     time = curves["slip_time"] - 0.5 * (curves["begin"] + curves["end"])
     load = np.interp(time.values, record.time, record.relative_load())
     return curves.assign(force=curves["force"] / load)
+
+
+def after_rest(curves: xr.Dataset, source: Trajectory | Record) -> xr.Dataset:
+    """Return creep curves without the bins in which the mass rests before it creeps, or begins to.
+
+    After a slip it rests until the springs reach friction again, and not equally long in each
+    phase: means of rest and creep are neither. The rests of a run are known. A record shows them by
+    a velocity below most of that in the next bin nearer to slip; one without a position does not,
+    as its creep is counted from where it is slowest.
+    """
+    if isinstance(source, Trajectory):
+        slow = _partly_at_rest(curves, source.stick_intervals)
+    elif source.position is not None:
+        slow = _slower_than_next(curves)
+    else:
+        return curves
+    seen = np.isfinite(curves["velocity"].values)
+    before = np.logical_and.accumulate((slow | ~seen)[:, ::-1], axis=1)[:, ::-1]
+    before[before.all(axis=1)] = False  # the mass rests throughout, or goes by jerks
+    mixed = (before & seen).sum(axis=0) > OTHERS * seen.sum(axis=0)
+    before |= mixed
+    return curves.where(xr.DataArray(~before, dims=("phase", "bin")))
+
+
+def _partly_at_rest(curves: xr.Dataset, sticks: Floats) -> NDArray[np.bool_]:
+    """Return in which bins one rest, (n, 2), s, takes a considerable part."""
+    begin, end = (curves["slip_time"].values[:, None] - curves[x].values for x in ("begin", "end"))
+    if not len(sticks):
+        return np.zeros(begin.shape, bool)
+    start, stop = sticks.T
+    longest = np.zeros(begin.shape)
+    for at in (begin, end, 0.5 * (begin + end)):  # a rest of a quarter of a bin or more covers one
+        its = np.searchsorted(stop, at).clip(max=len(stop) - 1)
+        longest = np.fmax(longest, np.minimum(stop[its], end) - np.maximum(start[its], begin))
+    return np.asarray(longest > PARTLY * (end - begin))
+
+
+def _slower_than_next(curves: xr.Dataset) -> NDArray[np.bool_]:
+    """Return in which bins creep is slower for sure than most of that in the next one."""
+    velocity, error = curves["velocity"].values, np.nan_to_num(curves["velocity_error"].values)
+    nearer, its = np.full(velocity.shape, np.nan), np.zeros(velocity.shape)
+    nearer[:, 1:], its[:, 1:] = velocity[:, :-1], error[:, :-1]
+    return np.asarray(velocity + ERRORS_997 * np.hypot(error, its) < MOSTLY * nearer)
 
 
 def driven_steadily(record: Record, begin: Floats, end: Floats) -> NDArray[np.bool_]:

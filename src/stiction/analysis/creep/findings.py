@@ -12,6 +12,7 @@ from stiction.analysis.creep.conditions import (
     CHANGED,
     FOLLOWED,
     TURNED,
+    after_rest,
     at_one_load,
     driven_steadily,
     load_change,
@@ -157,7 +158,8 @@ def _with_fits(
         return _divergence(mean, loading)
 
     def implied() -> Misalignment:
-        even = mean_creep(at_one_load(curves, record)) if record.load is not None else mean
+        _refuse_rest(mean, V)
+        even = _while_it_creeps(mean, curves, run, record)
         across = record.stiffness_across if run is None else run.slider.k_y
         if run is not None:
             _refuse_jerks(run, curves)
@@ -171,6 +173,17 @@ def _with_fits(
     divergence = attempt(missing, "divergence", diverging)
     by_creep = attempt(missing, "misalignment", implied)
     return found._replace(divergence=divergence, misalignment=by_creep, missing=missing)
+
+
+def _while_it_creeps(
+    mean: xr.Dataset, curves: xr.Dataset, run: Trajectory | None, record: Record
+) -> xr.Dataset:
+    """Return the mean creep at one load, without bins in which the mass rests before it creeps."""
+    creeping = after_rest(curves, run or record)
+    if creeping is curves and record.load is None:
+        return mean
+    even = mean_creep(creeping if record.load is None else at_one_load(creeping, record))
+    return with_slip_time(even, record) if run is None else even
 
 
 def drive_speed(source: Trajectory | Record, record: Record) -> float | None:
@@ -190,6 +203,12 @@ def _divergence(mean: xr.Dataset, loading: float) -> Divergence:
     if not error < KNOWN or not found.amplitude > ERRORS_95 * found.amplitude_error or n <= 0.0:
         raise ResultError("not determined: no divergence exceeds its uncertainty")
     return found
+
+
+def _refuse_rest(mean: xr.Dataset, V: float) -> None:
+    """Refuse creep that is rest in most bins."""
+    if np.nanmedian(np.abs(mean["velocity"].values)) < REST_SPEED * V:
+        raise ResultError("not determined: the mass mostly rests where Eq. (7) predicts creep")
 
 
 def _refuse_jerks(run: Trajectory, curves: xr.Dataset) -> None:
@@ -233,8 +252,6 @@ def _misalignment(
     ends_in_slip: bool,
 ) -> Misalignment:
     """Return the implied misalignment, if it exceeds its uncertainty."""
-    if np.nanmedian(np.abs(mean["velocity"].values)) < REST_SPEED * V:
-        raise ResultError("not determined: the mass mostly rests where Eq. (7) predicts creep")
     found = fit_misalignment(
         mean,
         V,

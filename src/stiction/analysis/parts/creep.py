@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from stiction.analysis.creep.conditions import shows_drive
+from stiction.analysis.creep.conditions import after_rest, shows_drive
+from stiction.analysis.creep.curve import mean_creep
 from stiction.analysis.creep.findings import drive_speed
 from stiction.analysis.creep.first_slip import slips
 from stiction.analysis.creep.misalignment import REST_SPEED
@@ -67,9 +68,10 @@ def section(found: Analysis) -> Section:
         why = found.missing["creep"]
         said = why if why.startswith("not determined") else f"not seen: {why}"
         return Section("Creep", [f"{said[0].upper()}{said[1:]}."])
-    counts = found.creep["phases"].values
-    usual = int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
-    far, near = (found.creep.isel(bin=at) for at in (usual, 0))
+    creep, waits = _while_it_creeps(found)
+    counts = creep["phases"].values
+    usual = _usual(creep)
+    far, near = (creep.isel(bin=at) for at in (usual, 0))
     long, short = (in_words(float(row["begin"]), "s", 2) for row in (far, near))
     V = drive_speed(found.source, found.record) or 0.0
     lasts = found.record.duration
@@ -79,7 +81,9 @@ def section(found: Analysis) -> Section:
     first, last = _creeping(far, V, lasts, rests), _creeping(near, V, lasts, rests)
     number = counts[0] if found.curves is None else found.curves.sizes["phase"]
     several = f" {_phases(*map(int, (*counts[[usual, 0]], number)))}" if counts[0] > 1 else ""
-    lines = [f"{long} before {end_of_creep(found)} {first}; in the last {short} {last}.{several}"]
+    lines = [
+        f"{long} before {end_of_creep(found)} {first}{waits}; in the last {short} {last}.{several}"
+    ]
     if first == last == rests and found.regime.kind == STUCK:
         return Section("Creep", [f"None: {rests} from beginning to end."])
     if first == last == UNKNOWN:
@@ -115,6 +119,32 @@ def section(found: Analysis) -> Section:
         f"{what}: {found.missing[fit]}." for fit, what in fits.items() if fit in found.missing
     ]
     return Section("Creep", lines)
+
+
+def _usual(creep: xr.Dataset) -> int:
+    """Return the farthest bin from slip that half of the stick phases reach."""
+    counts = creep["phases"].values
+    return int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
+
+
+def _while_it_creeps(found: Analysis) -> tuple[xr.Dataset, str]:
+    """Return the mean creep without bins of rest before it, and words on that; all if none is left.
+
+    A bin in which some phases rest still, or begin to creep, has the velocity of neither.
+    """
+    creep = found.creep
+    assert creep is not None
+    if found.curves is None:
+        return creep, ""
+    creeping = after_rest(found.curves, found.source)
+    if creeping is found.curves or not np.isfinite(creeping["velocity"].values).any():
+        return creep, ""
+    its, far = mean_creep(creeping), creep.isel(bin=_usual(creep))
+    V = drive_speed(found.source, found.record) or 0.0
+    if not float(its["begin"][_usual(its)]) < float(far["begin"]) or _rests(far, V):
+        return creep, ""
+    rests = "at rest" if isinstance(found.source, Trajectory) else "at rest, or nearly so"
+    return its, f", after having been {rests}"
 
 
 def _presliding(found: Analysis, its: Misalignment) -> str:
@@ -173,13 +203,19 @@ def _phases(far: int, near: int, number: int) -> str:
     return f"These are means over the {far} stick phases that are so long, and over {every}."
 
 
+def _rests(row: xr.Dataset, V: float) -> bool:
+    """Return whether creep in a bin is none beside the drive's velocity."""
+    value, error = float(row["velocity"]), float(row["velocity_error"])
+    return bool(abs(value) + ERRORS_95 * np.nan_to_num(error) < REST_SPEED * V)
+
+
 def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
     """Return the creep velocity in a bin in words, with its error if not negligible.
 
     Creep over no measurable distance while the record lasts is none: then it `rests`, in words.
     """
     value, error = float(row["velocity"]), float(row["velocity_error"])
-    if abs(value) + ERRORS_95 * np.nan_to_num(error) < REST_SPEED * V:
+    if _rests(row, V):
         return rests
     if value <= ERRORS_95 * error:
         most = max(value, 0.0) + ERRORS_95 * error

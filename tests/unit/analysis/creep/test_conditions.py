@@ -1,15 +1,21 @@
 """Misalignments by creep under a load that varies, and a drive that pauses."""
 
 from dataclasses import replace
-from math import degrees
+from math import degrees, radians
 
 import numpy as np
 import pytest
 
 import stiction as st
-from stiction.analysis.creep.conditions import driven_steadily, load_change, typical_load
+from stiction.analysis.creep.conditions import (
+    after_rest,
+    driven_steadily,
+    load_change,
+    typical_load,
+)
 from stiction.analysis.creep.curve import stick_phases
 from stiction.analysis.record import record_of
+from stiction.analysis.signals.correlated_noise import ERRORS_95
 
 PAPER = st.presets.nakano_popov_2020()
 p = st.protocols
@@ -310,3 +316,55 @@ def test_of_a_drive_that_speeds_up_only_phases_at_its_velocity_count():
     drive = p.DriveProgram(velocity="1 mm/s", program=pieces)
     found = st.analyse(st.simulate(PAPER.replace(drive=drive), sample_rate="1 kHz")).misalignment
     assert abs(found.phi - PAPER.phi) < 2.0 * found.phi_error < 0.1 * PAPER.phi
+
+
+@pytest.fixture(scope="module", params=["1 kHz", "5 kHz", "20 kHz"])
+def resting_run(request):
+    """Return a run of a rig whose mass rests for a part of each loading that no bin is as long as.
+
+    Its spring across is 390 times as stiff as that along, and half as stiff as Eq. (7) supposes.
+    """
+    slider = st.Slider(
+        mass="80 g",
+        k_x="2.3 kN/m",
+        k_y="0.9 MN/m",
+        phi="2 deg",
+        normal_load="4 N",
+        friction=st.ExponentialWeakening(mu_0=0.6, mu_inf=0.45, v_f="10 mm/s"),
+        drive=st.ConstantVelocity("0.5 mm/s"),
+    )
+    return st.simulate(slider, "20 s", sample_rate=request.param)
+
+
+def test_bins_of_rest_are_no_creep(resting_run):
+    """The angle was found by chance: at 1 kHz, and not at 2, 5 and 20 kHz."""
+    found = st.analyse(resting_run)
+    phi = found.misalignment
+    assert phi.phi == pytest.approx(radians(2.0), abs=ERRORS_95 * phi.phi_error)
+    assert phi.phi_error < radians(0.03)
+    kept = after_rest(found.curves, resting_run)
+    velocity = found.curves["velocity"].values
+    left_out = np.isfinite(velocity) & ~np.isfinite(kept["velocity"].values)
+    assert left_out.any(axis=1)[1:].all()  # in each phase but the first, which begins unloaded
+    assert not left_out[0, 1:20].any()
+    (said,) = [line for line in str(found).splitlines() if "before slip it creeps" in line]
+    assert "after having been at rest" in said
+
+
+def test_a_record_shows_its_rests(resting_run):
+    run = st.analysis.record_of(resting_run)
+    record = st.Record(
+        time=run.time,
+        force=run.force,
+        position=run.position,
+        stiffness="2.3 kN/m",
+        stiffness_across="0.9 MN/m",
+        drive_velocity="0.5 mm/s",
+        mass="80 g",
+        normal_load="4 N",
+    )
+    phi = st.analyse(record).misalignment
+    assert phi.phi == pytest.approx(radians(2.0), abs=ERRORS_95 * phi.phi_error)
+    by_force = record.model_copy(update={"position": None})
+    curves = st.analysis.creep_curves(by_force, st.analysis.find_cycles(by_force))
+    assert after_rest(curves, by_force) is curves

@@ -44,14 +44,13 @@ def test_an_angle_is_that_of_creep_that_eq_7_describes(monkeypatch, seen, why):
 
 
 @pytest.mark.parametrize(("speed", "rests"), [(0.5e-6, True), (2e-6, False)])
-def test_an_angle_is_not_that_of_a_mass_that_rests(monkeypatch, speed, rests):
-    monkeypatch.setattr(findings, "fit_misalignment", lambda *_, **__: SURE)
+def test_an_angle_is_not_that_of_a_mass_that_rests(speed, rests):
     curve = CURVE.assign(velocity=-speed * V + 0.0 * CURVE["velocity"])
     if not rests:
-        findings._misalignment(curve, V, 1e3, 1e7, None, True)
+        findings._refuse_rest(curve, V)
         return
     with pytest.raises(st.ResultError, match="mostly rests"):
-        findings._misalignment(curve, V, 1e3, 1e7, None, True)
+        findings._refuse_rest(curve, V)
 
 
 @pytest.mark.parametrize(
