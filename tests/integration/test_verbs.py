@@ -146,6 +146,20 @@ def test_each_public_figure_takes_axes_and_has_a_docstring(name):
     assert inspect.getdoc(function)
 
 
+SEVERAL = {"dict[str, Axes]", "NDArray[np.object_]", "Axes | NDArray[np.object_]"}
+
+
+@pytest.mark.parametrize("name", [each for each in dir(plotting) if each.startswith("plot_")])
+def test_ax_is_one_panel_and_axes_are_several(name):
+    found = inspect.signature(getattr(plotting, name))
+    if "ax" in found.parameters:
+        assert found.parameters["ax"].annotation == "Axes | None"
+        assert found.return_annotation == "Axes"
+    else:
+        assert found.return_annotation in SEVERAL
+        assert "Any" not in found.parameters["axes"].annotation
+
+
 def test_a_run_is_drawn_on_the_axes_that_are_given(run):
     figure = Figure()
     ax, other = figure.subplots(2, 1)

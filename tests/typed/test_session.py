@@ -6,8 +6,10 @@ float.
 
 from typing import Any, assert_type
 
+import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from numpy.typing import NDArray
 from pint import UnitRegistry
 
 import stiction as st
@@ -111,6 +113,7 @@ def test_a_checker_knows_what_a_drawing_returns() -> None:
     assert_type(run.plot(), dict[str, Axes])
     assert_type(SLIDER.plot(), Axes)
     assert_type(st.compare(run.description, "coulomb").plot(), dict[str, Axes])
+    assert_type(st.analysis.record_of(run).plot(), NDArray[np.object_])
 
 
 def test_engines_have_types() -> None:

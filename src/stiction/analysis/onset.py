@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from itertools import pairwise, takewhile
 from math import isnan, nan
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -26,6 +26,9 @@ from stiction.system.description import Description
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider, slider_of
 from stiction.text.units import Quantities, with_error
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 Kind = Literal["soft", "hard", "not determined", "none"]
 
@@ -91,9 +94,10 @@ class Onset(NamedTuple):
             said = f" at {with_error(self.threshold, self.uncertainty, unit)}"
         return f"<Onset along {along['long_name']}: {self.kind}{said}>"
 
-    def plot(self, ax: Any = None) -> Any:
+    def plot(self, ax: Any = None) -> Axes:
         """Draw both sweeps; see `stiction.plotting.plot_onset`."""
-        return draw("plot_onset", self, None, ax)
+        drawn: Axes = draw("plot_onset", self, None, ax)
+        return drawn
 
 
 class SweepPoint(NamedTuple):

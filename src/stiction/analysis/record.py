@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import PydanticCustomError
@@ -537,9 +538,10 @@ class Record(Described):
         read = [] if self.origin is None else self.origin.tables()
         return as_html([own, *read]) + own_picture(self)
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> NDArray[np.object_]:
         """Draw the force with its cycles; see `stiction.plotting.plot_cycles`."""
-        return draw("plot_cycles", self, axes)
+        drawn: NDArray[np.object_] = draw("plot_cycles", self, axes)
+        return drawn
 
 
 def as_record(source: Trajectory | Record) -> Record:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.assessment import assess_record, assess_run
 from stiction.analysis.creep.curve import stick_phases
@@ -143,9 +144,10 @@ class Analysis(Report):
         """
         return page_of(self, path, name)
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> NDArray[np.object_]:
         """Draw the force with its cycles; see `stiction.plotting.plot_analysis`."""
-        return draw("plot_analysis", self, axes)
+        drawn: NDArray[np.object_] = draw("plot_analysis", self, axes)
+        return drawn
 
 
 def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) -> Analysis:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.analysis.record import Record
 from stiction.arguments import end_reading, read_together
@@ -166,7 +167,7 @@ class Audit(Report):
         """Return the numbers with their units, as ``stiction audit --json`` writes them."""
         return data(self)
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> NDArray[np.object_]:
         """Draw the simulated test as a load cell records it; see `stiction.plotting`."""
         from stiction.plotting.analysis.cycles import plot_motion
 

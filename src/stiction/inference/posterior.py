@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import ndtr
 
 from stiction.arrays import Floats, xr
@@ -386,9 +387,10 @@ class Fit(Report):
             )
         return found
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> NDArray[np.object_]:
         """Draw prior against posterior; see `stiction.plotting.plot_posterior`."""
-        return draw("plot_posterior", self, axes)
+        drawn: NDArray[np.object_] = draw("plot_posterior", self, axes)
+        return drawn
 
     def save(self, path: str | Path, **groups: xr.Dataset) -> Path:
         """Write the posterior as NetCDF, the prior in its group ``prior``; return the path.

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from math import isfinite, log
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.arrays import Complex, xr
 from stiction.errors import StictionError, echo
@@ -28,6 +29,9 @@ from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Report, Section, Table
 from stiction.text.units import Quantity, in_words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 OVER = ("phi", "drive.velocity")
 DIGITS = 6  # shown of a critical value
@@ -98,12 +102,13 @@ class Stability(Report):
         """All sections; a critical stiffness takes as long to find as a critical value."""
         return modes_section(self.sliding), critical_section(self.slider, self.criticals)
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> Axes | NDArray[np.object_]:
         """Draw the modes over one parameter, or the boundary in the plane of two.
 
         See `stiction.plotting.plot_modes` and `stiction.plotting.plot_boundary`.
         """
-        return draw("plot_stability", self, axes)
+        drawn: Axes | NDArray[np.object_] = draw("plot_stability", self, axes)
+        return drawn
 
 
 def stability(

@@ -390,9 +390,9 @@ class Slider(Apparatus):
         load = ahead(load_stretches(self.normal_load, self.load), t)
         return min(drive[0], load[0])
 
-    def plot(self, axes: Any = None) -> Axes:
+    def plot(self, ax: Any = None) -> Axes:
         """Draw the slider from above; see `stiction.plotting.plot_slider`."""
-        drawn: Axes = draw("plot_slider", self, axes)
+        drawn: Axes = draw("plot_slider", self, ax)
         return drawn
 
     def replace(self, **changes: Any) -> Self:

@@ -11,6 +11,7 @@ from stiction.names import draw, own_picture
 
 if TYPE_CHECKING:
     import pandas as pd
+    from matplotlib.axes import Axes
 
 
 class Table(NamedTuple):
@@ -88,9 +89,10 @@ class SectionReport(Report):
         """Return the section, as reports of several do."""
         return [self.section]
 
-    def plot(self, ax: Any = None) -> Any:
+    def plot(self, ax: Any = None) -> Axes:
         """Draw the figure that `stiction.plotting` has for it."""
-        return draw(self._figure, self, ax)
+        drawn: Axes = draw(self._figure, self, ax)
+        return drawn
 
 
 def table_lines(table: Table) -> list[str]:

@@ -308,9 +308,10 @@ class Odds(Report):
         said = ", ".join(f"{name} {odds_text(p, its)}" for name, p, its in pairs)
         return f"<Odds: {self.decision}; {said}>"
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> NDArray[np.object_]:
         """Draw odds, confusion and loading; see `stiction.plotting.plot_mechanism`."""
-        return draw("plot_mechanism", self, axes)
+        drawn: NDArray[np.object_] = draw("plot_mechanism", self, axes)
+        return drawn
 
 
 def surely(probabilities: Floats, by_halves: Floats) -> NDArray[np.bool_]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,6 +18,9 @@ from stiction.text.paths import short_names
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Report, Section, Table
 from stiction.text.units import in_words
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -180,9 +183,10 @@ class Advice(Report):
         others = (test for test in self.ranked if test is not again)
         return [test.test for test in others if test.ratio[i] >= again.low[i]]
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, ax: Any = None) -> Axes:
         """Draw the expected width from each test; see `stiction.plotting.plot_design`."""
-        return draw("plot_design", self, axes)
+        drawn: Axes = draw("plot_design", self, ax)
+        return drawn
 
 
 def row(test: Expected, i: int, unit: str) -> tuple[str, ...]:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import inf, isfinite
-from typing import Any
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from numpy.typing import NDArray
 
 from stiction.analysis.creep.conditions import at_one_load, typical_load
 from stiction.analysis.creep.curve import mean_creep
@@ -26,7 +28,9 @@ from stiction.plotting.page.canvas import figure_of
 from stiction.trajectory import Trajectory
 
 
-def plot_analysis(found: Analysis, axes: Any = None) -> Any:
+def plot_analysis(
+    found: Analysis, axes: Axes | Sequence[Axes] | None = None
+) -> NDArray[np.object_]:
     """Draw the force with its cycles and its kind of motion; see `plot_cycles`.
 
     Examples

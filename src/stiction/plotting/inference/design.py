@@ -18,15 +18,15 @@ WIDTH = 4.5  # inches: long names stand beside the axis
 ROW = 0.22  # inches for a test
 
 
-def plot_design(advice: Advice, axes: Axes | None = None) -> Axes:
+def plot_design(advice: Advice, ax: Axes | None = None) -> Axes:
     """Draw the expected width of the posterior of the parameter of interest, test by test.
 
     Parameters
     ----------
     advice : Advice
         Of `stiction.design`.
-    axes : Axes, optional
-        By default a new figure.
+    ax : Axes, optional
+        Drawn on; by default a new figure.
 
     Returns
     -------
@@ -35,17 +35,17 @@ def plot_design(advice: Advice, axes: Axes | None = None) -> Axes:
     """
     i, tests = advice.index, advice.ranked
     with style():
-        (axes,) = grid_of(axes, (WIDTH, ROW * len(tests) + 0.7), 1, 1)
+        (ax,) = grid_of(ax, (WIDTH, ROW * len(tests) + 0.7), 1, 1)
         places = np.arange(len(tests))[::-1]
         ratio, low, high = (np.array([getattr(t, n)[i] for t in tests]) for n in NAMES)
-        axes.errorbar(
+        ax.errorbar(
             ratio, places, xerr=[ratio - low, high - ratio], fmt="o", color=BLUE,
             ecolor=GREY, markersize=3.5, elinewidth=1.0,
         )  # fmt: skip
-        axes.axvline(1.0, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
-        axes.set_yticks(places, [test.test for test in tests])
-        axes.set(
+        ax.axvline(1.0, color=BLACK, linewidth=0.8, linestyle=(0, (4, 2)))
+        ax.set_yticks(places, [test.test for test in tests])
+        ax.set(
             xlim=(0.0, max(1.1, 1.05 * float(high.max()))), ylim=(-0.7, len(tests) - 0.3),
             xlabel=f"uncertainty of {advice.of}\n(after the present test: 1)",
         )  # fmt: skip
-    return axes
+    return ax

@@ -148,7 +148,7 @@ def draw_parameter(
 
 
 def plot_corner(
-    fit: Fit, names: Sequence[str] | None = None, axes: Any = None
+    fit: Fit, names: Sequence[str] | None = None, axes: NDArray[np.object_] | None = None
 ) -> NDArray[np.object_]:
     """Draw the posterior of all pairs of parameters: regions that hold 50 % and 95 % of it.
 

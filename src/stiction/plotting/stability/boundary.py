@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.arrays import Floats, xr
 from stiction.linear_stability import Stability
-from stiction.plotting.page.canvas import panel
+from stiction.plotting.page.canvas import as_list, panel
 from stiction.plotting.page.parameter import PLAIN, Scale, scale_of
 from stiction.plotting.page.style import BLACK, BLUE, UNSTABLE, style
 from stiction.plotting.stability.modes import plot_modes
@@ -132,21 +132,30 @@ def signed_distance(curve: xr.Dataset, across: Floats, up: Floats) -> Floats:
     return signed
 
 
-def plot_stability(found: Stability, axes: Any = None) -> Any:
+def plot_stability(
+    found: Stability, axes: Axes | Sequence[Axes] | None = None
+) -> Axes | NDArray[np.object_]:
     """Draw the modes over one parameter, or the boundary in the plane of two.
 
     Parameters
     ----------
     found : Stability
         From `stiction.stability`.
-    axes : Axes, optional
-        As of `plot_modes` (two of them) or `plot_boundary` (one).
+    axes : Axes or sequence of Axes, optional
+        Two for the modes over one parameter, one for the plane of two; by default a new figure as
+        wide as a column.
+
+    Returns
+    -------
+    ndarray of Axes, or Axes
+        As of `plot_modes`, or of `plot_boundary`.
 
     Examples
     --------
     >>> import stiction as st
     >>> axes = st.plotting.plot_stability(st.stability(st.presets.nakano_popov_2020(), over="phi"))
     """
+    panels = as_list(axes) if axes is not None else None
     if len(found.criticals) == 2:
-        return plot_boundary(found.boundary, ax=axes)
-    return plot_modes(found.modes, found.criticals[0], axes)
+        return plot_boundary(found.boundary, ax=panels[0] if panels else None)
+    return plot_modes(found.modes, found.criticals[0], panels)

@@ -143,7 +143,7 @@ def map(
     return Map(view, tuple(choose_measures(view, measures)))
 
 
-def plot_map(found: Map, axes: Any = None) -> NDArray[np.object_]:
+def plot_map(found: Map, axes: Axes | Sequence[Axes] | None = None) -> NDArray[np.object_]:
     """Draw a study: a map over two dimensions, a curve over one, points for samples.
 
     Parameters

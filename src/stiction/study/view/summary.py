@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.study.plan.coordinates import values_at
 from stiction.study.plan.study import Study
@@ -73,7 +74,7 @@ class Summary(NamedTuple):
 
         return as_html(self.tables()) + picture(self.plot)
 
-    def plot(self, axes: Any = None) -> Any:
+    def plot(self, axes: Any = None) -> NDArray[np.object_]:
         """Draw the results; see `stiction.map`."""
         from stiction.study.view.mapping import map
 
