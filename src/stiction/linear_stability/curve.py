@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from itertools import pairwise
 from math import atan2, cos, hypot, pi, sin
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,8 @@ from stiction.errors import DescriptionError
 from stiction.linear_stability.axis import Axis, axis, present_value, steadily_driven
 from stiction.linear_stability.linear import growth_rate
 from stiction.linear_stability.roots import leading_frequency, sign_changes, signed_growth
-from stiction.system.slider import Slider
+from stiction.system.description import Description
+from stiction.system.slider import Slider, slider_of
 from stiction.text.units import Quantity
 
 LINES = (0.0, 0.25, 0.5, 0.75, 1.0)  # across both ranges, searched for points of curves
@@ -35,7 +37,7 @@ MOST = 4000  # steps along one curve
 
 
 def boundary(
-    slider: Slider,
+    slider: Slider | Description | str | Path,
     x: str,
     y: str,
     *,
@@ -52,8 +54,8 @@ def boundary(
 
     Parameters
     ----------
-    slider : Slider
-        The system.
+    slider : Slider, Description, str or Path
+        The system, or the file of its description.
     x, y : str
         The two parameters, see `critical`.
     x_between, y_between : tuple of float or str, optional
@@ -86,7 +88,7 @@ def boundary(
     >>> sorted(st.linear_stability.boundary(slider, "phi", "drive.velocity").data_vars)
     ['branch', 'drive.velocity', 'frequency', 'phi']
     """
-    slider = steadily_driven(slider, x, y)
+    slider = steadily_driven(slider_of(slider), x, y)
     across, up = axis(slider, x, x_between), axis(slider, y, y_between)
     if across.path == up.path:
         raise DescriptionError.of(x, "spans no plane with itself; name two parameters")

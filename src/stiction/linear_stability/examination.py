@@ -250,14 +250,18 @@ old_attributes(stability, {name: f"stiction.linear_stability.{name}" for name in
 
 
 def modes_over(
-    slider: Slider, path: str, between: Sequence[Quantity] | None = None, *, points: int = 201
+    slider: Slider | Description | str | Path,
+    path: str,
+    between: Sequence[Quantity] | None = None,
+    *,
+    points: int = 201,
 ) -> xr.Dataset:
     """Return growth rates and frequencies of all modes over a parameter.
 
     Parameters
     ----------
-    slider : Slider
-        The system.
+    slider : Slider, Description, str or Path
+        The system, or the file of its description.
     path : str
         The parameter, see `critical`.
     between : tuple of float or str, optional
@@ -278,7 +282,7 @@ def modes_over(
     >>> dict(modes.sizes)
     {'value': 11, 'mode': 4}
     """
-    slider = steadily_driven(slider, path)
+    slider = steadily_driven(slider_of(slider), path)
     along = axis(slider, path, between)
     fractions = np.linspace(0.0, 1.0, points)
     rows: list[Complex] = []

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import hypot, nan, pi
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,9 +29,10 @@ from stiction.linear_stability.eigenvalues import (
     leading_eigenvalue,
 )
 from stiction.names import warn_renamed
+from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.parameter import change_unchecked
-from stiction.system.slider import Slider
+from stiction.system.slider import Slider, slider_of
 from stiction.system.tensors import damping_tensor, mobility_tensor
 from stiction.text.validation import equal
 
@@ -188,13 +190,14 @@ class Linearisation:
         return self.disturbed_start(size, mode)
 
 
-def steady_sliding(slider: Slider) -> Linearisation:
+def steady_sliding(slider: Slider | Description | str | Path) -> Linearisation:
     """Linearise a slider about steady sliding, s = v_d.
 
     Parameters
     ----------
-    slider : Slider
-        With a moving, steady drive, a constant load, and any friction law.
+    slider : Slider, Description, str or Path
+        The system, or the file of its description: with a moving, steady drive,
+        a constant load, and any friction law.
 
     Returns
     -------
@@ -219,6 +222,7 @@ def steady_sliding(slider: Slider) -> Linearisation:
     >>> st.linear_stability.steady_sliding(slider.replace(phi="10 deg"))
     <Steady sliding, stable: fastest growth -31.46 /s at 9.015 Hz, damping ratio 0.485>
     """
+    slider = slider_of(slider)
     slip = drive_velocity(slider)
     state, response = steady_friction(slider, slip)
     if not np.isfinite(response.error).all():
@@ -230,7 +234,7 @@ def steady_sliding(slider: Slider) -> Linearisation:
     return Linearisation(slider, names, at, system(slider, response.slopes), error)
 
 
-def growth_rate(slider: Slider) -> float:
+def growth_rate(slider: Slider | Description | str | Path) -> float:
     """Return the largest growth rate (1/s) of a small disturbance of steady sliding.
 
     Negative where steady sliding is stable; see `steady_sliding`.
@@ -243,7 +247,7 @@ def growth_rate(slider: Slider) -> float:
     >>> [st.linear_stability.growth_rate(each) > 0 for each in (slider, turned)]
     [True, False]
     """
-    return leading_mode(slider).real
+    return leading_mode(slider_of(slider)).real
 
 
 def growth_at(slider: Slider, path: str, value: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from itertools import pairwise
 from math import pi
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,8 @@ from stiction.linear_stability.eigenvalues import (
     refined_growth,
 )
 from stiction.linear_stability.linear import BOUNDARY, disturbance, leading_mode, steady_sliding
-from stiction.system.slider import Slider
+from stiction.system.description import Description
+from stiction.system.slider import Slider, slider_of
 from stiction.text.units import Quantity, in_words
 from stiction.text.validation import equal
 
@@ -82,7 +84,11 @@ class Critical(NamedTuple):
 
 
 def critical(
-    slider: Slider, path: str, between: Sequence[Quantity] | None = None, *, points: int = POINTS
+    slider: Slider | Description | str | Path,
+    path: str,
+    between: Sequence[Quantity] | None = None,
+    *,
+    points: int = POINTS,
 ) -> Critical:
     """Find every value of a parameter at which steady sliding becomes unstable, or stable.
 
@@ -91,8 +97,8 @@ def critical(
 
     Parameters
     ----------
-    slider : Slider
-        The system; its own value of the parameter does not matter.
+    slider : Slider, Description, str or Path
+        The system, or the file of its description; its own value of the parameter does not matter.
     path : str
         The parameter, for example ``"phi"``, ``"drive.velocity"``, ``"c_x"``, ``"mass"``,
         ``"friction.mu_inf"``, or several with one value: ``"c_x, c_y"``.
@@ -120,7 +126,7 @@ def critical(
     >>> np.degrees(found.values).round(4), found.frequencies.round(1), found.stable
     (array([ 8.656 , 76.2634]), array([ 10.2, 988.6]), (False, True, False))
     """
-    slider = steadily_driven(slider, path)
+    slider = steadily_driven(slider_of(slider), path)
     along = axis(slider, path, between)
 
     def growth(fraction: float) -> float:

@@ -495,6 +495,8 @@ def slider_of(source: Any) -> Slider:
     DescriptionError
         If `source` is none of these.
     """
+    if isinstance(source, Slider):  # at once: a root finder asks for the same slider many times
+        return source
     found = getattr(source, "slider", source)
     return found if isinstance(found, Slider) else Slider.from_toml(source)
 

@@ -61,6 +61,31 @@ def test_plots_and_onsets_take_descriptions(path):
         st.plotting.plot_law(SLIDER, "20 mm")
 
 
+def test_figures_and_stability_take_a_description_or_its_file(path):
+    stability = st.linear_stability
+    critical = stability.critical(SLIDER, "phi", points=9)
+    curve = stability.boundary(SLIDER, "phi", "drive.velocity")
+    modes = stability.modes_over(SLIDER, "phi", points=5)
+    for given in (DESCRIBED, path, str(path)):
+        assert stability.critical(given, "phi", points=9) == critical
+        assert stability.boundary(given, "phi", "drive.velocity").identical(curve)
+        assert stability.modes_over(given, "phi", points=5).identical(modes)
+        assert stability.steady_sliding(given).slider == SLIDER
+        assert stability.growth_rate(given) == stability.growth_rate(SLIDER)
+        assert st.plotting.plot_slider(given).get_title() == ""
+    for function in (stability.steady_sliding, stability.growth_rate, st.plotting.plot_slider):
+        with pytest.raises(st.DescriptionError, match="float is not a description"):
+            function(3.0)
+
+
+def test_apparent_friction_takes_the_description_that_was_swept(tmp_path):
+    base = st.Description.of(SLIDER, "20 ms")
+    done = st.sweep(st.protocols.yaw_sweep(base, ["1 deg", "12 deg"]), tmp_path / "angles.zarr")
+    study = st.open_study(done.store)
+    plain = st.analysis.apparent_friction(study, SLIDER)
+    assert np.array_equal(st.analysis.apparent_friction(study, base).steady, plain.steady)
+
+
 @pytest.mark.parametrize("value", [None, {}, True, [1e-3, 2e-3], [1e-3, "2 mm/s"]])
 @pytest.mark.parametrize("name", ["V", "phi"])
 def test_what_is_no_single_quantity_is_refused_by_name(name, value):

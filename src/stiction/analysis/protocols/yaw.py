@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
@@ -11,8 +12,9 @@ from stiction.arrays import Floats, xr
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
 from stiction.linear_stability import steady_sliding
+from stiction.system.description import Description
 from stiction.system.parameter import change_unchecked
-from stiction.system.slider import Slider
+from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, SectionReport, Table
 
 
@@ -90,7 +92,9 @@ def steady_forces(slider: Slider, phi: float) -> tuple[float, float]:
     return way * float(x), way * float(turned.along_drive(x, y))
 
 
-def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
+def apparent_friction(
+    study: xr.Dataset, slider: Slider | Description | str | Path
+) -> ApparentFriction:
     """Return the friction that a load cell on the soft spring reads, over the misalignment.
 
     In steady sliding friction mu(V) W acts along the drive, of which the soft spring carries
@@ -101,8 +105,9 @@ def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
     ----------
     study : Dataset
         Of `st.protocols.yaw_sweep`, from `st.open_study`.
-    slider : Slider
-        The apparatus that was swept, for normal load, law and drive velocity.
+    slider : Slider, Description, str or Path
+        The apparatus that was swept, or the file of its description: it has the normal load, the
+        law and the drive velocity.
 
     Raises
     ------
@@ -124,6 +129,7 @@ def apparent_friction(study: xr.Dataset, slider: Slider) -> ApparentFriction:
         raise ResultError(
             "the data are not a study over phi alone with its forces; see st.protocols.yaw_sweep"
         )
+    slider = slider_of(slider)
     W, _ = _load_and_speed(slider)
     phi = study["phi"].values * (np.pi / 180.0 if study["phi"].attrs["units"] == "deg" else 1.0)
     mean, peak, amplitude = (study[name].values.astype(np.float64) / W for name in wanted)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import copysign, cos, degrees, pi, sin
+from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,7 +20,8 @@ from stiction.plotting.apparatus.shapes import (
 )
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, BLUE, FLOOR, GREEN, GREY, PURPLE, RED, style
-from stiction.system.slider import Slider
+from stiction.system.description import Description
+from stiction.system.slider import Slider, slider_of
 from stiction.system.springs import compliance
 from stiction.system.tensors import dampers_askew
 
@@ -32,13 +34,13 @@ DAMPER = 2.2  # from the block's centre to the end of a damper with an axis of i
 BACK = 3.0  # extent of F and the axes behind the block
 
 
-def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
+def plot_slider(slider: Slider | Description | str | Path, ax: Axes | None = None) -> Axes:
     """Draw the system seen from above; see `draw_schematic`.
 
     Parameters
     ----------
-    slider : Slider
-        The system.
+    slider : Slider, Description, str or Path
+        The system, or the file of its description.
     ax : Axes, optional
         Drawn on; by default a new figure as wide as a column.
 
@@ -48,7 +50,7 @@ def plot_slider(slider: Slider, ax: Axes | None = None) -> Axes:
     >>> ax = st.plotting.plot_slider(st.presets.nakano_popov_2020())
     """
     with style():
-        return draw_schematic(panel(ax, 2.4), slider)
+        return draw_schematic(panel(ax, 2.4), slider_of(slider))
 
 
 def draw_schematic(ax: Axes, slider: Slider) -> Axes:
