@@ -51,7 +51,7 @@ def load_stretches(normal_load: float, program: LoadProgram | None) -> Stretches
     """Return the smooth stretches of a normal load, like `drive_stretches`."""
     if program is None:
         return ((inf, ConstantLoad._make((normal_load,))),)  # not validated: it comes from a slider
-    return program.stretches(normal_load)
+    return program.stretches_from(normal_load)
 
 
 def load_at(normal_load: float, program: LoadProgram | None, t: Any) -> Any:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from math import inf, pi
 from operator import itemgetter
-from typing import Annotated, Any, Self, TypeGuard
+from typing import Annotated, Any, TypeGuard, TypeVar
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -33,6 +33,27 @@ ROW = 40.0  # bytes of memory for a recorded row, each time it is gone through
 
 
 PIECES = "sequence of pieces"
+Program = TypeVar("Program", bound="DriveProgram | LoadProgram")
+
+
+def refuse_repetition(of: Program) -> Program:
+    """Return a program, unless it has no end to be repeated at, or more rows than fit into memory.
+
+    Raises
+    ------
+    ValueError
+        With the remedy.
+    """
+    if of.repeat > 1 and of.program and of.program[-1].duration is None:
+        name = type(of.program[-1]).__name__.lower()
+        raise ValueError(
+            f"the last piece, {name}, has no end and cannot be repeated; "
+            "give it a duration, or leave repeat out"
+        )
+    rows = sum(len(piece.time) for piece in of.program if isinstance(piece, RECORDS))
+    if short := shortage(ROW * of.repeat * rows):
+        raise ValueError(f"{of.repeat} times {rows} recorded rows {short}; thin the rows")
+    return of
 
 
 class DriveProgram(Described):
@@ -67,11 +88,7 @@ class DriveProgram(Described):
     along: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
     across: Annotated[Any, as_modulation(VELOCITY), "Modulation | None"] = None
 
-    @model_validator(mode="after")
-    def _can_be_repeated(self) -> Self:
-        must_end(self.program, self.repeat)
-        must_fit(self.program, self.repeat)
-        return self
+    _can_be_repeated = model_validator(mode="after")(refuse_repetition)
 
     @cached_property
     def stretches(self) -> tuple[tuple[float, Any], ...]:
@@ -153,13 +170,9 @@ class LoadProgram(Described):
     repeat: Repeat = 1
     modulation: Annotated[Any, as_modulation(FORCE), "Modulation | None"] = None
 
-    @model_validator(mode="after")
-    def _can_be_repeated(self) -> Self:
-        must_end(self.program, self.repeat)
-        must_fit(self.program, self.repeat)
-        return self
+    _can_be_repeated = model_validator(mode="after")(refuse_repetition)
 
-    def stretches(self, base: float) -> tuple[tuple[float, Any], ...]:
+    def stretches_from(self, base: float) -> tuple[tuple[float, Any], ...]:
         """Return the smooth stretches for a base load (N): the end of each (s), and its load."""
         return tuple(
             (end, _load(modulate(signal, self.modulation)))
@@ -237,23 +250,6 @@ def moving_rows(recording: Recording) -> tuple[Any, Any]:
     moves = np.flatnonzero(speeds > AT_REST * speeds.max(initial=0.0))
     inside = slice(moves[0], moves[-1] + 1) if len(moves) else slice(0, 0)
     return times[inside], ways[inside]
-
-
-def must_end(program: Sequence[Any], repeat: int) -> None:
-    """Refuse to repeat a program without an end."""
-    if repeat > 1 and program and program[-1].duration is None:
-        name = type(program[-1]).__name__.lower()
-        raise ValueError(
-            f"the last piece, {name}, has no end and cannot be repeated; "
-            "give it a duration, or leave repeat out"
-        )
-
-
-def must_fit(program: Sequence[Any], repeat: int) -> None:
-    """Refuse to repeat more recorded rows than fit into memory."""
-    rows = repeat * sum(len(piece.time) for piece in program if isinstance(piece, RECORDS))
-    if short := shortage(ROW * rows):
-        raise ValueError(f"{repeat} times {rows // repeat} recorded rows {short}; thin the rows")
 
 
 def signals(

@@ -217,12 +217,12 @@ def critical_section(slider: Slider, found: Sequence[Critical]) -> Section:
         for each in found
         if isfinite(own[each.path])
     )
-    rows = [row for each in found for row in stretches(each, own[each.path])]
+    rows = [row for each in found for row in stretch_rows(each, own[each.path])]
     headings = ("parameter", "from", "to", "steady sliding", "oscillation at the upper end")
     return Section("Where that changes", [f"Now: {now}."] if now else [], Table(headings, rows))
 
 
-def stretches(found: Critical, now: float) -> Iterator[tuple[str, ...]]:
+def stretch_rows(found: Critical, now: float) -> Iterator[tuple[str, ...]]:
     """Yield a row for each stretch of a parameter: ends, stability, oscillation at its end.
 
     The stretch that contains the value `now` is marked.

@@ -373,7 +373,7 @@ def test_pieces_follow_on_from_each_other():
     load = st.protocols.LoadProgram(
         program=[st.protocols.Ramp(20.0, 1.0), st.protocols.Hold(1.0), st.protocols.Step(-5.0)]
     )
-    ends, signals = zip(*load.stretches(10.0), strict=True)
+    ends, signals = zip(*load.stretches_from(10.0), strict=True)
     assert ends == (1.0, 2.0, inf)
     assert [signal.at(end) for end, signal in zip((1.0, 2.0, 3.0), signals, strict=True)] == [
         20.0,

@@ -239,7 +239,7 @@ def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionT
         run.description.run.rtol * float(np.abs(force).max(initial=0.0)),
         slider.law,
         drive,
-        stretches(
+        constant_stretches(
             drive_stretches(drive), load_stretches(slider.normal_load, slider.load), d["time"]
         ),
     )
@@ -254,9 +254,9 @@ def of_record(
     """Return a record with a normal load as a friction test, by its program or as measured."""
     force = record.force
     if measured is None:
-        found = stretches(drive_stretches(drive), loads, record.time)
+        found = constant_stretches(drive_stretches(drive), loads, record.time)
     else:
-        found = stretches(measured, loads, record.time, -inf)
+        found = constant_stretches(measured, loads, record.time, -inf)
         force = _against_friction(record, found)
     load = (record.normal_load or nan) * record.relative_load()
     lag = force / record.stiffness if record.stiffness else np.zeros(len(force))
@@ -284,7 +284,7 @@ def _against_friction(record: Record, found: list[ConstantStretch]) -> Floats:
     return np.asarray(-record.force if sum(work) < 0.0 else record.force)
 
 
-def stretches(
+def constant_stretches(
     drives: Stretches, loads: Stretches, time: Floats, start: float = 0.0
 ) -> list[ConstantStretch]:
     """Return the stretches of constant velocity and load while they are recorded, from `start` (s).

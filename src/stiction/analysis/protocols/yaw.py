@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stiction.analysis.protocols.friction_test import stretches
+from stiction.analysis.protocols.friction_test import constant_stretches
 from stiction.arrays import Floats, xr
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
@@ -75,7 +75,7 @@ def _degrees(phi: float) -> str:
 def _load_and_speed(slider: Slider) -> tuple[float, float]:
     """Return normal load (N) and speed (m/s) of a test in which both are constant."""
     loads = load_stretches(slider.normal_load, slider.load)
-    found = stretches(drive_stretches(slider.motion), loads, np.array([0.0, np.inf]))
+    found = constant_stretches(drive_stretches(slider.motion), loads, np.array([0.0, np.inf]))
     if [each[:2] for each in found] != [(0.0, np.inf)]:
         raise ResultError(
             "the velocity of the drive, or the load, varies, and one force over one load is not "

@@ -10,6 +10,11 @@ from stiction.friction.registry import called_by_laws, register
 from stiction.text.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
 from stiction.text.validation import validate
 
+BRISTLES = (
+    Internal("z_x", "m", "bristle deflection along x"),
+    Internal("z_y", "m", "bristle deflection along y"),
+)
+
 
 @register("lugre")
 @validate
@@ -61,10 +66,7 @@ class LuGre(NamedTuple):
     @staticmethod
     def states() -> tuple[Internal, ...]:
         """Return the deflection of the bristles."""
-        return (
-            Internal("z_x", "m", "bristle deflection along x"),
-            Internal("z_y", "m", "bristle deflection along y"),
-        )
+        return BRISTLES
 
     def coefficient(law, v: float) -> float:
         """Return g/W at slip speed `v` (m/s), without viscous friction, which ignores the load."""

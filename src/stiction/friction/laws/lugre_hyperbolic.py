@@ -6,7 +6,7 @@ from math import sqrt
 from typing import NamedTuple, Self
 
 from stiction.friction.law import Internal, Vector
-from stiction.friction.laws.lugre import bristle_force, bristle_gradient
+from stiction.friction.laws.lugre import BRISTLES, bristle_force, bristle_gradient
 from stiction.friction.registry import called_by_laws, register
 from stiction.text.units import Damping, PositiveNumber, PositiveSpeed, Stiffness
 from stiction.text.validation import validate
@@ -63,10 +63,7 @@ class LuGreHyperbolic(NamedTuple):
     @staticmethod
     def states() -> tuple[Internal, ...]:
         """Return the deflection of the bristles."""
-        return (
-            Internal("z_x", "m", "bristle deflection along x"),
-            Internal("z_y", "m", "bristle deflection along y"),
-        )
+        return BRISTLES
 
     def coefficient(law, v: float) -> float:
         """Return g/W at slip speed `v` (m/s), without viscous friction, which ignores the load."""
