@@ -32,7 +32,7 @@ from stiction.inference.mechanism.classifier import Classifier, Simulations, lea
 from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, surely
-from stiction.inference.mechanism.rest import ALIKE, Rest, shares_at_rest
+from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
 from stiction.inference.mechanism.static_check import StaticCheck
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
@@ -164,7 +164,7 @@ def call(
     for place, name in enumerate(names):
         its = np.nonzero(claimed & (likeliest == place))[0]
         claimed[its] = check.probability(name, records.features[its]) >= CLAIM
-    alike = [references[0].typicality.alike(each, ALIKE) for each in scores]
+    alike = [references[0].typicality.alike(each, ALIKE_SIMULATIONS) for each in scores]
     held = np.array([Rest.among(rest[some]).held for some in alike]) & (likeliest == 0)
     return Called(likeliest, sure, claimed, held)
 

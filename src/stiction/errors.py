@@ -15,7 +15,7 @@ LONGEST_MESSAGE = 2000  # characters of a message
 LONGEST_PATH = 400  # characters of the path of a fault, or of a file
 ECHOED = 80  # characters of a value in a message
 ITEMS = 4  # of a list in a message
-MOST = 100  # faults of a description in its message
+MOST_FAULTS = 100  # faults of a description in its message
 
 _shortened = Repr()
 _shortened.maxlevel = 3
@@ -181,9 +181,9 @@ class DescriptionError(StictionError, ValueError):
     def __init__(self, faults: Sequence[Fault]) -> None:
         """Join the faults into one message, a line each."""
         self.faults: tuple[Fault, ...] = tuple(faults)
-        lines = [str(fault) for fault in self.faults[:MOST]]
-        if len(self.faults) > MOST:
-            lines.append(f"and {len(self.faults) - MOST} more faults")
+        lines = [str(fault) for fault in self.faults[:MOST_FAULTS]]
+        if len(self.faults) > MOST_FAULTS:
+            lines.append(f"and {len(self.faults) - MOST_FAULTS} more faults")
         super().__init__("\n".join(lines))
 
     @classmethod

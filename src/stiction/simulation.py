@@ -31,7 +31,7 @@ from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()
 MOST_STEPS = 100_000_000
-ROUNDING = 1e-12  # of a duration: a time that is nearer to the end is the end
+TIME_ROUNDING = 1e-12  # of a duration: a time that is nearer to the end is the end
 
 
 @read_together
@@ -293,7 +293,7 @@ def own_times(description: Description, times: ArrayLike) -> Floats:
     found = read_times(times)
     start = description.initial.time
     end = start + description.run.duration
-    rounding = max(ROUNDING * description.run.duration, 4.0 * np.spacing(end))
+    rounding = max(TIME_ROUNDING * description.run.duration, 4.0 * np.spacing(end))
     if found[0] < start - rounding or found[-1] > end + rounding:
         raise DescriptionError.of(
             "times",
@@ -336,7 +336,7 @@ def sample_times(start: float, duration: float, rate: float) -> np.ndarray:
     end = start + duration
     if rate == 0.0:
         return np.array([start, end])
-    times: np.ndarray = start + np.arange(int(duration * rate * (1.0 + ROUNDING)) + 1) / rate
+    times: np.ndarray = start + np.arange(int(duration * rate * (1.0 + TIME_ROUNDING)) + 1) / rate
     clipped: np.ndarray = np.minimum(times, end)
     return clipped
 

@@ -16,7 +16,7 @@ from stiction.formats.table import number_of
 from stiction.friction import states
 from stiction.names import draw, picture
 from stiction.result.file import ENDS, age, read_tables, write_result
-from stiction.result.peak import LARGER, LARGEST, largest_spring_force
+from stiction.result.peak import LARGER_FORCE, LARGEST_FORCE, largest_spring_force
 from stiction.result.table import (
     FASTER,
     FASTEST,
@@ -135,7 +135,7 @@ class Trajectory:
         peak = largest_spring_force(self.samples, self.slider.k_x)
         fastest, shown = fastest_slip(self.samples)
         rows = [
-            (LARGEST if peak.shown else LARGER, in_words(peak.force, "N")),
+            (LARGEST_FORCE if peak.shown else LARGER_FORCE, in_words(peak.force, "N")),
             ("at", in_words(peak.time, "s")),
             (FASTEST if shown else FASTER, in_words(fastest, "m/s")),
             ("stick intervals", str(self.statistics.stick_count)),

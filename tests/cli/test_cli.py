@@ -480,7 +480,7 @@ def test_a_wrong_number_is_an_exit_status(tmp_path, monkeypatch, capsys):
 
 
 def test_work_that_lasts_says_so_through_a_pipe(capsys, monkeypatch):
-    monkeypatch.setattr(progress, "FIRST", 0.01)
+    monkeypatch.setattr(progress, "FIRST_LINE", 0.01)
     lines = []
     monkeypatch.setattr(progress, "print_line", lines.append)
     with progress.show_progress("simulating") as report:

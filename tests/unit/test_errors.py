@@ -12,7 +12,7 @@ import pytest
 import stiction as st
 from stiction.errors import (
     ECHOED,
-    MOST,
+    MOST_FAULTS,
     DescriptionError,
     Fault,
     Faults,
@@ -70,7 +70,7 @@ def test_no_message_holds_a_large_value_whole(place, kind):
         PLACES[place](LARGE[kind])
     except st.StictionError as error:
         lines = str(error).splitlines()
-        assert len(lines) <= MOST + 1
+        assert len(lines) <= MOST_FAULTS + 1
         assert max(map(len, lines)) < 5 * ECHOED
 
 

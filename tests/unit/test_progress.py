@@ -98,7 +98,7 @@ def test_a_notebook_is_told_of_work_that_lasts(monkeypatch):
     lines = []
     monkeypatch.setattr(builtins, "__IPYTHON__", True, raising=False)
     monkeypatch.setattr(display, "print_line", lines.append)
-    monkeypatch.setattr(display, "FIRST", 0.01)
+    monkeypatch.setattr(display, "FIRST_LINE", 0.01)
 
     @with_progress("working")
     def last(short, progress=None):

@@ -13,8 +13,8 @@ from stiction.analysis.rotation.findings import (
     BOTH,
     GROWING,
     HALF,
-    MOST,
-    SOME,
+    MOST_GROWTH,
+    SOME_GROWTH,
     TURNING,
     UNDETERMINED,
 )
@@ -100,10 +100,14 @@ def look(rng: Generator) -> Judged | None:
     grows = (r - r_0) / (path.x[-1] - path.x[0])
     halves = np.diff(size[[0, HALF, -1]]) / np.diff(path.x[[0, HALF, -1]])
     true, right = UNDETERMINED, found.kind == UNDETERMINED
-    for kind, low, high in ((TURNING, -np.inf, SOME), (BOTH, SOME, MOST), (GROWING, MOST, np.inf)):
+    for kind, low, high in (
+        (TURNING, -np.inf, SOME_GROWTH),
+        (BOTH, SOME_GROWTH, MOST_GROWTH),
+        (GROWING, MOST_GROWTH, np.inf),
+    ):
         true = kind if low <= grows < high else true
         right |= found.kind == kind and low - NEAR < grows < high + NEAR
-    if halves.min() < SOME + NEAR and halves.max() > MOST - NEAR:
+    if halves.min() < SOME_GROWTH + NEAR and halves.max() > MOST_GROWTH - NEAR:
         right |= found.kind == BOTH  # one after the other
     errors = {}
     if np.isfinite(found.change):

@@ -16,7 +16,7 @@ from stiction.solver.accuracy import tolerance
 from stiction.system.tensors import damping_tensor, mass_tensor
 from stiction.trajectory import Trajectory
 
-ROUNDING = 4e-16  # of a stored energy, in each step: its displacement by half as much
+ENERGY_ROUNDING = 4e-16  # of a stored energy, in each step: its displacement by half as much
 POWERS = 5  # of the energies, the first ones: they are integrals over time
 # name: long name; all in J
 ENERGIES = {
@@ -98,7 +98,7 @@ def energy_budget(run: Trajectory, edges: ArrayLike | None = None) -> xr.Dataset
     spent = np.concatenate([powers[1:], stored])
     residual = powers[0] - spent.sum(axis=0)
     quadrature, exchanged = off.sum(axis=0), sizes.sum(axis=0) + np.abs(stored).sum(axis=0)
-    rounding = ROUNDING * steps_of(run) * np.abs(energies).sum(axis=0).max()
+    rounding = ENERGY_ROUNDING * steps_of(run) * np.abs(energies).sum(axis=0).max()
     bound = quadrature + tolerance(rtol) * exchanged + rounding
     values = [powers[0], *spent, residual, quadrature, bound]
     variables = {

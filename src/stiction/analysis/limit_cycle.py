@@ -17,8 +17,8 @@ KICK = 1e-2  # of the drive's speed: the disturbance of steady sliding
 DECAYED, GROWN = 0.3, 3.0  # times the kick: below it rests, above it can be an oscillation
 PERIODS = 10.0  # of the leading mode, in a block of time
 SAMPLES = 64  # per period: the largest error of a peak is 0.1 %
-EVEN = 0.01  # largest relative difference between settled blocks
-TOLD = 3.0  # times EVEN by which a small disturbance would change meanwhile
+EVEN_BLOCKS = 0.01  # largest relative difference between settled blocks
+TOLD = 3.0  # times EVEN_BLOCKS by which a small disturbance would change meanwhile
 FEWEST_BLOCKS = 6  # blocks, of which the later half must be even
 REST, OSCILLATING, UNDECIDED = range(3)
 
@@ -44,12 +44,13 @@ def settle(slider: Slider, start: Initial, most_blocks: int, rtol: float) -> Fou
         if amplitudes[-1] < DECAYED * small:
             return Found(amplitudes[-1], REST, state)
         late = amplitudes[count // 2 :]
-        changes = abs(growth) * block * len(late) > TOLD * EVEN  # else slow change looks settled
+        # else slow change looks settled
+        changes = abs(growth) * block * len(late) > TOLD * EVEN_BLOCKS
         if (
             changes
             and count >= FEWEST_BLOCKS
             and min(late) > GROWN * small
-            and max(late) < (1 + EVEN) * min(late)
+            and max(late) < (1 + EVEN_BLOCKS) * min(late)
         ):
             return Found(float(np.mean(late)), OSCILLATING, state)
     return Found(amplitudes[-1], UNDECIDED, state)

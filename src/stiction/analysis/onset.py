@@ -36,7 +36,7 @@ MOST_ADDED = 14  # values near the onset, beside those given
 SHARP = 0.01  # of the least distance of two given values: so uncertain the onset may be
 APART = 1.4  # ratio of squared amplitudes, which have errors of 2 %
 FAR = 8.0  # times the nearest squared amplitude: beyond, the next says nothing of it
-ALIKE = 3.0  # ratio of two slopes of the squared amplitude: beyond, it is far from linear
+ALIKE_SLOPES = 3.0  # ratio of two slopes of the squared amplitude: beyond, it is far from linear
 OPEN = 0.3  # of an end of hysteresis: so wide a gap between undecided points is tried
 ROUGH = 0.05  # of the distance to the nearest oscillation: an error of 1 % in two amplitudes
 
@@ -345,7 +345,7 @@ def extrapolate_onset(rest: SweepPoint, moving: Sequence[SweepPoint]) -> OnsetEs
     slope = (squares[1] - squares[0]) / x[1]
     beyond = (squares[2] - squares[1]) / (x[2] - x[1])
     bend = (beyond - slope) / x[2]
-    if slope * x[1] <= 0.0 or not 1.0 / ALIKE < beyond / slope < ALIKE:
+    if slope * x[1] <= 0.0 or not 1.0 / ALIKE_SLOPES < beyond / slope < ALIKE_SLOPES:
         return unknown
     straight = -squares[0] / slope
     # the parabola through all three: squares[0] + b x + bend x^2

@@ -24,12 +24,12 @@ from stiction.trajectory import Trajectory
 Integrand = Callable[[Floats, Floats], Floats]
 
 PASSES = 6  # of splitting panels in four: down to a thousandth of the first
-MOST = 200_000  # panels that are split further at once
+MOST_PANELS = 200_000  # panels that are split further at once
 AGAIN = 100  # times the steps of a run it may take to make it once more, sampled
 MOST_ENDS = 100_000  # steps of smooth friction to each of which a panel belongs
 PER_STEP = 4  # panels to each of the solver's steps at first
 STEPS_OF_A_CYCLE = 20  # that a return map has found
-ROUNDING = 1e-13  # of an integral; sums of so many numbers are not closer
+SUM_ROUNDING = 1e-13  # of an integral; sums of so many numbers are not closer
 
 # R. Piessens et al., QUADPACK (Springer, 1983), routine qk15: nodes from the end of (-1, 1) to
 # its middle; Gauss's are the second, fourth, ... of them
@@ -113,10 +113,10 @@ def integrals(
         if turn == 0:
             states = rows
             value, error, sizes = np.zeros((3, len(part), len(edges) - 1))
-            left = max(accuracy, ROUNDING) * size[:wanted].sum(axis=1).max()
+            left = max(accuracy, SUM_ROUNDING) * size[:wanted].sum(axis=1).max()
         worst = off[:wanted].max(axis=0)
         poor = worst > _threshold(worst, left if turn == 0 else 0.5 * left)
-        if turn == PASSES - 1 or poor.sum() > MOST:
+        if turn == PASSES - 1 or poor.sum() > MOST_PANELS:
             poor[:] = False
         which = np.searchsorted(edges, starts[~poor], side="right") - 1
         late = np.spacing(np.abs(starts) + lengths) / lengths  # times are rounded

@@ -52,7 +52,7 @@ from stiction.trajectory import Trajectory
 if TYPE_CHECKING:
     import pandas as pd
 
-LARGEST = 1e100  # of any sample, in SI: its square must not overflow
+LARGEST_SAMPLE = 1e100  # of any sample, in SI: its square must not overflow
 SMALLEST = 1e-100  # smaller values are taken as zero, because their squares underflow
 SHARP = 1e-3  # of the load: noise of it that is averaged away
 # errors of the variance of noise, by which a load varies for sure; by fourth differences, which are
@@ -73,8 +73,10 @@ def _samples(values: Any) -> Floats:
             f"{len(lost)} of {len(samples)} samples are not finite, the first is number "
             f"{lost[0] + 1}; leave them out of every array: samples need not be equally spaced"
         )
-    if np.abs(samples).max(initial=0.0) > LARGEST:
-        raise ValueError(f"must be in SI and below {LARGEST:g}, is {np.abs(samples).max():g}")
+    if np.abs(samples).max(initial=0.0) > LARGEST_SAMPLE:
+        raise ValueError(
+            f"must be in SI and below {LARGEST_SAMPLE:g}, is {np.abs(samples).max():g}"
+        )
     samples[np.abs(samples) < SMALLEST] = 0.0
     samples.setflags(write=False)
     return samples

@@ -17,7 +17,7 @@ from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
-FINE = 8  # bins in each time that is averaged over
+FINE_BINS = 8  # bins in each time that is averaged over
 SEEN = 4  # samples for each stick: with fewer, what lies between two sticks is not seen
 OF_A_SLIP = 2  # nor with fewer in each slip
 HUNDREDTHS = 100  # of the first loading
@@ -89,7 +89,7 @@ def averaged_slip(run: Trajectory, parts: int) -> Slip:
     places is taken, which the positions give exactly.
     """
     size = len(run.samples["time"])
-    starts = np.unique(np.linspace(0, size, FINE * parts, endpoint=False).astype(np.intp))
+    starts = np.unique(np.linspace(0, size, FINE_BINS * parts, endpoint=False).astype(np.intp))
     counts = np.diff(starts, append=size)
     half = len(starts) // parts
     window = np.hanning(2 * half + 1) if half > 1 else np.ones(1)

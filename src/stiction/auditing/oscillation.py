@@ -21,7 +21,7 @@ from stiction.system.tensors import damping_tensor
 SWINGS = 10  # of which medians are taken, at either end
 FEWEST_SWINGS = 3  # fewer have no rhythm
 WINDOW = 100.0  # transverse periods that hold so many, as the frequency falls to a tenth
-FINE = 50.0  # samples per transverse period in a window, which is simulated again
+FINE_SAMPLES = 50.0  # samples per transverse period in a window, which is simulated again
 LOADINGS = 4  # that are looked at after the first
 SILENT = 1e-3  # of V sin(phi)/omega_y: smaller swings may be noise of the solver
 DEAD = 0.1  # of the first swings: if ten are smaller, the oscillation has died out
@@ -136,7 +136,7 @@ def _again(seen: SimulatedTest, begin: float, end: float) -> tuple[Floats, Float
     """Return time (s), u_y (m) and the sticks of a part of a test, simulated from a sample on."""
     run, time = seen.run, seen.run.samples["time"]
     at = min(int(np.searchsorted(time, begin)), len(time) - 2)
-    start, rate = run.state(float(time[at])), FINE * run.slider.natural_frequency_y
+    start, rate = run.state(float(time[at])), FINE_SAMPLES * run.slider.natural_frequency_y
     lasts = max(end - float(time[at]), 2.0 / rate)
     again = simulate(run.slider, lasts, initial=start, sample_rate=rate)
     return again.samples["time"], again.samples["u_y"], again.stick_intervals

@@ -54,7 +54,7 @@ if TYPE_CHECKING:  # a fit takes 0.3 s to import
     from stiction.inference.priors import Prior
 
 # parts of the work: two tests, springs replaced, the advices, and pairs of them
-PARTS = 4 + len(LEVERS)
+PARTS_OF_WORK = 4 + len(LEVERS)
 FITTING = 0.8  # of the time of an audit with a measured record
 MORE = 12  # such parts of a tolerance budget
 
@@ -255,7 +255,7 @@ def audit(
 def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) -> Audit:
     """Return the audit of a rig, whose record was compared with it before."""
     system = steadily_driven(rig.slider)
-    report = partial(part, progress, count=PARTS + (MORE if rig.priors else 0))
+    report = partial(part, progress, count=PARTS_OF_WORK + (MORE if rig.priors else 0))
     sliding, prediction = steady_sliding(system), predict(system)
     growth = sliding.growth_rate
     rate = max(prediction.sample_rate, coarse_rate(prediction))
@@ -279,7 +279,7 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     if rig.priors:
         from stiction.auditing.tolerance import budget
 
-        tolerance = budget(rig, report(PARTS, of=MORE))
+        tolerance = budget(rig, report(PARTS_OF_WORK, of=MORE))
     progress(1.0)
     both = observation, sliding_on
     return Audit(

@@ -37,7 +37,7 @@ MOST_SAMPLES = 200_000
 MOST_WORK = 7_000_000  # steps and samples of all simulations of an audit: 2 s without states
 LEAST_WORK = 20_000  # steps: a trial with fewer would be cut
 SHARE = 0.35  # of that for each of the tests from rest and from sliding
-FINE = 1000.0  # samples from the one before the first slip to the one after it
+FINE_SAMPLES = 1000.0  # samples from the one before the first slip to the one after it
 MANY = 50_000  # transverse periods above which fewer cycles are simulated
 
 SMALL = "an oscillation too small for the load cell to tell"
@@ -309,7 +309,7 @@ def creep_before_slip(seen: SimulatedTest) -> float:
     begin, end = max(at - 1, 0), at + 1
     lasts = float(time[end] - time[begin])
     start = run.state(float(time[begin]))
-    again = simulate(run.slider, lasts, initial=start, sample_rate=FINE / lasts).samples
+    again = simulate(run.slider, lasts, initial=start, sample_rate=FINE_SAMPLES / lasts).samples
     drive = again["drive_X"]
     loaded = np.sign(drive) * run.slider.along_drive(again["u_x"], again["u_y"])
     largest = int(np.argmax(loaded))

@@ -33,7 +33,8 @@ ENOUGH = 39  # values, whose smallest and largest hold (n - 1)/(n + 1) = 95 % of
 MOST_ROUNDS = 100  # of them, until so many are taken by the description
 MOST_STEPS = 400_000  # of each test
 SCAN = 14  # misalignments at which the error is looked at, in a geometric series
-FINE = 24  # misalignments, evenly in the logarithm, about the first of these that is too large
+# Misalignments, evenly in the logarithm, about the first of these that is too large
+FINE_ANGLES = 24
 FARTHEST = 30.0  # degrees up to which the error is looked at; farther, the soft spring is another
 NEAREST = 0.02  # degrees: the first of the scan, unless the error is too large there
 NEARER = np.geomspace(0.002, NEAREST, 8, endpoint=False)  # degrees that are then looked at
@@ -251,7 +252,7 @@ def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
     if over[0] == 0:
         return Alignment(nan, float(scan[0]), least)
     below, above = over[0] - 1, min(over[0] + 1, known - 1)
-    fine = np.geomspace(scan[below], scan[above], FINE)[1:-1]
+    fine = np.geomspace(scan[below], scan[above], FINE_ANGLES)[1:-1]
     angles, off = np.append(scan, fine), np.append(found, errors(fine))
     order = [at for at in np.argsort(angles) if np.isfinite(off[at])]
     angles, off = angles[order], off[order]

@@ -16,7 +16,7 @@ from stiction.errors import DescriptionError, ResultError, StictionError, echo
 
 EXAMPLE = re.compile(r"Example:\s+(.+?)\.?\s*$", re.S)  # at the end of the help of an option
 BLANKS = 'put a value that holds blanks in quotation marks, as in "2 mm/s", or take it out'
-SHOWN = re.compile(r"^ +(stiction .+)$", re.M)  # in the help of a command
+SHOWN_COMMAND = re.compile(r"^ +(stiction .+)$", re.M)  # in the help of a command
 
 
 def message_of(error: CycloptsError) -> str:
@@ -76,7 +76,7 @@ def _missing(error: MissingArgumentError) -> str:
 def _example(error: MissingArgumentError, name: str) -> str:
     """Return the example in the help of an option; of another argument, that of its command."""
     if not name.startswith("-"):
-        shown = SHOWN.search(getdoc(error.target) or "")
+        shown = SHOWN_COMMAND.search(getdoc(error.target) or "")
         return shown[1] if shown else ""
     assert error.app is not None
     known = error.app.assemble_argument_collection(parse_docstring=True)

@@ -17,7 +17,7 @@ from stiction.explorer.decimation import columns_of, extremes, share_stuck
 from stiction.friction import ellipse
 from stiction.friction.law import limit_coefficient
 from stiction.linear_stability.linear import growth_rate
-from stiction.result.peak import LARGER, LARGEST, largest_spring_force
+from stiction.result.peak import LARGER_FORCE, LARGEST_FORCE, largest_spring_force
 from stiction.result.rest import rest_in_words
 from stiction.result.table import (
     FASTER,
@@ -40,7 +40,7 @@ FEWEST_SAMPLES, MOST_SAMPLES = 4_000, 24_000  # samples of the whole run then
 CLOSE = 4  # columns between two rests that look like one
 IN_SLIP = 48  # samples in a slip between two rests
 QUICK, EXACT = np.float32, np.float64  # numbers while a slider moves, and then
-FINE = 4_001  # samples under the microscope
+FINE_SAMPLES = 4_001  # samples under the microscope
 DIGITS = 6  # of a number on the page
 PEAK_DIGITS = 4  # of a force between two samples, as on the command line
 Window = tuple[float, float]
@@ -190,7 +190,7 @@ def fine(description: Description, time: float, width: float, check: Check) -> I
     start, end = span(description)
     time, width = min(max(time, start), end), min(width, end - start)
     low = min(max(time - 0.5 * width, start), end - width)
-    grid = np.linspace(low, low + width, FINE)
+    grid = np.linspace(low, low + width, FINE_SAMPLES)
     _, table = simulate(description, np.unique(np.append(grid, time)), check)
     at = int(np.searchsorted(table["time"], time).clip(0, len(table["time"]) - 1))
     names = ("time", *TRACK, "sticking", "v_x", "v_y", "psi", "spring_x", "spring_y")
@@ -283,7 +283,7 @@ def facts(
     A = theory.damping_number_of(slider, nominal_velocity(slider.motion))
     duration = float(solution.times[-1] - solution.times[0]) or 1.0
     listed: list[tuple[str, float, str]] = [
-        (LARGEST if peak.shown else LARGER, peak.force, "N"),
+        (LARGEST_FORCE if peak.shown else LARGER_FORCE, peak.force, "N"),
         ("  at", peak.time, "s"),
         (FASTEST if shown else FASTER, fastest, "m/s"),
         ("u_x at the end", float(table["u_x"][-1]), "m"),

@@ -28,7 +28,7 @@ from stiction.explorer.source import Opened
 
 HOST = "127.0.0.1"
 SOCKET = "socket"
-LARGEST = 2**24  # bytes of a request: records of a drive are in it
+LARGEST_REQUEST = 2**24  # bytes of a request: records of a drive are in it
 PATIENCE = 15.0  # s between the last page that closes and the end: one may come back to it
 PAGES = files("stiction.explorer").joinpath("pages")
 TYPES = {
@@ -79,7 +79,7 @@ class Explorer:
             port,
             process_request=self._admit,
             compression=None,  # it takes longer than it saves on one machine
-            max_size=LARGEST,
+            max_size=LARGEST_REQUEST,
         )
 
     async def wait(self) -> None:

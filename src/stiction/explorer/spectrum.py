@@ -14,10 +14,11 @@ from stiction.explorer.motion import Check, Reply, simulate, span
 from stiction.system.description import Description
 from stiction.text.units import in_words
 
-SHOWN, SAMPLED = 2.0, 8.0  # of the highest frequency: what is shown, and the rate of samples
-FEWEST, MOST = 2_000, 150_000  # samples of a run that is sampled throughout
+# Of the highest frequency: what is shown, and the rate of samples
+SHOWN_BAND, SAMPLED_RATE = 2.0, 8.0
+FEWEST_SAMPLES, MOST_SAMPLES = 2_000, 150_000  # samples of a run that is sampled throughout
 WIDTHS, STEPS, SHORTEST = 50, 6, 64  # windows beside each other, steps of one, samples of one
-ROUNDING = 8.0 * np.finfo(np.float64).eps  # of an elongation: smaller steps are none
+STEP_ROUNDING = 8.0 * np.finfo(np.float64).eps  # of an elongation: smaller steps are none
 APART, LENGTH = 300, 1_024  # windows of a longer run, samples of one
 
 
@@ -38,13 +39,13 @@ def spectrogram(description: Description, check: Check) -> Reply:
     low, high = span(description)
     slider = description.slider
     highest = max(*slider.natural_frequencies, *slider.modulation_frequencies)
-    count = max(int(SAMPLED * highest * (high - low)), FEWEST)
-    if count <= MOST:
+    count = max(int(SAMPLED_RATE * highest * (high - low)), FEWEST_SAMPLES)
+    if count <= MOST_SAMPLES:
         rate, windows = count / (high - low), 1
         length = max(count // WIDTHS, SHORTEST)
         times, hop = np.linspace(low, high, count + 1), length // STEPS
     else:
-        rate, length, hop = SAMPLED * highest, LENGTH, LENGTH
+        rate, length, hop = SAMPLED_RATE * highest, LENGTH, LENGTH
         windows = min(APART, int((high - low) * rate) // (length + 1))  # beside each other
         starts = np.linspace(low, high - length / rate, windows)
         times = (starts[:, np.newaxis] + np.arange(length + 1) / rate).ravel()
@@ -55,10 +56,10 @@ def spectrogram(description: Description, check: Check) -> Reply:
         raise ResultError(f"the run ended before a spectrum could be taken, which lasts {lasts}")
     found = transform(rates, rate, width=length / rate, step=hop / rate, start=low)
     frequency = found["frequency"].values
-    top = max(int(np.searchsorted(frequency, SHOWN * highest)), SHORTEST // 8)
+    top = max(int(np.searchsorted(frequency, SHOWN_BAND * highest)), SHORTEST // 8)
     loss = np.sinc(frequency[:top] / rate)  # of a mean over a step
     amplitude = found.values[:top] / loss[:, np.newaxis]
-    amplitude[amplitude < ROUNDING * np.max(abs(elongation)) * rate] = 0.0
+    amplitude[amplitude < STEP_ROUNDING * np.max(abs(elongation)) * rate] = 0.0
     middles = found["time"].values
     if windows > 1:
         middles = starts[: amplitude.shape[1]] + 0.5 * length / rate

@@ -16,7 +16,7 @@ from stiction.study.variables.zigzag import zigzag
 # of the usual fall: a larger one is a slip. The force rises by 0.16 of a fall after it behind a
 # filter of eighth order, and irregular slips of a third of the usual one would be missed by 0.3
 SLIP = 0.2
-MOST = 0.5  # of the span of the force once it is loaded: noise is taken for no more
+MOST_NOISE = 0.5  # of the span of the force once it is loaded: noise is taken for no more
 TAILS = (2.0, 98.0)  # percentiles that bound the span, so that a spike does not
 OF_NOISE = 8.0  # standard deviations of noise: white noise in a cycle does not reach so far
 LEAST_CYCLES = 6  # in a record that is fitted
@@ -85,7 +85,7 @@ def least_slip(force: Floats, noise: float) -> float:
     (0.32, 0.5)
     """
     low, high = np.percentile(force, TAILS)
-    height = min(OF_NOISE * noise, MOST * float(high - low))
+    height = min(OF_NOISE * noise, MOST_NOISE * float(high - low))
     while (more := SLIP * usual_fall(force[zigzag(force, height)])) > height:
         height = more
     return height

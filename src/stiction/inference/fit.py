@@ -41,7 +41,8 @@ from stiction.system.slider import Slider
 
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
-FIRST = 96  # simulations that tell whether all of them will be too few, except once in a thousand
+# Simulations that tell whether all of them will be too few, except once in a thousand
+FIRST_SIMULATIONS = 96
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
 
@@ -120,11 +121,15 @@ def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int
     """
     from scipy.special import betaincinv
 
-    if simulations <= FIRST:
+    if simulations <= FIRST_SIMULATIONS:
         return
-    first = build(plan_of, FIRST, folder, seed=seed)
+    first = build(plan_of, FIRST_SIMULATIONS, folder, seed=seed)
     usable = len(first.scores)
-    share = float(betaincinv(usable + 1, FIRST - usable, 0.999)) if usable < FIRST else 1.0
+    share = (
+        float(betaincinv(usable + 1, FIRST_SIMULATIONS - usable, 0.999))
+        if usable < FIRST_SIMULATIONS
+        else 1.0
+    )
     if share * simulations < FEWEST_SIMULATIONS:
         refuse_few_of(first)
 

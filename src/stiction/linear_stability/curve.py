@@ -33,7 +33,7 @@ LONGEST_STEP, SHORTEST_STEP = 0.02, 1e-4  # steps along the curve
 STRAIGHT = 0.3  # rad; where the curve turns more in a step, the step is shortened
 AHEAD = (0.4, 1.0, 1.6, 2.2)  # rad to both sides of straight ahead, searched in this order
 CLOSE = 1e-9  # rad: a point is sought to that, so it is accurate to 2e-11 of the ranges
-MOST = 4000  # steps along one curve
+MOST_STEPS = 4000  # steps along one curve
 
 
 def boundary(
@@ -183,7 +183,7 @@ def farthest(ways: Sequence[float]) -> float:
 def follow(growth: Growth, seed: Point, way: float) -> Iterator[Point]:
     """Yield the points of a curve from `seed` to the edge of the plane, or back to `seed`."""
     here, step, gone, start = seed, LONGEST_STEP, 0.0, way
-    for _ in range(MOST):
+    for _ in range(MOST_STEPS):
         found = ahead(growth, here, way, step)
         shorter = step > SHORTEST_STEP
         if shorter and (found is None or abs(turn(way, found)) > STRAIGHT):

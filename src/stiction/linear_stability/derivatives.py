@@ -12,10 +12,10 @@ from stiction.arrays import Floats
 from stiction.system.slider import Slider
 from stiction.system.tensors import surface_tensor
 
-ROUNDING = float(np.finfo(np.float64).eps)
-SMALL = 4.0 * ROUNDING  # relative rounding error after a few operations
+EPSILON = float(np.finfo(np.float64).eps)
+SMALL = 4.0 * EPSILON  # relative rounding error after a few operations
 NEIGHBOUR = 1e-9  # relative distance of neighbours; functions are linear but for rounding
-FIRST, COLUMNS = 2, 6  # of Richardson's scheme: errors of order six to twelve in the step
+FIRST_COLUMN, COLUMNS = 2, 6  # of Richardson's scheme: errors of order six to twelve in the step
 RATIO = 2.0  # of successive steps
 SMOOTH = 2.0  # narrowest steps of derivatives: the step of a law that is smooth
 CLOSE = 1e-7  # relative difference of orders four and six; the error of six is far smaller
@@ -147,7 +147,7 @@ def smooth_derivative(
     one, two, three = near[::2] - near[1::2]
     fine = (45.0 * one - 9.0 * two + three) / (60.0 * h)
     coarse = (8.0 * one - two) / (12.0 * h)
-    rounding = ROUNDING * np.abs(near).max(axis=0) / h
+    rounding = EPSILON * np.abs(near).max(axis=0) / h
     change = np.abs(fine - coarse)
     clear = change <= CLOSE * np.abs(fine) + 64.0 * rounding
     return (fine, SHARE * change) if clear.all() else None
@@ -187,7 +187,7 @@ def derivative(
     for column in range(1, COLUMNS):
         coarse, fine, doubt = table[:-1], table[1:], doubt[1:]
         table = fine + (fine - coarse) / (RATIO ** (2 * column) - 1.0)
-        if column < FIRST:
+        if column < FIRST_COLUMN:
             continue
         found.append(table[1:])
         errors.append(np.abs(np.diff(table, axis=0)) * SHARE + doubt[1:])

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.arrays import Complex, Floats, Indices
 from stiction.linear_stability.characteristic import roots_of
-from stiction.linear_stability.derivatives import ROUNDING
+from stiction.linear_stability.derivatives import EPSILON
 
 EXTENDED = float(np.finfo(np.longdouble).eps)
 REFINEMENTS = 3  # Newton steps; each gains about ten digits of a simple eigenvalue
@@ -62,7 +62,7 @@ def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
     """
     graded, scale, order = grade(matrix)
     modes = modes_of(graded)
-    doubt = scale_errors(error, scale, order) + ROUNDING * np.abs(graded)
+    doubt = scale_errors(error, scale, order) + EPSILON * np.abs(graded)
     bounds = np.array([bound(graded, doubt, modes, k) for k in range(len(modes.values))])
     shapes = np.zeros_like(modes.vectors)
     shapes[order] = modes.vectors * scale[:, None]
@@ -118,7 +118,7 @@ def exact_modes(matrix: Floats) -> tuple[Complex, Complex, Complex]:
 
 def null_vector(matrix: Floats, value: complex) -> Complex:
     """Return the vector of an eigenvalue that is known, by inverse iteration."""
-    shifted = matrix - value * (1.0 + 4.0 * ROUNDING) * np.eye(len(matrix))
+    shifted = matrix - value * (1.0 + 4.0 * EPSILON) * np.eye(len(matrix))
     vector = np.ones(len(matrix), dtype=np.complex128)
     for _ in range(2):
         vector = solve(shifted, vector)
@@ -205,7 +205,7 @@ def leading_growth(matrix: Floats, error: Floats) -> tuple[float, float]:
     gaps = (np.abs(values[:, None] - values) + np.diag(np.full(n, np.inf))).min(axis=1)
     modes = Modes(values, right, left, gaps, np.zeros(n))
     # of a matrix that differs by rounding of the largest entry, everywhere
-    doubt = scale_errors(error, scale, order) + n * ROUNDING * float(np.abs(graded).max())
+    doubt = scale_errors(error, scale, order) + n * EPSILON * float(np.abs(graded).max())
     uncertain = np.array([bound(graded, doubt, modes, k)[1] for k in range(n)])
     return largest_growth(values.real, uncertain)
 

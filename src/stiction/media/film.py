@@ -39,7 +39,7 @@ SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
 FRAME_RATE = 25  # frames a second
 LENGTH, LONGEST_FILM = 10.0, 300.0  # s of film
 PERIODS = 4  # of the fast oscillation under the microscope
-FINE = 2_000  # samples of these
+FINE_SAMPLES = 2_000  # samples of these
 IN_WINDOW = 20_000  # samples of the time series, at least
 WIDTH = 0.8  # pt, of lines over time
 TICKS = 5  # of a time axis, at most: more run into one another
@@ -274,7 +274,7 @@ def fine_times(description: Description, middle: float) -> Floats:
     start, end = window_of(description, None)
     width = min(PERIODS / description.slider.natural_frequencies[1], end - start)
     low = min(max(middle - 0.5 * width, start), end - width)
-    return np.linspace(low, low + width, FINE)
+    return np.linspace(low, low + width, FINE_SAMPLES)
 
 
 def slowness(slow: float) -> str:

@@ -40,7 +40,7 @@ HOME = np.array([0.3, -0.45])  # of the mass, where the springs are relaxed
 WALLS = np.array([3.1, 2.2])  # along x and y from there, where the picture has this room
 MARGINS = np.array([[0.2, 0.2], [0.2, 0.4]])  # right and above, left and below: words
 DAMPER = 1.45  # length of one with an axis of its own
-LARGEST = np.array([1.2, 0.5])  # displacement of the mass in the picture
+LARGEST_DISPLACEMENT = np.array([1.2, 0.5])  # displacement of the mass in the picture
 RADIUS = 1.35  # of the largest friction force
 SIDE = 0.42  # half of the mass
 GRID = 0.9  # between the marks on the plate
@@ -94,7 +94,7 @@ class Scene:
     def _draw_walls(self, ax: Axes) -> None:
         for axis, across in ((0, 1), (1, 0)):
             along, side = np.eye(2)[axis], np.eye(2)[across]
-            reach = 0.45 + LARGEST[across]
+            reach = 0.45 + LARGEST_DISPLACEMENT[across]
             far = self.walls[axis] * along
             ends = [HOME + self.turn @ (far + r * side) for r in (-reach, 0.45)]
             ax.plot(*np.transpose(ends), color=GREY, linewidth=4, solid_capstyle="butt")
@@ -214,7 +214,7 @@ def away(angle: float) -> Floats:
 def magnification(samples: ColumnTable) -> Floats:
     """Return the factors of elongations (per metre) along x and y; nearly equal ones are one."""
     largest = np.array([np.nanmax(np.abs(samples[name])) for name in ("u_x", "u_y")])
-    found = LARGEST / np.where(largest > 0.0, largest, largest.max() or 1.0)
+    found = LARGEST_DISPLACEMENT / np.where(largest > 0.0, largest, largest.max() or 1.0)
     found = np.array([10.0 ** floor(log10(x)) * floor(x / 10.0 ** floor(log10(x))) for x in found])
     return np.full(2, found.min()) if found.max() < 12.0 * found.min() else found
 

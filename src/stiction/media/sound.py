@@ -29,9 +29,9 @@ WAV = (".wav",)
 RATE = 48_000  # samples of sound a second
 LOUD = 0.8  # of full scale
 SHORTEST_SOUND, LONGEST_SOUND = 0.01, 600.0  # s of sound
-EVEN = 1e-5  # of a mean rate: ten times what epsilon, which starts a run, alters
+EVEN_RATE = 1e-5  # of a mean rate: ten times what epsilon, which starts a run, alters
 HEARD = (50.0, 8_000.0)  # Hz: a pitch that small loudspeakers give
-LARGEST = 2**15 - 1  # of 16 bits
+LARGEST_SAMPLE = 2**15 - 1  # of 16 bits
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -75,7 +75,7 @@ class Sound:
             file.setnchannels(1)
             file.setsampwidth(2)
             file.setframerate(RATE)
-            file.writeframes(np.round(self.samples * LARGEST).astype("<i2").tobytes())
+            file.writeframes(np.round(self.samples * LARGEST_SAMPLE).astype("<i2").tobytes())
         return packed.getvalue()
 
     def _repr_html_(self) -> str:
@@ -230,7 +230,7 @@ def rate_at(
     values = values[: len(times)]
     mean = float(np.mean(values[np.isfinite(values)]))
     found: Floats = np.nan_to_num(values - mean)
-    if np.max(np.abs(found), initial=0.0) < EVEN * abs(mean):
+    if np.max(np.abs(found), initial=0.0) < EVEN_RATE * abs(mean):
         return np.zeros_like(found)
     return found
 

@@ -21,7 +21,7 @@ from stiction.own_code.source import Text, member, module_name, module_of, read,
 from stiction.storage.foreign import is_within
 from stiction.text.suggestion import TRUST
 
-LARGEST = 2**20  # bytes of a file with code
+LARGEST_FILE = 2**20  # bytes of a file with code
 
 
 class Role(NamedTuple):
@@ -106,8 +106,8 @@ def errors_as_faults(what: str, role: Role) -> Iterator[None]:
 
 def _read(path: Path, role: Role) -> str:
     try:
-        if path.stat().st_size > LARGEST:
-            raise role.fault(f"{path} holds no {role.what}: it has more than {LARGEST} bytes")
+        if path.stat().st_size > LARGEST_FILE:
+            raise role.fault(f"{path} holds no {role.what}: it has more than {LARGEST_FILE} bytes")
         return read(path)
     except (OSError, SyntaxError, UnicodeDecodeError) as error:
         raise role.fault(f"{path} cannot be read: {error}") from None

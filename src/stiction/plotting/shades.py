@@ -15,7 +15,7 @@ DECADES = 30.0  # a measure that spans a larger factor is drawn in decades
 DEEPEST = 1e6  # range below the largest value; smaller ones count as zero
 # Of the others: so many of the smallest do not stretch a scale of so large a factor, as amplitudes
 # of swings that have nearly died out would
-FEW, WIDE = 0.02, 1e3
+FEW_VALUES, WIDE = 0.02, 1e3
 NO_RESULT, NO_VALUE = "no result", "no value"
 
 # light for calm, dark and warm for violent motion; in print without colour no two are alike
@@ -76,7 +76,7 @@ def measure_shades(values: Floats) -> Shades:
     if 0.0 < low < high / DECADES:
         if low < high / WIDE:
             counted = found[found > high / DEEPEST]
-            low = min(float(np.quantile(counted, FEW, method="lower")), high / DECADES)
+            low = min(float(np.quantile(counted, FEW_VALUES, method="lower")), high / DECADES)
         return Shades(colormaps["cividis"], LogNorm(low, high))
     margin = 0.0 if high > low else 0.1 * abs(high) or 0.1  # a colour bar must have a length
     return Shades(colormaps["cividis"], Normalize(low - margin, high + margin))

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
 
 PERIODS = 100  # until the forced vibration is periodic
-SAMPLES, FINE = 100, 20_000  # a period; to measure
+SAMPLES, FINE_SAMPLES = 100, 20_000  # a period; to measure
 
 
 def forced_oscillator(r: float, S: float) -> Description:
@@ -43,7 +43,7 @@ def amplitudes(run: Trajectory) -> tuple[float, float, int]:
         run.slider,
         2 * pi / r,
         initial=run.state(end),
-        sample_rate=FINE * r / (2 * pi),
+        sample_rate=FINE_SAMPLES * r / (2 * pi),
         rtol=run.description.run.rtol,
     )
     x = np.cos(r * after.data["time"].values) / (1.0 - r * r) - after.data["u_x"].values
@@ -83,12 +83,12 @@ def den_hartog() -> Description:
     return forced_oscillator(0.7, 0.2)
 
 
-FIRST, RADIUS = atan(6 / 13), sqrt(13**2 + 6**2) - 1  # of the first half circle about -1
+FIRST_PHASE, RADIUS = atan(6 / 13), sqrt(13**2 + 6**2) - 1  # of the first half circle about -1
 
 
 def _free(run: Trajectory) -> list[float]:
     u, times = run.samples["u_x"], run.samples["time"]
-    turns = [crest((-1) ** n * u[_around(times, FIRST + n * pi)]) for n in range(7)]
+    turns = [crest((-1) ** n * u[_around(times, FIRST_PHASE + n * pi)]) for n in range(7)]
     start = float(run.stick_intervals[0, 0])
     return [*turns, start, float(run.final["u_x"]), len(run.stick_intervals)]
 

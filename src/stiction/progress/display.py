@@ -12,7 +12,7 @@ from typing import Any
 from stiction.progress.report import Progress
 
 PATIENCE = 1.0  # seconds of silence before a bar appears
-FIRST, EVERY = 5.0, 60.0  # seconds before the first line, and at most between lines
+FIRST_LINE, EVERY = 5.0, 60.0  # seconds before the first line, and at most between lines
 WATCHED = 0.1  # of the time so far: the pace of a shorter while says little of the time left
 told: list[str] = []  # work whose progress is told; what is a part of it tells none of its own
 
@@ -102,7 +102,7 @@ def now_and_then(tell: Callable[[], None]) -> Iterator[None]:
     finished = Event()
 
     def beat() -> None:
-        pause = FIRST
+        pause = FIRST_LINE
         while not finished.wait(pause):
             tell()
             pause = min(2.0 * pause, EVERY)

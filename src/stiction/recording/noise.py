@@ -14,7 +14,7 @@ FEWEST_SAMPLES = 64  # so many tell white noise to a fifth
 CODES = 12  # at least so many different values, by which a lattice is recognised
 REPEATED = 4  # samples for each of them, on average
 SOME = 3  # in the first third of the values there may be more different ones than in a lattice
-LARGEST = 100_000  # steps of a difference: larger ones count as that
+LARGEST_STEP = 100_000  # steps of a difference: larger ones count as that
 OFF_LATTICE = 0.15  # of a step: how far a value may lie off
 ON_LATTICE = 0.99  # of the values
 ROUNDING_SPREAD = 12.0**-0.5  # of a step: standard deviation of the rounding to it
@@ -144,7 +144,7 @@ def _median(values: Floats, step: float) -> float:
     if step == 0.0:
         return median(values)
     number = np.rint(values / step).astype(np.int64)
-    counts = np.bincount(np.minimum(number, LARGEST))
+    counts = np.bincount(np.minimum(number, LARGEST_STEP))
     below = np.cumsum(counts) - counts
     at = int(np.searchsorted(np.cumsum(counts), 0.5 * len(values)))
     low, wide = max(at - 0.5, 0.0), 1.0 if at else 0.5

@@ -26,7 +26,7 @@ DURATION, RATE = 5.0, 10e3  # Fig. 3's time axis; Fig. 4 needs some samples a tr
 RTOL = 1e-11  # every digit of the reference values
 STEPS = False  # for `multiscale`: a map saves nothing at this tolerance, and takes time to compile
 WINDOW = (0.500, 0.504)  # four transverse periods in the middle of the first stick phase
-FINE = 1e6
+FINE_RATE = 1e6
 
 
 class Reproduction(NamedTuple):
@@ -143,7 +143,7 @@ def finely(run: Trajectory) -> Trajectory:
     return simulate(
         run.slider,
         end - start,
-        sample_rate=FINE,
+        sample_rate=FINE_RATE,
         rtol=RTOL,
         multiscale=STEPS,
         initial=run.state(start),

@@ -15,8 +15,8 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.result.table import ColumnTable, largest
 
-LARGEST = "largest k_x u_x"
-LARGER = f"{LARGEST}, at least"  # where samples are too far apart to show it
+LARGEST_FORCE = "largest k_x u_x"
+LARGER_FORCE = f"{LARGEST_FORCE}, at least"  # where samples are too far apart to show it
 UNSEEN = 1e-3  # of the largest force: what may lie above it, unseen, so that it is a lower bound
 
 

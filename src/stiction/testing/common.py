@@ -15,7 +15,7 @@ from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 
 SPEEDS: tuple[float, ...] = (0.0, *(10.0 ** (i / 4) for i in range(-36, 5)))
-ROUNDING = 1e-12  # exp and pow of two libraries agree to some units of the last digit
+LIBRARY_ROUNDING = 1e-12  # exp and pow of two libraries agree to some units of the last digit
 
 
 def first(found: Iterable[str]) -> Iterator[str]:

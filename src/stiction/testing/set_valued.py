@@ -9,7 +9,7 @@ from warnings import catch_warnings, simplefilter
 
 from stiction.friction.law import static_coefficient
 from stiction.friction.user.derivative import derivative
-from stiction.testing.common import ROUNDING, attempt, fault_of, first, run_compiled
+from stiction.testing.common import LIBRARY_ROUNDING, attempt, fault_of, first, run_compiled
 
 
 def finite(law: Any, speeds: Sequence[float]) -> Iterator[str]:
@@ -74,7 +74,7 @@ def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
         yield from first(
             f"{name}({v:g}) is {one!r} in Python and {other!r} compiled"
             for v, one, other in zip(speeds, python, machine, strict=bool(machine))
-            if abs(one - other) > ROUNDING * scale
+            if abs(one - other) > LIBRARY_ROUNDING * scale
         )
 
 

@@ -8,7 +8,14 @@ from typing import Any, NamedTuple
 
 from stiction.friction import states
 from stiction.friction.law import Vector
-from stiction.testing.common import ROUNDING, attempt, error_line, fault_of, first, run_compiled
+from stiction.testing.common import (
+    LIBRARY_ROUNDING,
+    attempt,
+    error_line,
+    fault_of,
+    first,
+    run_compiled,
+)
 
 LOADS = (1.0, 100.0)  # N
 DIRECTIONS = (0.0, 2.5)  # rad
@@ -179,7 +186,8 @@ def check_compiled(law: Any, speeds: Sequence[float]) -> Iterator[str]:
             f"{name} {point} is {one} in Python and {other} compiled"
             for point, one, other in zip(at, python, machine, strict=bool(machine))
             if not all(
-                abs(a - b) <= ROUNDING * hypot(*one) for a, b in zip(one, other, strict=True)
+                abs(a - b) <= LIBRARY_ROUNDING * hypot(*one)
+                for a, b in zip(one, other, strict=True)
             )
         )
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from stiction.text.quantity_text import DIGITS, MEASURABLE, SI, thousands
 from stiction.text.sections import Table
 
-SHOWN = 8  # rows in the terminal; tables that are exported hold all
+SHOWN_ROWS = 8  # rows in the terminal; tables that are exported hold all
 PICO = -4  # the power of a thousand
 
 
@@ -73,7 +73,7 @@ def rows_left_out(count: int, things: str, file: str) -> list[str]:
     >>> print(*rows_left_out(53, "cycles", "cycles.csv"))
     These are the first 8 of 53 cycles; export(...) writes all, stiction analyse to cycles.csv.
     """
-    if count <= SHOWN:
+    if count <= SHOWN_ROWS:
         return []
-    some = f"These are the first {SHOWN} of {count} {things}"
+    some = f"These are the first {SHOWN_ROWS} of {count} {things}"
     return [f"{some}; export(...) writes all, stiction analyse to {file}."]

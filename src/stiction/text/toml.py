@@ -19,7 +19,7 @@ from stiction.text.validation import unknown_name
 
 Reader = Callable[[dict[str, Any]], Any]
 LONGEST_PATH = 240  # characters of a path in a message
-LARGEST = 2**24  # bytes of a description: a table of a million values
+LARGEST_FILE = 2**24  # bytes of a description: a table of a million values
 DEEPEST = 16  # tables and lists inside one another; descriptions have five
 TOO_DEEP = f"is nested more deeply than {DEEPEST} levels; descriptions are not"
 BITS = 64  # of an integer, as TOML has it
@@ -163,11 +163,11 @@ def _text_of(path: Path) -> str:
     """Return the text of a file, if it is not larger than a description may be."""
     try:
         with path.open("rb") as file:
-            content = file.read(LARGEST + 1)
+            content = file.read(LARGEST_FILE + 1)
     except ValueError as error:  # a name with a zero in it
         raise OSError(str(error)) from None
-    if len(content) > LARGEST:
-        raise OSError(errno.EFBIG, f"has more than {LARGEST:,} bytes")
+    if len(content) > LARGEST_FILE:
+        raise OSError(errno.EFBIG, f"has more than {LARGEST_FILE:,} bytes")
     if 0 in content[:2]:  # UTF-16 without a mark at its beginning
         raise UnicodeDecodeError("utf-8", content, 0, 2, "a character has two bytes")
     return content.decode("utf-8-sig")

@@ -87,7 +87,8 @@ ROUNDING = 1e-12  # relative: what many sums of floating-point numbers are off b
 LEAST_ERROR = 1e-30  # SI units: a smaller one only keeps a divisor from zero
 FACTOR = 12  # digits of a factor that is exact, such as 0.45359237 of a pound
 LONGEST_QUANTITY = 200  # characters of a number and its unit
-LARGEST, SMALLEST = 1e60, 1e-60  # in SI; smaller ones are zero. Products of five stay finite
+# In SI; smaller ones are zero. Products of five stay finite
+LARGEST_NUMBER, SMALLEST_NUMBER = 1e60, 1e-60
 VELOCITY = Kind("a velocity", "m/s", "1 mm/s")
 FORCE = Kind("a force", "N", "10 N")
 TIME, LENGTH = Kind("a time", "s", "5 s"), Kind("a length", "m", "0.1 mm")
@@ -151,12 +152,12 @@ def to_si(value: object, kind: Kind) -> float:
     if not isfinite(number):
         value = value if isinstance(value, str) else number  # an integer may have a million digits
         raise fault(f"{echo(value)} is not finite; write for example {kind.example!r}")
-    if abs(number) > LARGEST:
+    if abs(number) > LARGEST_NUMBER:
         unit = f" {kind.unit}".rstrip()
         raise fault(
-            f"{echo(value)} is beyond {LARGEST:g}{unit}; write for example {kind.example!r}"
+            f"{echo(value)} is beyond {LARGEST_NUMBER:g}{unit}; write for example {kind.example!r}"
         )
-    return number if abs(number) >= SMALLEST else 0.0
+    return number if abs(number) >= SMALLEST_NUMBER else 0.0
 
 
 def unread(value: object) -> object:

@@ -40,7 +40,7 @@ from stiction.names import public_names, session_name
 from stiction.text.quantity_text import RIGID, angle_text
 from stiction.text.units import (
     QUANTITY,
-    SMALLEST,
+    SMALLEST_NUMBER,
     Kind,
     Radians,
     as_float,
@@ -59,7 +59,7 @@ else:
     ModelMetaclass = type(BaseModel)
 
 T = TypeVar("T")
-LEAST, MOST = 3, 6  # letters that begin a name; names that are listed
+FEWEST_LETTERS, MOST_NAMES = 3, 6  # letters that begin a name; names that are listed
 MISSPELT = 0.8  # likeness of two names, from which on one is the other with an error in it
 MISSING = "missing; it has no default"
 READS = "reads_parameters"  # marks constructors made by `validate`
@@ -370,7 +370,7 @@ def _message(detail: ErrorDetails, known: tuple[str, ...]) -> str:
             return unknown_name("parameter", str(detail["loc"][-1]), known)
         case "greater_than":
             if limit["gt"] == 0.0 and _is_positive(value):
-                rule = f"must be greater than 0 (in SI, below {SMALLEST:g} counts as 0)"
+                rule = f"must be greater than 0 (in SI, below {SMALLEST_NUMBER:g} counts as 0)"
                 return f"{rule}, is {echo(value)}"
             return f"must be greater than {limit['gt']:g}, is {echo(value)}"
         case "greater_than_equal":
@@ -412,12 +412,12 @@ def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
     longer = [
         each
         for each in known
-        if (len(name) >= LEAST and each.startswith(name))
+        if (len(name) >= FEWEST_LETTERS and each.startswith(name))
         or each.endswith(f".{name}")  # its path is lacking
         or name in re.split("[._]", each)  # or an index, or a word before it: mu, load
     ]
     longer = [each for each in longer if "." not in each or each.split(".")[-1] not in longer]
-    near = longer if 0 < len(longer) <= MOST else _nearest(name, known)
+    near = longer if 0 < len(longer) <= MOST_NAMES else _nearest(name, known)
     meant = " or ".join(filter(None, (", ".join(map(repr, near[:-1])), *map(repr, near[-1:]))))
     remedy = f"did you mean {meant}?" if near else f"known: {', '.join(known)}"
     return f"unknown {what} {echo(name)}; {remedy}"
@@ -428,7 +428,7 @@ def _nearest(name: str, known: list[str]) -> list[str]:
     misspelt = get_close_matches(name, known, 1, MISSPELT)
     *stem, _ = re.split("[-_]", name)
     of_stem = [each for each in known if re.split("[-_]", each)[:-1] == stem]
-    if not misspelt and len(stem) > 1 and 0 < len(of_stem) <= MOST:
+    if not misspelt and len(stem) > 1 and 0 < len(of_stem) <= MOST_NAMES:
         return of_stem
     return misspelt or get_close_matches(name, known, 1)
 

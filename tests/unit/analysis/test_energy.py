@@ -11,7 +11,7 @@ from benchmarks.explore.systems.set_valued import system
 
 import stiction as st
 from stiction.analysis.quadrature import GAUSS, KRONROD, NODES, integrals, panels
-from stiction.plotting.analysis.energy import PARTS, plot_energy
+from stiction.plotting.analysis.energy import ENERGY_TERMS, plot_energy
 from stiction.plotting.page.canvas import figure_of
 from stiction.solver.accuracy import tolerance
 
@@ -255,7 +255,7 @@ def test_the_figure_says_what_is_drawn(slider):
     _, labels = upper.get_legend_handles_labels()
     assert {"work of the drive", "friction, $y$", "spring, $x$"} <= set(labels)
     heights = [bar.get_height() for each in upper.containers for bar in each]
-    parts = [budget[name].values for name in PARTS]
+    parts = [budget[name].values for name in ENERGY_TERMS]
     assert sum(heights) == pytest.approx(1e6 * np.sum(parts), rel=3e-3)  # small ones are left out
 
 
@@ -263,7 +263,7 @@ def test_bars_end_below_the_frame():
     """A part of no height on top of a bar was a bound of the axis."""
     import xarray as xr
 
-    parts = {name: ("interval", np.zeros(2)) for name in PARTS}
+    parts = {name: ("interval", np.zeros(2)) for name in ENERGY_TERMS}
     parts |= {"friction_x": ("interval", [1.0, 0.3]), "spring_y": ("interval", [0.0, 0.1])}
     work = {name: ("interval", [1.0, 0.4]) for name in ("work", "residual", "bound")}
     times = {"start": ("interval", [0.0, 1.0]), "end": ("interval", [1.0, 1.5])}

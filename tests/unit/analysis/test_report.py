@@ -19,19 +19,19 @@ from stiction.analysis.motion.cycle_columns import mean_in_words
 from stiction.analysis.parts import creep
 from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
-from stiction.text.columns import SHOWN, rows_left_out
+from stiction.text.columns import SHOWN_ROWS, rows_left_out
 from stiction.text.sections import first_clause
 
 PAPER = st.presets.nakano_popov_2020()
 
 
-@pytest.mark.parametrize("count", [0, SHOWN, SHOWN + 1])
+@pytest.mark.parametrize("count", [0, SHOWN_ROWS, SHOWN_ROWS + 1])
 def test_rows_that_a_table_lacks_are_told(count):
     said = (
-        f"These are the first {SHOWN} of {count} rows; export(...) writes all, stiction analyse "
-        "to energy.csv."
+        f"These are the first {SHOWN_ROWS} of {count} rows; export(...) writes all, stiction "
+        "analyse to energy.csv."
     )
-    assert rows_left_out(count, "rows", "energy.csv") == [said] * (count > SHOWN)
+    assert rows_left_out(count, "rows", "energy.csv") == [said] * (count > SHOWN_ROWS)
 
 
 @pytest.fixture(scope="module")

@@ -217,7 +217,7 @@ def test_an_audit_takes_no_more_work_than_it_may_and_says_what_it_left_out(found
     assert any(each.startswith(sentence) for each in sections(seen)[-1].sentences)
     assert fractions == sorted(fractions)
     assert fractions[-1] == 1.0
-    parts = report.PARTS
+    parts = report.PARTS_OF_WORK
     inside = {each for each in fractions if abs(parts * each - round(parts * each)) > 1e-9}
     assert len(inside) >= 3  # it was told of each simulation, not of each part only
 

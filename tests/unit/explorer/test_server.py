@@ -147,7 +147,7 @@ def test_the_page_knows_how_large_a_request_may_be():
     """It sent one that was too large, which closed the socket."""
     text = (server.PAGES / "link.js").read_text("utf-8")
     (power,) = re.findall(r"const LARGEST = 2 \*\* (\d+);", text)
-    assert 2 ** int(power) == server.LARGEST
+    assert 2 ** int(power) == server.LARGEST_REQUEST
     assert server.PATIENCE >= 10.0  # s: one may have left the page by mistake
 
 

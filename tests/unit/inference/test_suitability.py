@@ -207,9 +207,9 @@ def test_too_few_simulations_are_refused_after_the_first(monkeypatch, usable, re
             fits.refuse_early(of, 400, None, 0)
     else:
         fits.refuse_early(of, 400, None, 0)
-    assert asked == [fits.FIRST]
-    fits.refuse_early(of, fits.FIRST, None, 0)
-    assert asked == [fits.FIRST]
+    assert asked == [fits.FIRST_SIMULATIONS]
+    fits.refuse_early(of, fits.FIRST_SIMULATIONS, None, 0)
+    assert asked == [fits.FIRST_SIMULATIONS]
 
 
 @pytest.mark.parametrize(("theirs", "ours"), [(7, 5), (5, 7), (8, 5), (20, 15)])

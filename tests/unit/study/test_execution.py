@@ -21,7 +21,7 @@ import xarray as xr
 from tests.waiting import PATIENCE, until
 
 import stiction as st
-from stiction.study.execution.sweep import ALIKE, FEWEST, Pace, Tally
+from stiction.study.execution.sweep import ALIKE_TIMES, FEWEST, Pace, Tally
 from stiction.study.store.store import PENDING
 
 pytestmark = pytest.mark.skipif(not hasattr(os, "fork"), reason="needs fork")
@@ -356,6 +356,6 @@ def test_the_time_left_is_that_of_runs_in_a_random_order(seed):
 def test_the_time_left_of_runs_that_become_ever_longer_or_shorter(decades):
     """As along an axis of speeds: it is told as far as the trend would not change it much."""
     told = told_and_right(tallies(10.0 ** (decades * np.linspace(0.0, 1.0, 100))))
-    assert all(1.0 / (1.5 * ALIKE) < ratio < 1.5 * ALIKE for ratio in told)
+    assert all(1.0 / (1.5 * ALIKE_TIMES) < ratio < 1.5 * ALIKE_TIMES for ratio in told)
     assert (len(told) > 80) is (-0.75 <= decades <= 0.5)
     assert bool(told) is (-1.0 <= decades < 1.5)

@@ -15,7 +15,8 @@ from stiction.recording.noise import white_noise
 from stiction.text.quantity_text import percent
 from stiction.trajectory import Trajectory
 
-PARTS = 16  # of a stick phase, over each of which the load is averaged: their changes are its own
+# Of a stick phase, over each of which the load is averaged: their changes are its own
+PARTS_OF_PHASE = 16
 # Largest change of the load in a stick phase, as a share of it: for the exponent of the divergence,
 # and a misalignment by the force alone; for one by creep; and that times (k_x/k_y)/tan^2(phi), as a
 # softer spring across turns the slip with friction. Found on random rigs under ramps and
@@ -167,7 +168,7 @@ def load_change(record: Record, begin: Floats, end: Floats) -> float:
     time, load = _load_readings(record)
     if len(time) < 2 or not record.load_variation() > 0.0:
         return 0.0
-    edges = np.linspace(begin, end, PARTS + 1)
+    edges = np.linspace(begin, end, PARTS_OF_PHASE + 1)
     areas = integral(time, load, np.clip(edges, time[0], time[-1]))
     means = np.diff(areas, axis=0) / np.diff(edges, axis=0)
     changes = np.abs(np.diff(means, axis=0)).sum(axis=0) / means.mean(axis=0)

@@ -40,7 +40,7 @@ EARLY = 0.5  # F_0 above the peak by this share
 SURELY = 20.0  # deg: a smaller upper limit is worth a word
 LOWEST = (1e-5, log(1e-5), -0.1, log(1e-6), log(1e-5))
 HIGHEST = (0.3, 0.0, 0.1, log(0.1), 0.0)
-MOST, FIXED = 50, 1e-3  # evaluations in a fit; the width that holds a parameter
+MOST_EVALUATIONS, FIXED = 50, 1e-3  # evaluations in a fit; the width that holds a parameter
 SCALES = (0.01, 1.0, 0.01, 1.0, 1.0)
 STARTS = ((0.03, log(0.02)), (0.08, log(0.1)))  # phi, and the logarithm of F_0/peak - 1
 
@@ -174,7 +174,7 @@ def _fit(curve: LoadingCurve, tails: Floats) -> _Fit:
             inside,
             bounds=(LOWEST, HIGHEST),
             x_scale=SCALES,
-            max_nfev=MOST,
+            max_nfev=MOST_EVALUATIONS,
             xtol=1e-6,
         )
 

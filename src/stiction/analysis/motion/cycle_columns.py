@@ -40,7 +40,7 @@ COLUMNS = {
     "hesitation_depth": ("N", "depth of the deepest hesitation"),
 }
 UNSEEN = 0.25  # of a period without a sample: the cycle is not known
-ALIKE = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
+SOLVER_SPREAD = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap
 SLIPPED = 0.1  # of the way from trough to peak, by small slips: it is not creep
 QUARTER = 4  # of a fall, to each side: cubics through so much of half a sine are 0.2 % too flat
@@ -302,8 +302,8 @@ def with_spread(spread: float, mean: float, unit: str) -> str:
     """Return a spread in words, or an upper limit if it is below the accuracy of a run."""
     if not isfinite(spread):
         return ""
-    if spread <= ALIKE * abs(mean):
-        return f"< {percent(ALIKE)}"
+    if spread <= SOLVER_SPREAD * abs(mean):
+        return f"< {percent(SOLVER_SPREAD)}"
     return in_digits(spread, unit, 2)
 
 

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import built_up
-from stiction.analysis.motion.changes.few_slips import FEW, few_slips
+from stiction.analysis.motion.changes.few_slips import FEW_SLIPS, few_slips
 from stiction.analysis.motion.changes.mean_load import FollowedLoad, under_mean_load
-from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
+from stiction.analysis.motion.changes.quick_falls import EVEN_CHANCE, quick_falls
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
 from stiction.analysis.motion.changes.velocity import made_by_jumps, velocity_jumps
@@ -66,7 +66,7 @@ LINES = 4  # subtracted at most
 SAME = 0.01  # of a line's frequency: two lines are at least so far apart
 # Times the largest drops, all but one in 50, from crest to trough: the means of irregular cycles
 # over their period come to 0.72 in 2000 records, and a wave that hides cycles to 1.08 and more
-HIGH, LARGEST = 0.9, 98.0
+HIGH, LARGEST_DROPS = 0.9, 98.0
 OWN_HARMONICS = 10.0  # of the cycles: lower ones can be lines as well; they make no cycles more
 
 
@@ -246,7 +246,7 @@ def _without_hum_of_few_slips(record: Record, grid: EvenGrid, found: Swings) -> 
     Their own spectrum may be as high as a ninth of the line, within half an octave of it, or hide
     it: then it is known by its swings. But means over its periods show the slips.
     """
-    seen = found.few is not None and len(found.table) <= FEW
+    seen = found.few is not None and len(found.table) <= FEW_SLIPS
     if record.slip_speed is not None or seen or is_stick_slip(found.lasting):
         return None
     its = [1.0 / found.table.median("period")] if len(found.table) > PERIODS else []
@@ -327,7 +327,7 @@ def _cycles_on_a_wave(record: Record, grid: EvenGrid, found: Swings, read: Float
         if carries and not is_rounding(its, read):
             among = (record.time >= its["start"][0]) & (record.time <= its["trough_time"][-1])
             low, high = np.percentile(wave[among], (1.0, 99.0))  # the first loading makes no wave
-            seen = high - low > HIGH * np.percentile(its["drop"], LARGEST)
+            seen = high - low > HIGH * np.percentile(its["drop"], LARGEST_DROPS)
             return carried._replace(wave=float(high - low) if seen else 0.0, lines=found.lines)
     return None
 
@@ -337,7 +337,7 @@ def _frequency_of_falls(record: Record, found: Swings) -> list[float]:
     if not len(found.table) or is_stick_slip(found.table):
         return []
     falls = quick_falls(record.time, record.force)
-    return [falls.number / record.duration] if falls.clearness > EVEN else []
+    return [falls.number / record.duration] if falls.clearness > EVEN_CHANCE else []
 
 
 def _without_line(
@@ -389,7 +389,7 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
     points, few = turning_points(force), None
     if record.sticks is not None and record.steady_until(record.time[0]) >= record.time[-1]:
         points = without_open_end(points, force)
-    if len(points.index) <= 2 * FEW + 1 and wave is None and record.slip_speed is None:
+    if len(points.index) <= 2 * FEW_SLIPS + 1 and wave is None and record.slip_speed is None:
         few = few_slips(record.time, force)
     if few is not None and not len(points.index):
         points = few.points

@@ -23,7 +23,8 @@ from stiction.arrays import Floats
 
 SURE, LIKELY = 4.0, ERRORS_997  # standard errors of a drift, in a sentence and in errors alone
 WORTH = 0.02  # of the mean force, over the record: smaller drift is not reported
-PARTS = 40  # number of means of a force without cycles, over the second half of its sliding
+# Number of means of a force without cycles, over the second half of its sliding
+MEANS_OF_SLIDING = 40
 MOST_MEANS = 1000  # of the middles of cycles: more would take long
 FEWEST_CYCLES = 4  # cycles that show a drift
 LASTING = 0.5  # of its rate, by which that of each half may differ
@@ -76,7 +77,9 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
         seen = record.time[[0, -1]]
     elif not len(cycles) and (slides := _lasting(record)) and len(levels(record)) < 2:
         late = slice(slides.half, slides.last)
-        at, middle = (part_means(each[late], PARTS) for each in (record.time, record.force))
+        at, middle = (
+            part_means(each[late], MEANS_OF_SLIDING) for each in (record.time, record.force)
+        )
         seen = record.time[[late.start, late.stop - 1]]
         shared = _settled_by(record.force[slides.first : slides.last])
     else:
@@ -100,7 +103,7 @@ def find_drift(record: Record, cycles: CycleTable) -> Drift:
 def _lasting(record: Record) -> Sliding | None:
     """Return the sliding; None if its second half, in which it has settled, has too few samples."""
     slides = sliding(record) if len(record) else None
-    return slides if slides and slides.last - slides.half >= PARTS else None
+    return slides if slides and slides.last - slides.half >= MEANS_OF_SLIDING else None
 
 
 def _likely_rate(cycles: CycleTable) -> float:

@@ -42,7 +42,7 @@ LOW, HIGHER, FEWEST_MEANS = 0.1, 1.2, 4
 # Standard deviations of white noise: by so much, and no more, the mean of peaks is too high where
 # each peak is sought among some samples; 0.4 in the median of random records
 ABOVE = 0.5
-FIRST = 1.0 / 3.0  # of the median fall, at least, is the first one
+FIRST_FALL = 1.0 / 3.0  # of the median fall, at least, is the first one
 FALLS = 10.0  # standard deviations of noise, whose range over a million means is that
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
 # Kinds of motion whose kinetic friction is the mean of peaks and troughs
@@ -299,7 +299,7 @@ def _first_fall(force: Floats, cycles: CycleTable, rough: float, size: int) -> i
     A cycle may be as short as a mean of `size` samples. So the means are as short as the noise of
     a sample, `rough` (N), allows; no cycle begins before that fall.
     """
-    fall = max(cycles.least, FIRST * cycles.median("drop"))
+    fall = max(cycles.least, FIRST_FALL * cycles.median("drop"))
     width = int(min(max((FALLS * rough / fall) ** 2, 1.0), size))
     count = max(len(force) // width, 1)
     means = part_means(force, count)

@@ -33,15 +33,15 @@ from stiction.arrays import TINY, Floats, Indices
 FAR_ABOVE, RARE = 3.0, 20
 HALF = 0.5  # of the swing: a larger fall is a cycle
 ABOUT_HALF = (0.4, 0.6)  # of the swing: without a fall between these, half divides them clearly
-LEAST = 0.1  # of the swing: a smaller fall is a hesitation in any case
+LEAST_FALL = 0.1  # of the swing: a smaller fall is a hesitation in any case
 AROUND = 12  # neighbours on each side for comparison: amplitudes may grow or shrink
 # Times as many as falls: so many reversals come with the falls and belong to them. Those below
-# LEAST do not count, as how many of them are seen depends on noise and samples.
+# LEAST_FALL do not count, as how many of them are seen depends on noise and samples.
 OFTEN = 1.1
 FEW_FALLS = 5  # falls: whether fewer are alike is not known
 # Falls spread evenly from half the swing to the whole of it have a standard deviation of 0.19 of
 # their mean; twice the standard error of that, 1/(2 n)^(1/2), is added.
-ALIKE = 0.23
+ALIKE_FALLS = 0.23
 # Legs, two cycles, over which a slow motion goes on and before which it went on, and by how much at
 # least, in swings: no hesitating cycle moves by so much to the same side twice
 AWAY, GOES_ON = 4, 0.5
@@ -96,7 +96,7 @@ def remove_hesitations(values: Floats) -> Hesitations:
     fall = -change[change < 0.0]
     if len(found.kept) == len(values) - 2 or _alike(np.minimum(fall, most)):
         return found  # of what has no reversal below half the swing none is below less
-    shallow = _below(values, LEAST, most)
+    shallow = _below(values, LEAST_FALL, most)
     deep = (len(shallow.kept) - len(found.kept)) // 2
     return found if deep >= OFTEN * len(fall) > 0 or _is_divided(values, most) else shallow
 
@@ -197,7 +197,7 @@ def _alike(fall: Floats) -> bool:
         return False
     ratio = fall / typical(fall)
     spread = float(ratio.std() / ratio.mean())
-    return bool(spread * (1.0 + (2.0 / len(fall)) ** 0.5) < ALIKE)
+    return bool(spread * (1.0 + (2.0 / len(fall)) ** 0.5) < ALIKE_FALLS)
 
 
 def swing(legs: Floats, most: float = np.inf) -> Floats:
@@ -267,7 +267,7 @@ def _whole(values: Floats, points: Indices, share: float, most: float) -> Indice
     for _ in range(2):
         legs = np.abs(np.diff(values[np.concatenate([points[:1], inner, points[-1:]])]))
         largest = np.maximum.accumulate(legs[1:-2])
-        jump = largest < LEAST * legs[2:-1]
+        jump = largest < LEAST_FALL * legs[2:-1]
         if jump.any():
             jump &= largest < share * swing(legs, most)[1:-2]
         inner = inner[np.flatnonzero(jump)[-1] + 1 if jump.any() else 0 :]

@@ -23,7 +23,7 @@ OWN_PERIODS = 1.2  # times that period: up to there a vibration is that of the m
 # median, a tenth left out at each end. Noise through any filter has 1.4 of it, as amplitudes of
 # Rayleigh's distribution have, 0.7 to 1.5 where records are short; a measured vibration of one size
 # has 0.57.
-REGULAR, EVEN = 0.25, 0.75
+REGULAR, EVEN_DROPS = 0.25, 0.75
 LIKELY = 0.5  # likelihood above which swings are irregular
 SPREAD_ERROR = 1.8  # over the root of the number of swings: relative error of either
 # That span of irregular vibrations, and of harmonic ones, measured among them, whose swings differ
@@ -75,8 +75,8 @@ def irregularity(period: Floats, drop: Floats) -> float:
 
     By periods: whether more swings would exceed the spread `REGULAR`. By drops: their spread is
     drawn from one of two distributions, of which that of irregular swings narrows with the number
-    of swings; where both overlap, `EVEN` decides. Sizes in order grow or shrink; they say nothing.
-    Nor do a few swings far above all others, such as a knock.
+    of swings; where both overlap, `EVEN_DROPS` decides. Sizes in order grow or shrink; they say
+    nothing. Nor do a few swings far above all others, such as a knock.
     """
     from scipy.special import expit, ndtr
 
@@ -96,7 +96,7 @@ def irregularity(period: Floats, drop: Floats) -> float:
             - _log_density(spread, *HARMONIC_SPREAD)
         )
     )
-    return max(likely, max(drops, 0.5) if spread > EVEN else min(drops, 0.5))
+    return max(likely, max(drops, 0.5) if spread > EVEN_DROPS else min(drops, 0.5))
 
 
 def _log_density(value: float, typical: float, spread: float) -> float:

@@ -12,11 +12,11 @@ from stiction.arrays import TINY, Complex, Floats
 
 # Cycles, turns of the wave, and cycles in each, at least
 FEWEST_CYCLES, TURNS, PER_TURN = 16, 4.0, 3.0
-FINE = 8  # frequencies tried in each that a record resolves
+FINE_FREQUENCIES = 8  # frequencies tried in each that a record resolves
 # Share of the variance of the cycles' middles about a line that is the wave's, how alike it is in
 # both halves of a record, and its height over the median drop. Of 4000 random walks, white middles
 # and friction that wanders and comes back none has such a wave.
-EXPLAINS, ALIKE, WORTH = 0.6, 0.8, 0.1
+EXPLAINS, ALIKE_HALVES, WORTH = 0.6, 0.8, 0.1
 
 
 class SlowWave(NamedTuple):
@@ -44,7 +44,7 @@ def regular_wave(table: CycleTable) -> SlowWave | None:
     )
     alike = 2.0 * (first * last.conjugate()).real / (abs(first) ** 2 + abs(last) ** 2 + TINY)
     height = 2.0 * abs(whole)
-    if explained < EXPLAINS or alike < ALIKE or height < WORTH * table.median("drop"):
+    if explained < EXPLAINS or alike < ALIKE_HALVES or height < WORTH * table.median("drop"):
         return None
     return SlowWave(height, 1.0 / frequency)
 
@@ -55,12 +55,12 @@ def _strongest_frequency(at: Floats, values: Floats) -> float | None:
 
     count = 2 * len(at)
     even = np.interp(np.linspace(at[0], at[-1], count), at, values)
-    power = np.abs(rfft(even * np.hanning(count), FINE * count))
-    low, high = int(FINE * TURNS), int(FINE * len(at) / PER_TURN)
+    power = np.abs(rfft(even * np.hanning(count), FINE_FREQUENCIES * count))
+    low, high = int(FINE_FREQUENCIES * TURNS), int(FINE_FREQUENCIES * len(at) / PER_TURN)
     if high <= low or not power[low:high].any():
         return None
     best = low + int(np.argmax(power[low:high]))
-    return best * (count - 1) / (FINE * count) / float(at[-1] - at[0])
+    return best * (count - 1) / (FINE_FREQUENCIES * count) / float(at[-1] - at[0])
 
 
 def _without_line(at: Floats, values: Floats) -> Floats:

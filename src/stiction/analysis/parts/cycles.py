@@ -13,7 +13,7 @@ from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
 from stiction.analysis.motion.regime.kinds import TO_AND_FRO
 from stiction.arrays import xr
 from stiction.storage.table_files import number
-from stiction.text.columns import SHOWN, Quantity, grid
+from stiction.text.columns import SHOWN_ROWS, Quantity, grid
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section, Table
 from stiction.text.units import in_words, with_error
@@ -133,7 +133,7 @@ def each_cycle(table: xr.Dataset) -> Table:
         late = Quantity(table["start"].values - since, "s")
         columns = {f"start after {since} s": late} | columns
         del columns["start"]
-    numbers = grid(columns, SHOWN)
+    numbers = grid(columns, SHOWN_ROWS)
     cycle = [str(number) for number in table["cycle"].values]
     rows = [(number, *row) for number, row in zip(cycle, numbers.rows, strict=False)]
     return Table(("cycle", *numbers.headings), rows)

@@ -8,7 +8,7 @@ import numpy as np
 
 from stiction.arrays import xr
 from stiction.errors import ResultError
-from stiction.text.columns import SHOWN, Quantity, grid, rows_left_out
+from stiction.text.columns import SHOWN_ROWS, Quantity, grid, rows_left_out
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
@@ -67,7 +67,7 @@ def section(found: Analysis) -> Section:
     )
     sentence = f"The work of the drive, and where it goes, cycle by cycle. {closes}{less}"
     more = rows_left_out(len(budget["start"]), "rows", "energy.csv")
-    return Section("Energy", [sentence, *more], grid(columns, SHOWN, alike="J"))
+    return Section("Energy", [sentence, *more], grid(columns, SHOWN_ROWS, alike="J"))
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:

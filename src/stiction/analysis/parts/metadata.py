@@ -7,7 +7,7 @@ from math import isfinite, isnan
 from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.metadata.loading_rate import BY_RISE, LOADING_RATE
-from stiction.analysis.motion.metadata.quantity import ALIKE, StatedQuantity
+from stiction.analysis.motion.metadata.quantity import ALIKE_VALUES, StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS, SWING
 from stiction.arrays import xr
 from stiction.storage.table_files import number
@@ -88,7 +88,7 @@ def _verdict_of_bound(each: StatedQuantity) -> str:
         return DOUBTED
     if not each.is_shown:
         return ""
-    return AGREES if each.at_least >= (1.0 - ALIKE) * each.stated else ALLOWED
+    return AGREES if each.at_least >= (1.0 - ALIKE_VALUES) * each.stated else ALLOWED
 
 
 def _is_limit(each: StatedQuantity) -> bool:

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 
-ALIKE = 0.1  # standard deviation of the drops over their mean
+ALIKE_DROPS = 0.1  # standard deviation of the drops over their mean
 SLOW_SWING = 2.0  # times the mass's own period on its spring: a slower swing is not its own
 IMPOSED = {  # by the evidence
     "unchanging": "The force is the same in all samples, as no measured force is: the channel is "
@@ -364,7 +364,7 @@ def _each_time(found: Analysis) -> str:
         return f" on average, by about {large} and {small} in turn"
     if not isinstance(found.source, Trajectory):
         drop = drop[~cycles_apart(table_of(found.cycles))]
-    if drop.std() < ALIKE * drop.mean():
+    if drop.std() < ALIKE_DROPS * drop.mean():
         return " each time"
     low, high = (in_words(float(end), "N") for end in (drop.min(), drop.max()))
     return f" on average, at least {low} and at most {high}"

@@ -9,7 +9,7 @@ import numpy as np
 from stiction.analysis.oscillation import hides, stands_out
 from stiction.analysis.signals.hum import of_mains
 from stiction.arrays import xr
-from stiction.text.columns import SHOWN, Quantity, grid, rows_left_out
+from stiction.text.columns import SHOWN_ROWS, Quantity, grid, rows_left_out
 from stiction.text.quantity_text import percent
 from stiction.text.sections import Section
 from stiction.text.units import in_words
@@ -52,11 +52,11 @@ def section(found: Analysis) -> Section:
     known = {
         name: each
         for name, each in columns.items()
-        if np.isfinite(np.asarray(each.values, dtype=np.float64)[:SHOWN]).any()
+        if np.isfinite(np.asarray(each.values, dtype=np.float64)[:SHOWN_ROWS]).any()
     }
     lines[0] += _note_hidden_cycles(found)
     lines += rows_left_out(phases.sizes["phase"], "stick phases", "oscillation-phases.csv")
-    return Section("Oscillation", lines, grid(known, SHOWN))
+    return Section("Oscillation", lines, grid(known, SHOWN_ROWS))
 
 
 def _note_hidden_cycles(found: Analysis) -> str:

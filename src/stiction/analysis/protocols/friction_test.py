@@ -28,7 +28,7 @@ from stiction.recording.noise import rounding_error
 from stiction.system.tensors import damping_tensor
 from stiction.trajectory import Trajectory
 
-ALIKE = 1e-9  # of a velocity or a load: sums of a program are rounded
+ALIKE_LEVELS = 1e-9  # of a velocity or a load: sums of a program are rounded
 BESIDE = 1e-3  # of the mean interval between samples: one so near to an end is at the end
 # By which the times of a program may be off in a record, as a share of a stretch: a stage starts
 # late, and its clock is not that of the record
@@ -67,7 +67,7 @@ class ConstantStretch(NamedTuple):
 
 def alike(one: float, two: float) -> bool:
     """Return whether two velocities or loads are equal, but for rounding."""
-    return isclose(one, two, rel_tol=ALIKE)
+    return isclose(one, two, rel_tol=ALIKE_LEVELS)
 
 
 class FrictionTest(NamedTuple):

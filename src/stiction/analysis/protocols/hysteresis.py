@@ -23,7 +23,7 @@ from stiction.trajectory import Trajectory
 NO_WAY = 1e-9  # of a drive's travel: no way there and back
 FEWEST_SAMPLES = 20  # samples of a loop: an ellipse through them has 1.6 % less area
 A_TURN = 8  # times in each turn of a harmonic at which turns of the drive are looked for
-MOST = 1e6  # such times between two jumps
+MOST_TIMES = 1e6  # such times between two jumps
 LATE = 0.2  # of the width, for which the mass slides before the drive turns
 VARIES = 0.01  # of the load: where it varies by more, a force over it is not a coefficient
 
@@ -214,7 +214,7 @@ def _times(test: FrictionTest) -> Floats:
         start = end
         if until > begin:
             turns = 0.0 if course.steady() else course.along.fastest() * (until - begin) / (2 * pi)
-            times.append(np.linspace(begin, until, int(min(A_TURN * turns, MOST)) + 2))
+            times.append(np.linspace(begin, until, int(min(A_TURN * turns, MOST_TIMES)) + 2))
     return np.unique(np.concatenate(times))
 
 

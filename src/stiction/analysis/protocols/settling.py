@@ -24,8 +24,8 @@ CHANGES = 0.01
 ROUNDED = 1e-5  # of the force: a change that an accurate solution may have
 BLOCKS = 8  # means of the end of a stretch, that noise and vibrations are known by
 CERTAIN = 5.96  # standard errors, Student's t with 6 degrees of freedom: by chance 1 in 1000
-PARTS = 50  # of a stretch: their means show how far friction evolves
-LAST = round(SETTLED * PARTS)  # of these lie in the end of a stretch
+PARTS_OF_STRETCH = 50  # of a stretch: their means show how far friction evolves
+LAST = round(SETTLED * PARTS_OF_STRETCH)  # of these lie in the end of a stretch
 EVOLVED = 0.1  # of all change in a stretch: what is left where evolution is nearly over
 STANDS_OUT = 4.0  # standard deviations: 1 of 300 series of 50 means has one beyond by chance
 # Travels over which it evolves to that, after which it is over: tails are of D_c, which the travel
@@ -77,9 +77,9 @@ def settled_part(
     it is bent. What deviates is seen less a slope, and beyond noise, that are known roughly.
     """
     count = len(mu)
-    means = part_means(mu - slope * travel, PARTS)
-    off = np.abs(means - means[-LAST * len(means) // PARTS :].mean())
-    seen = max(EVOLVED * off.max(), STANDS_OUT * noise.error(-(-count // PARTS)))
+    means = part_means(mu - slope * travel, PARTS_OF_STRETCH)
+    off = np.abs(means - means[-LAST * len(means) // PARTS_OF_STRETCH :].mean())
+    seen = max(EVOLVED * off.max(), STANDS_OUT * noise.error(-(-count // PARTS_OF_STRETCH)))
     gone = float(np.flatnonzero(off > seen)[-1] + 1) / len(means) if (off > seen).any() else 0.0
     latest = max(count - late, 0)
     first = min(int(OVER * gone * count), latest)
@@ -90,7 +90,10 @@ def settled_part(
         left = exp(min(-TAIL * (first / count / gone - 1.0), 0.0))
         # it was seen above what is left in the end, which is part of it
         tail = (
-            EVOLVED * float(off.max()) * left / -expm1(-TAIL * max(1.0 / gone - 1.0, 1.0 / PARTS))
+            EVOLVED
+            * float(off.max())
+            * left
+            / -expm1(-TAIL * max(1.0 / gone - 1.0, 1.0 / PARTS_OF_STRETCH))
         )
     x, y = travel[first:], mu[first:]
     found = line(x, y)
@@ -100,7 +103,7 @@ def settled_part(
 
 def _is_bent(mu: Floats) -> bool:
     """Return whether friction of evenly sampled travel is not a straight line, beyond its noise."""
-    means = part_means(mu, PARTS)
+    means = part_means(mu, PARTS_OF_STRETCH)
     if len(means) < BLOCKS:
         return False
     x = np.linspace(-1.0, 1.0, len(means))

@@ -21,7 +21,7 @@ from stiction.arrays import Floats, xr
 from stiction.recording.sensor import Sensor
 
 TURNING, GROWING, BOTH, UNDETERMINED = "turning", "growing", "both", "not determined"
-SOME, MOST = 0.2, 0.8  # of the rise of the force along: limits of turning and growing
+SOME_GROWTH, MOST_GROWTH = 0.2, 0.8  # of the rise of the force along: limits of turning and growing
 BETTER = 4.0  # times: so much better must an arc or a line fit than the other
 FREE = BINS - 2.0  # degrees of freedom of a line
 HALF = BINS // 2  # the part in the middle of a loading
@@ -133,7 +133,7 @@ def _by_path(its: MeanLoading) -> Rotation:
     arc, line = best_arc(its), line_misfit(its)
     kind = UNDETERMINED
     most = (arc.change + ERRORS_95 * arc.change_error) * arc.F_0
-    if line > BETTER * max(arc.misfit, FREE) and most < SOME * (its.x[-1] - its.x[0]):
+    if line > BETTER * max(arc.misfit, FREE) and most < SOME_GROWTH * (its.x[-1] - its.x[0]):
         kind = TURNING
     elif arc.misfit > BETTER * max(line, FREE):
         kind = GROWING
@@ -188,10 +188,10 @@ def _growth(
     change = r / r_0 - 1.0
     low, high = ((change + sign * ERRORS_95 * error) * r_0 / (x - x_0) for sign in (-1.0, 1.0))
     kind = UNDETERMINED
-    if high < SOME:
+    if high < SOME_GROWTH:
         kind = TURNING
-    elif low > MOST:
+    elif low > MOST_GROWTH:
         kind = GROWING
-    elif low > SOME and high < MOST:
+    elif low > SOME_GROWTH and high < MOST_GROWTH:
         kind = BOTH
     return _Growth(change, error, kind)

@@ -18,8 +18,8 @@ RINGING, SLIPPING = 0.1, 0.04  # of a loading: left out where the slip rings, an
 FEWEST = 5  # samples in a bin
 SEVERAL = 3  # loadings, whose scatter yields an error
 FORWARD = 0.1  # of the peak: least force along, as after a slip that overshoots it pulls back
-LEAST = 0.1  # of the peak: least rise of the force along that says something of its course
-ROUNDING = 1e-6  # of the peak: no error is less
+LEAST_RISE = 0.1  # of the peak: least rise of the force along that says something of its course
+LEAST_ERROR = 1e-6  # of the peak: no error is less
 
 
 class MeanLoading(NamedTuple):
@@ -74,7 +74,7 @@ class LoadingSeries(NamedTuple):
             variance = np.maximum(variance, scatter / count)
         peak = float(self.peaks.mean())
         variance = variance + self.rounding**2
-        x_error, y_error = np.sqrt(np.maximum(variance, (ROUNDING * peak) ** 2))
+        x_error, y_error = np.sqrt(np.maximum(variance, (LEAST_ERROR * peak) ** 2))
         at = self.spans.mean(axis=1)
         drift = line(at, self.means[:, 1].mean(axis=1)).slope if count >= SEVERAL else 0.0
         lasts = float(np.ptp(self.spans, axis=1).mean())
@@ -116,8 +116,8 @@ def loadings(time: Floats, forces: Floats, cycles: xr.Dataset) -> LoadingSeries:
         np.array(means), np.mean(noise, axis=0), np.array(peaks), rounding, np.array(spans)
     )
     along = found.means[:, 0]
-    if float(np.median(along[:, -1] - along[:, 0])) < LEAST * found.peaks.mean():
+    if float(np.median(along[:, -1] - along[:, 0])) < LEAST_RISE * found.peaks.mean():
         raise ResultError(
-            f"not determined: the force along rises by less than {percent(LEAST)} in a loading"
+            f"not determined: the force along rises by less than {percent(LEAST_RISE)} in a loading"
         )
     return found

@@ -8,7 +8,7 @@ from stiction.arrays import Floats, Indices, compute_once
 from stiction.recording.noise import dither_remainder, lattice, rounding_error
 
 MANY, COARSE = 100_000, 1e-4  # samples examined for steps; smallest step, over the signal's range
-FIRST = 1000  # values, among which those of a continuous signal are nearer than that already
+FIRST_VALUES = 1000  # values, among which those of a continuous signal are nearer than that already
 # Steps of a converter: the median fall that rounding makes. Without a wave it is one step, without
 # a line up to 1.50, in 482 staircases with noise up to 0.3 steps
 ROUNDED = 1.6
@@ -32,7 +32,7 @@ def resolution(values: Floats) -> float:
     if len(some) < 2:
         return 0.0
     least = COARSE * float(np.ptp(some))
-    if _smallest_step(some[:FIRST]) < least:
+    if _smallest_step(some[:FIRST_VALUES]) < least:
         return 0.0
     step = _smallest_step(some)
     return step if np.isfinite(step) and step >= least else 0.0

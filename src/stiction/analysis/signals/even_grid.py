@@ -21,7 +21,7 @@ from stiction.recording.guess.clock import ONE_MISSING
 from stiction.recording.part import begin_and_end
 from stiction.text.quantity_text import percent
 
-EVEN = 0.1  # of a step: how far a sample may lie off the grid to count as on it
+ON_GRID = 0.1  # of a step: how far a sample may lie off the grid to count as on it
 OWN = 0.4  # of a step: samples so close to their own times leave none out, which one lies 0.5 off
 MOST_MISSING = 0.1  # of the grid's points, without a spectrum beyond
 CROWDED = 0.5  # of a step: so close to the sample before, a sample is one too many
@@ -77,7 +77,7 @@ class EvenGrid:
     @property
     def off_grid(self) -> NDArray[np.bool_]:
         """(n,) which samples do not lie on the grid."""
-        return np.asarray(np.abs(self._off) > EVEN)
+        return np.asarray(np.abs(self._off) > ON_GRID)
 
     @property
     def has_gaps(self) -> bool:
@@ -96,7 +96,7 @@ class EvenGrid:
             return values
         at = np.arange(self.size, dtype=np.float64)
         found = np.interp(at, self.places, values)
-        near = np.flatnonzero(np.abs(self._off) <= EVEN)
+        near = np.flatnonzero(np.abs(self._off) <= ON_GRID)
         place = np.rint(self.places[near]).astype(np.intp)
         inside = (place >= 0) & (place < self.size)
         found[place[inside]] = values[near[inside]]
@@ -154,7 +154,7 @@ def _fit_grid(time: Floats) -> tuple[float, float]:
         part = time[max(middle - around, 0) : middle + around]
         for _ in range(2):
             place = (part - start) / step
-            near = np.abs(place - np.rint(place)) < 0.5 - EVEN
+            near = np.abs(place - np.rint(place)) < 0.5 - ON_GRID
             if np.count_nonzero(near) < 2:
                 return start, step
             number = np.rint(place[near])

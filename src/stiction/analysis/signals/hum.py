@@ -28,7 +28,7 @@ WHOLE = 0.95  # of the power: with so much two lines are the whole vibration
 FAINT = 0.1  # of a line's highest power: what is less may be something else
 ALONE = 9.0  # times the largest power within half an octave
 HARMONICS = 8
-LEAST = 1e-12  # of the largest power: what is less is nothing
+LEAST_POWER = 1e-12  # of the largest power: what is less is nothing
 MUCH = 0.3  # of the power; the first harmonic of a sawtooth has 0.6
 TRIED = 20  # of the strongest
 MOST_LINES = 4  # that are returned: cycles are sought again without each of them
@@ -264,7 +264,7 @@ def _peaks(power: Floats, floor: Floats, above: float, alone: float) -> dict[int
 
     By the factor `alone` at least; and the floor by the factor `above`.
     """
-    candidate = power > above * np.maximum(floor, LEAST * power.max())
+    candidate = power > above * np.maximum(floor, LEAST_POWER * power.max())
     candidate[:PERIODS] = candidate[-LOBE - 1 :] = False
     candidate[1:-1] &= (power[1:-1] >= power[2:]) & (power[1:-1] >= power[:-2])
     found = np.flatnonzero(candidate)

@@ -11,7 +11,7 @@ from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.turning_points import TurningPoints
 from stiction.arrays import Floats, Indices
 
-ROUNDING = 1e-9  # a slope less than this part of the bend is none
+LEAST_SLOPE = 1e-9  # a slope less than this part of the bend is none
 LOPSIDED = 0.5  # of its readings beneath: so many more lie on one side of a top that falls suddenly
 LEVEL = 1e-12  # of the largest value: less is neither slope nor bend, as of a force that is clipped
 
@@ -107,7 +107,7 @@ def _top(slope: Floats, bend: Floats) -> Floats:
     """Return where slope x + bend x^2 is highest within -1 to 1, and 0 where it is at both ends."""
     with np.errstate(divide="ignore", invalid="ignore"):
         vertex = np.clip(-0.5 * slope / bend, -1.0, 1.0)
-    tilted = np.abs(slope) > ROUNDING * np.abs(bend)
+    tilted = np.abs(slope) > LEAST_SLOPE * np.abs(bend)
     return np.where(bend < 0.0, vertex, np.where(tilted, np.sign(slope), 0.0))
 
 

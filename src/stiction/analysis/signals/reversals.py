@@ -24,7 +24,7 @@ Counts = NDArray[np.int64]
 
 # A pass over arrays takes as long as a hundred points one by one: it pays where it takes out more
 # than these, and one in as many points.
-FEW = 32
+FEW_POINTS = 32
 
 
 def extrema(values: Counts | Floats) -> Indices:
@@ -69,7 +69,7 @@ def remove_reversals(
         found = smallest_legs(legs, below)
         if len(found) == 0:
             break
-        if len(found) < FEW + len(points) // FEW:
+        if len(found) < FEW_POINTS + len(points) // FEW_POINTS:
             kept, last = _from_left_to_right(legs.tolist(), below)
             return points[kept], np.concatenate([*heights, np.array(last, np.int64)])
         heights.append(legs[found])

@@ -16,7 +16,8 @@ BESIDE = 25  # lines to each side that a line is compared with
 LOBE = 5  # of them: a sine takes so many through a Hamming window
 FEWEST = 3  # lines that a band needs, and others that a line is compared with
 CHANCE = 3e-4  # of noise in a window, where few lines make their median uncertain
-ALIKE = 0.55  # independent lines for each line of a Hamming window: powers of neighbours correlate
+# Independent lines for each line of a Hamming window: powers of neighbours correlate
+INDEPENDENT_LINES = 0.55
 
 
 def follow_ridge(
@@ -101,7 +102,7 @@ def least_prominence(lines: int) -> float:
     >>> [round(least_prominence(lines), 1) for lines in (11, 30, 51, 1000)]
     [18.8, 5.8, 5.0, 5.0]
     """
-    others, power = ALIKE * _own_and_others(lines)[1], STANDS_OUT**2
+    others, power = INDEPENDENT_LINES * _own_and_others(lines)[1], STANDS_OUT**2
     while lines <= 2 * BESIDE and lines * chance_of_noise(power, others) > CHANCE:
         power += 1.0
     return float(power**0.5)

@@ -17,7 +17,7 @@ LONGEST_GROUP = 8  # samples in a group from first to last, including correct on
 BESIDE = 3  # samples on either side for the motion of the signal; one of them may be wild
 PASSES = 4  # a group beside another is seen after that one is removed
 MEANS_OF_RECORD = 400  # a longer one is not resolved by its samples but by these
-MOST = 0.05  # of the samples: if there are more, they are the signal
+MOST_WILD = 0.05  # of the samples: if there are more, they are the signal
 
 
 class Mean(NamedTuple):
@@ -127,7 +127,7 @@ def _replacement(values: Floats) -> Floats | None:
         if not found.any():
             break
         wild |= found
-        if wild.mean() > MOST:
+        if wild.mean() > MOST_WILD:
             return None
         at = np.flatnonzero(~wild)
         kept = values.copy()

@@ -38,8 +38,9 @@ Number = TypeVar("Number", np.int64, np.float64)
 COUNTS = 2**26  # over a signal's range; sums over 2^30 samples still fit into 64 bits
 FEWEST_PER_CYCLE = 8  # samples of a cycle; with fewer, no shape can be seen
 COARSE_TURNS = 12  # turning points of cycles of few samples: at least so many are needed
-ALIKE = 0.5  # the smaller legs over the larger ones, the tenths beyond left out; 0.08 for noise
-EVEN = 0.3  # standard deviation of the periods over their mean
+# The smaller legs over the larger ones, the tenths beyond left out; 0.08 for noise
+ALIKE_LEGS = 0.5
+EVEN_PERIODS = 0.3  # standard deviation of the periods over their mean
 AS_GOOD = 0.9  # of the clearest gap: of two levels as good, the finer one places points better
 PLACING = 1 / 16  # of a leg: with noise below this the finest level places a corner best
 # A gap found by chance: some 20 levels times 20 octaves are tried, so that exp(-12) each leaves
@@ -194,7 +195,7 @@ def coarse_points(counts: Counts) -> Indices:
     legs = np.abs(np.diff(counts[found]))
     small, large = np.percentile(legs, (10.0, 90.0))
     period = found[2:] - found[:-2]
-    alike = small > ALIKE * large and period.std() < EVEN * period.mean()
+    alike = small > ALIKE_LEGS * large and period.std() < EVEN_PERIODS * period.mean()
     return found if alike else found[:0]
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 NEVER = 1e-3  # of the time: a smaller share is a matter of samples
-FEW = 3  # rests in a loading: fewer are not those of a transverse oscillation
+FEW_RESTS = 3  # rests in a loading: fewer are not those of a transverse oscillation
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 
 
@@ -151,7 +151,7 @@ def _rests_for_moments(seen: SimulatedTest) -> str:
     way = float((end - begin).sum()) * seen.run.slider.motion.rate(0.0)[0]
     way *= seen.run.slider.direction[1]
     of, lengths = _rests_while_loaded(seen)
-    if len(of) <= FEW * len(loadings):
+    if len(of) <= FEW_RESTS * len(loadings):
         return ""
     time, u_y = (seen.run.samples[name] for name in ("time", "u_y"))
     stretched = float((np.interp(end, time, u_y) - np.interp(begin, time, u_y)).sum())

@@ -31,7 +31,7 @@ RECORD = "What the record says"  # title of the verdict on a measured record
 VERDICT, AS_DESCRIBED = "Verdict", "The rig as it is described"
 MEANS = ("period", "s"), ("drop", "N")  # over the cycles
 ROUGHLY = 2  # digits of a travel, and of the time that it takes
-SHOWN = 1e-3  # of a mean: a smaller error is not worth a word
+SHOWN_ERROR = 1e-3  # of a mean: a smaller error is not worth a word
 SEEN = {  # kinds of motion, in a sentence
     TRANSITIONAL: f"a {TRANSITIONAL} between stick-slip and harmonic vibration",
     SETTLING: "steady sliding, after a motion at the start that dies out",
@@ -162,7 +162,7 @@ def describe_motion(seen: SimulatedTest) -> str:
 def mean_in_words(values: np.ndarray, unit: str) -> str:
     """Return a mean over cycles, with its standard error where they differ."""
     mean, error, _ = statistics(values)
-    say = with_error if error > SHOWN * mean else to_error
+    say = with_error if error > SHOWN_ERROR * mean else to_error
     return say(mean, error, unit)
 
 

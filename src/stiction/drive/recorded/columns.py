@@ -9,7 +9,7 @@ from pathlib import Path
 
 from pydantic_core import PydanticCustomError
 
-from stiction.drive.recorded.piece import KINDS, SHOWN, Rows, row_faults
+from stiction.drive.recorded.piece import KINDS, SHOWN_ROWS, Rows, row_faults
 from stiction.errors import DescriptionError, Fault, ResultError, echo, visible
 from stiction.formats import TEXTS, TextLayout, format_of, read_tables
 from stiction.formats.channels import CHANNELS, plain
@@ -20,9 +20,9 @@ from stiction.formats.units import split_unit
 from stiction.text.samples import FrozenColumn
 from stiction.text.units import to_si
 
-LARGEST = 2**26  # bytes of text: more than a million rows of two columns
+LARGEST_TEXT = 2**26  # bytes of text: more than a million rows of two columns
 PLAIN = "write points as decimal signs, no sign between thousands, and tabs between columns"
-FIRST = ("time", "t")  # of several names of times
+TIME_NAMES = ("time", "t")  # of several names of times
 # a unit that is none stands in brackets, too
 BRACKETS = re.compile(r"(.*?)\s*[\[(]\s*([^\[\]()]*?)\s*[\])]")
 NUMBERED = re.compile(r"\s*[+−-]?[.,]?\d")  # a line that begins with a number
@@ -66,7 +66,7 @@ def _table(path: Path) -> FileTable:
     try:
         if (kind := format_of(path)).name not in TEXTS:
             raise ResultError(f"{path}: is a file of {kind.name}; export the table as text")
-        tables = read_tables(path, TextLayout(columns=2, largest=LARGEST))
+        tables = read_tables(path, TextLayout(columns=2, largest=LARGEST_TEXT))
     except OSError as error:
         raise _fault(f"{path.name}: {error.strerror or error}") from None
     except UnclearCommas as error:
@@ -90,8 +90,8 @@ def _refuse_damage(table: FileTable) -> None:
     wrong = [*takewhile(lambda each: NUMBERED.match(each.text), above)][::-1]
     wrong += [each for each in said if each.line > first]
     if wrong:
-        lines = ", ".join(str(each.line) for each in wrong[:SHOWN])
-        more = f" and {len(wrong) - SHOWN} more" if len(wrong) > SHOWN else ""
+        lines = ", ".join(str(each.line) for each in wrong[:SHOWN_ROWS])
+        more = f" and {len(wrong) - SHOWN_ROWS} more" if len(wrong) > SHOWN_ROWS else ""
         text = echo(wrong[0].text.strip()[:40])
         raise _fault(f"line {lines}{more}: {text} is not a row; mend the line, or leave it out")
 
@@ -143,7 +143,7 @@ def _usual(table: FileTable, name: str) -> str:
     usual = CHANNELS[name].names
     found = [each for each in table.columns if usual.fullmatch(plain(_heading(each)[0]))]
     named = [_heading(each)[0] for each in found]
-    first = [each for wanted in FIRST for each in named if each.lower() == wanted]
+    first = [each for wanted in TIME_NAMES for each in named if each.lower() == wanted]
     if len({*named}) > 1 and not first:
         raise _fault(f"may be any of {_headings(found)}; name one", name)
     return next(iter(first or named), name)

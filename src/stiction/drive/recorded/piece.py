@@ -15,7 +15,7 @@ from stiction.errors import echo
 from stiction.text.samples import FrozenColumn, as_numbers, samples_to_si
 from stiction.text.units import (
     FORCE,
-    LARGEST,
+    LARGEST_NUMBER,
     LENGTH,
     TIME,
     VELOCITY,
@@ -30,7 +30,7 @@ from stiction.text.validation import validate
 FEWEST_ROWS = 4  # rows, which fix a cubic
 MOST_ROWS = 1_000_000  # rows
 GAP = 10.0  # of the distances beside it
-SHOWN = 4  # rows of one fault
+SHOWN_ROWS = 4  # rows of one fault
 KINDS = {"time": TIME, "velocity": VELOCITY, "position": LENGTH, "load": FORCE}
 COLUMN = {"anyOf": [{"type": "array", "items": {"type": "number"}}, {"type": "string"}]}
 PERIOD = 8  # rows of a period that a table shows well
@@ -75,7 +75,7 @@ def _count(table: Rows) -> Iterator[tuple[str, str]]:
 
 def _numbers(table: Rows) -> Iterator[tuple[str, str]]:
     for name, column in (("time", table.time), (table.name, table.values)):
-        wrong = np.flatnonzero(~(np.abs(column) <= LARGEST))
+        wrong = np.flatnonzero(~(np.abs(column) <= LARGEST_NUMBER))
         if len(wrong):
             where = _where(table, wrong)
             yield name, f"{where}: {column[wrong[0]]:g} is not a number; leave the row out"
@@ -122,8 +122,8 @@ def _roughness(table: Rows) -> Iterator[tuple[str, str]]:
 
 def _where(table: Rows, rows: Any) -> str:
     """Return the rows of a fault by number, the first ones if they are many."""
-    shown = ", ".join(str(table.numbers[int(i)]) for i in rows[:SHOWN])
-    more = f" and {len(rows) - SHOWN} more" if len(rows) > SHOWN else ""
+    shown = ", ".join(str(table.numbers[int(i)]) for i in rows[:SHOWN_ROWS])
+    more = f" and {len(rows) - SHOWN_ROWS} more" if len(rows) > SHOWN_ROWS else ""
     return f"{table.word} {shown}{more}"
 
 

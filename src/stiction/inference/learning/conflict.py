@@ -15,7 +15,7 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.inference.learning.summary import (
     CENTRAL,
-    LEAST,
+    LEAST_SQUARE,
     WIDTHS,
     Standard,
     decompose,
@@ -24,7 +24,7 @@ from stiction.inference.learning.summary import (
     single_threaded_algebra,
 )
 
-MOST = 1000  # simulations to learn from: a second's work, and more teach little
+MOST_SIMULATIONS = 1000  # simulations to learn from: a second's work, and more teach little
 NEAREST = 200  # of them, with which a record is compared
 OUTER = 1.0, 99.0  # percentiles, beyond which values are those of cycles that hardly slip
 
@@ -69,7 +69,7 @@ class Conflict(NamedTuple):
         >>> round(found.found, 1), found.p_value < 0.01
         (4.0, True)
         """
-        shapes, values, stated = shapes[:MOST], values[:MOST], stated[:MOST]
+        shapes, values, stated = (x[:MOST_SIMULATIONS] for x in (shapes, values, stated))
         standard = Standard.of(shapes)
         known, new = standard.scores(shapes), standard.scores(shape[None])
         with single_threaded_algebra():
@@ -78,7 +78,9 @@ class Conflict(NamedTuple):
             usual = np.clip(rest, *np.percentile(rest, OUTER))[:, None]
             middle = regression(parts, usual, known.shape[1])
             apart = rest - middle.library[:, 0]
-            spread = regression(parts, np.log(apart * apart + LEAST)[:, None], known.shape[1])
+            spread = regression(
+                parts, np.log(apart * apart + LEAST_SQUARE)[:, None], known.shape[1]
+            )
         own = value - float(middle.predict(new, known)[0, 0])
         places = np.column_stack([known, 0.5 * spread.library])
         place = np.append(new[0], 0.5 * spread.predict(new, known)[0])

@@ -28,7 +28,7 @@ from stiction.arrays import Floats
 SHARE = 0.25  # of the library that is near
 FEWEST_RECORDS = 200  # of its records, which a local regression needs
 FARTHEST = 6.0  # standard deviations of the prior: no adjusted score lies beyond
-LEAST = 1e-9
+LEAST_SPREAD = 1e-9
 SCALE = 0.1, 10.0  # bounds of the rescaling
 RIDGE = 1e-6
 NEAREST = 400  # records from which the distribution of one parameter comes
@@ -118,7 +118,7 @@ def marginal(known: Known, middle: float, spread: float, without: int | None = N
     '0.90'
     """
     aside = np.log(known.spreads / spread)
-    units = known.middles.std(), max(float(aside.std()), LEAST)
+    units = known.middles.std(), max(float(aside.std()), LEAST_SPREAD)
     apart = np.stack([(known.middles - middle) / units[0], LESS * aside / units[1]], axis=1)
     distance = (apart * apart).sum(axis=1)
     if without is not None:
@@ -150,7 +150,7 @@ def normal_matrix(columns: Floats, weights: Floats) -> tuple[Floats, Floats]:
     """Return the weighted columns of a regression, and the matrix of its normal equations."""
     weighted = columns * weights[:, None]
     square = weighted.T @ columns
-    return weighted, square + RIDGE * np.diag(np.diag(square)) + LEAST * np.eye(len(square))
+    return weighted, square + RIDGE * np.diag(np.diag(square)) + LEAST_SPREAD * np.eye(len(square))
 
 
 def local_regression(columns: Floats, values: Floats, weights: Floats) -> Floats:

@@ -30,7 +30,7 @@ UNKNOWN = 0.8  # error of a target over its variance, above which features say n
 ROUND = 0.05  # share of the first metric that remains
 RIDGES = 10.0 ** np.arange(-6.0, 2.1, 0.5)
 STRAIGHT = 1.0  # share of the linear kernel beside the curved one
-LEAST = 1e-8  # squared distance, in place of zero
+LEAST_SQUARE = 1e-8  # squared distance, in place of zero
 LEAST_CHANGE = 1e-9  # standard deviation of a feature that counts as constant
 FARTHEST = 5.0  # spreads from the library's middle, to which features are clipped
 CENTRAL = (16.0, 50.0, 84.0)  # percentiles: one standard deviation to each side, if normal
@@ -110,7 +110,7 @@ def learn(features: Floats, parameters: Floats, progress: Progress = silent) -> 
         first = regression(parts, parameters, scores.shape[1])
         middle = adapt_metrics(first, scores, parameters, part(progress, 4, 10, of=6))
         apart = parameters - middle.library
-        spread = regression(parts, np.log(apart * apart + LEAST), scores.shape[1])
+        spread = regression(parts, np.log(apart * apart + LEAST_SQUARE), scores.shape[1])
     return FeatureSummary(standard, scores, middle, spread)
 
 
@@ -218,7 +218,7 @@ def metric_of(scores: Floats, target: Floats, width: float, ridge: float) -> Flo
     gradients += STRAIGHT / count * (weights @ scores)
     values, vectors = eigh(gradients.T @ gradients)
     sizes = np.sqrt(np.maximum(values, 0.0))
-    sizes *= (count / max((sizes * sizes).sum(), LEAST)) ** 0.5
+    sizes *= (count / max((sizes * sizes).sum(), LEAST_SQUARE)) ** 0.5
     return np.asarray((vectors * sizes) @ vectors.T + ROUND * np.eye(count))
 
 

@@ -27,7 +27,7 @@ NEIGHBOURS = 150  # records from which a distance is measured
 AROUND = 20  # records around one, with whose distances its own is compared
 SHRINKAGE = 0.1  # of correlations between features, which so few records do not show well
 ITSELF = 1e-8  # squared distance
-LEAST = 1e-12
+LEAST_VARIANCE = 1e-12
 CLOUDS, KEPT = ("near", "beside"), ("apart", "own")  # what is stored of which
 
 
@@ -127,7 +127,7 @@ def distances(square: Floats, some: Floats, points: Floats) -> Floats:
         near = points[np.argpartition(square[i], count - 1)[:count]]
         off = one - near.mean(axis=0)
         spread = np.cov(near.T)
-        variance = np.diag(spread) + LEAST
+        variance = np.diag(spread) + LEAST_VARIANCE
         spread = (1.0 - SHRINKAGE) * spread + SHRINKAGE * np.diag(variance)
         found[i] = off @ np.linalg.solve(spread, off) / len(off)
     return found

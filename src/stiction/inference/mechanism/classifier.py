@@ -35,7 +35,7 @@ from stiction.progress.report import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
 FEWEST_SIMULATIONS = 40  # simulations with cycles, below which a mechanism is left out
-PARTS = "whole", "even", "odd"  # of the simulations, as they are stored
+SIMULATION_PARTS = "whole", "even", "odd"  # of the simulations, as they are stored
 WEAK = 1e-3  # penalty on the slopes' squares: finite where mechanisms are distinguished for sure
 
 
@@ -216,7 +216,7 @@ def learn_or_read(
 def write(path: Path | None, found: Classifier) -> None:
     """Write what was learned."""
     arrays = as_arrays(standard=found.standard)
-    for name, each in zip(PARTS, (found.whole, *found.halves), strict=True):
+    for name, each in zip(SIMULATION_PARTS, (found.whole, *found.halves), strict=True):
         arrays |= as_arrays(**{name: each.membership}) | {f"{name}_slopes": each.slopes}
     write_arrays(path, **arrays)
 
@@ -225,8 +225,8 @@ def read(path: Path | None, features: Floats) -> Classifier | None:
     """Return a stored classifier of simulations with these features (n, f); None without one."""
     arrays = read_arrays(path) or {}
     try:
-        standard, (membership,) = read_regressions(arrays, features, PARTS[0])
-        scores, (name, *halves) = standard.scores(features), PARTS
+        standard, (membership,) = read_regressions(arrays, features, SIMULATION_PARTS[0])
+        scores, (name, *halves) = standard.scores(features), SIMULATION_PARTS
         whole = Discriminant(scores, membership, arrays[f"{name}_slopes"])
         found = []
         for name, rows in zip(halves, halve(len(scores)), strict=True):

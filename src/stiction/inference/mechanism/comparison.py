@@ -17,7 +17,7 @@ from stiction.inference.fit import check, plan_for
 from stiction.inference.mechanism import classifier, likeness
 from stiction.inference.mechanism.classifier import Simulations, simulate
 from stiction.inference.mechanism.odds import Odds, surely
-from stiction.inference.mechanism.rest import ALIKE, Rest, shares_at_rest
+from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
     RATE_AND_STATE,
@@ -153,7 +153,7 @@ def compare(
     rest = None
     if name == ROTATION:
         place = simulated.names.index(name)
-        rows = references[place].typicality.alike(record, ALIKE)
+        rows = references[place].typicality.alike(record, ALIKE_SIMULATIONS)
         plan = plan_for(rig, [each.conditions for each in seen])
         rest = Rest.among(shares_at_rest(plan, simulated.parameters[place][rows]))
     return Odds(

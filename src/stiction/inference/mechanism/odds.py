@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats, same_fields, xr
 from stiction.inference.features import MIDDLES
 from stiction.inference.mechanism.likeness import BENT, UNLIKE, Likeness
-from stiction.inference.mechanism.rest import ALIKE, Rest
+from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
     MISALIGNED_STATIC,
@@ -156,9 +156,9 @@ class Odds(Report):
             found.append(f"{friction_drifts(self.steady)} {STATE_DRIFT}")
         if self.rest is not None and not self.rest.known:
             found.append(
-                f"Whether the mass creeps or is held is not known: of {ALIKE} simulations of "
-                f"{name} with the parameters that this record seems to have, hardly any have as "
-                "many cycles of stick and slip."
+                "Whether the mass creeps or is held is not known: of "
+                f"{ALIKE_SIMULATIONS} simulations of {name} with the parameters that this record "
+                "seems to have, hardly any have as many cycles of stick and slip."
             )
         return [*found, self.doubt] if self.doubt else found
 

@@ -20,7 +20,7 @@ from stiction.inference.observation import Conditions
 from stiction.inference.simulated.plan import Plan
 from stiction.inference.simulated.synthetic import Synthetic, synthesise
 
-ALIKE = 32  # simulations with a record's parameters: enough for their quantiles
+ALIKE_SIMULATIONS = 32  # simulations with a record's parameters: enough for their quantiles
 FEWEST = 10  # of them with cycles: of fewer a tenth is not one
 QUANTILES = 0.1, 0.5, 0.9
 

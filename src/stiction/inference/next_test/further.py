@@ -20,7 +20,7 @@ from stiction.text.validation import Described
 
 ANGLES = ("2 deg", "5 deg")
 SIMULATIONS = 2000  # rigs
-LEAST = 200  # of them: half may slide
+FEWEST_SIMULATIONS = 200  # of them: half may slide
 CYCLES = 20  # of a test, where no record says how many it has
 VELOCITIES, LOADS = (1.0 / 3.0, 3.0), (0.5, 2.0)  # to try, over the present ones
 SMALLEST_DROP = 0.02  # of the friction force at rest: less is a vibration beside steady sliding
@@ -47,7 +47,7 @@ class Wanted(Described):
     loads: tuple[Force, ...] | None = None
     noise: Force | None = None
     position_noise: PositiveLength | None = None
-    simulations: Annotated[Whole, Field(ge=LEAST)] = SIMULATIONS
+    simulations: Annotated[Whole, Field(ge=FEWEST_SIMULATIONS)] = SIMULATIONS
 
     @property
     def noises(self) -> dict[str, float | None]:

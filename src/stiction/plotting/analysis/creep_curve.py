@@ -39,9 +39,9 @@ def creep_theory(
     return {label: before_slip(formula) for label, formula in formulas.items()}
 
 
-MOST = 0.9  # of the bins: so many must stand out of their errors for a logarithmic axis
+MOST_BINS = 0.9  # of the bins: so many must stand out of their errors for a logarithmic axis
 TOP, THIN = 1.8, 0.8  # line widths, pt: of the first theory, which lies over the others
-FEW = 20  # stick phases, of which each curve can be seen
+FEW_PHASES = 20  # stick phases, of which each curve can be seen
 
 
 def draw_phases(ax: Axes, curves: xr.Dataset, V: float) -> None:
@@ -49,7 +49,7 @@ def draw_phases(ax: Axes, curves: xr.Dataset, V: float) -> None:
 
     Of many phases the curves would be a hatching: the middle half of them is drawn.
     """
-    if curves.sizes["phase"] > FEW:
+    if curves.sizes["phase"] > FEW_PHASES:
         draw_middle_half(ax, curves, V)
         return
     faint = min(0.5, 4.0 / max(curves.sizes["phase"], 1))
@@ -133,7 +133,7 @@ def plot_creep(
         ax.set(xscale="log", xlim=(to_slip[-1] * 1.05, to_slip[0]))
         label_decades(ax.xaxis, to_slip[0], to_slip[-1])
         sure = value > 2.0 * error
-        if sure.mean() >= MOST and (value > 0.0).all():
+        if sure.mean() >= MOST_BINS and (value > 0.0).all():
             lowest = 0.5 * float(value[sure].min()) / V
             ax.set(yscale="log", ylim=(lowest, 1.5))
             if lowest > 0.05:  # less than two decades: write all labels

@@ -22,8 +22,8 @@ from stiction.plotting.run.time_series import name_time
 from stiction.text.quantity_text import metric_prefix
 from stiction.trajectory import Trajectory
 
-FEW = 12  # cycles that can be distinguished on a page's width
-SHOWN = 6  # cycles in the close-up
+FEW_CYCLES = 12  # cycles that can be distinguished on a page's width
+SHOWN_CYCLES = 6  # cycles in the close-up
 SPAN, MARGIN = 2.0, 0.08  # wild samples may take as much room as the others; above and below them
 
 
@@ -65,7 +65,7 @@ def plot_motion(
     if not len(record):
         raise ResultError("the record has no samples; there is nothing to draw")
     steady = under_mean_load(record)
-    many = cycles.sizes["cycle"] > FEW
+    many = cycles.sizes["cycle"] > FEW_CYCLES
     with style():
         panels = grid_of(axes, (PAGE, 4.4 if many else 2.6), 2 if many else 1, 1)
         draw_cycles(panels[0], steady, cycles)
@@ -136,12 +136,13 @@ def _leave_out_wild(ax: Axes, force: Floats) -> None:
 
 def _zoom(whole: Axes, part: Axes, record: Record, cycles: xr.Dataset) -> None:
     """Show some cycles from the middle on `part`, and shade that time on `whole`."""
-    first = (cycles.sizes["cycle"] - SHOWN) // 2
-    begin, end = cycles["start"].values[first], cycles["trough_time"].values[first + SHOWN - 1]
+    first = (cycles.sizes["cycle"] - SHOWN_CYCLES) // 2
+    last = first + SHOWN_CYCLES - 1
+    begin, end = cycles["start"].values[first], cycles["trough_time"].values[last]
     margin = 0.1 * (end - begin)
     begin, end = begin - margin, end + margin
     seen = (record.time >= begin) & (record.time <= end)
-    chosen = cycles.isel(cycle=slice(max(first - 1, 0), first + SHOWN + 1))  # cut ones as well
+    chosen = cycles.isel(cycle=slice(max(first - 1, 0), last + 2))  # cut ones as well
     near = record.model_copy(update={"time": record.time[seen], "force": record.force[seen]})
     draw_cycles(part, near, chosen)
     if (legend := part.get_legend()) is not None:

@@ -27,7 +27,7 @@ from stiction.plotting.run.time_series import name_time
 from stiction.text.quantity_text import metric_prefix
 
 # terms of the budget: label, colour, hatch, whether dissipated
-PARTS = {
+ENERGY_TERMS = {
     "friction_x": ("friction, $x$", RED, ""),
     "friction_y": ("friction, $y$", ORANGE, "////"),
     "damper_x": ("damper, $x$", PURPLE, ""),
@@ -44,14 +44,14 @@ def draw_budget(ax: Axes, budget: xr.Dataset) -> None:
     Black ticks beside it mark the work of the drive. Parts below a thousandth of the largest
     are left out.
     """
-    named = {name: budget[name].values for name in PARTS}
+    named = {name: budget[name].values for name in ENERGY_TERMS}
     factor, prefix = metric_prefix(np.concatenate([*named.values(), budget["work"].values]))
     largest = max(float(np.abs(values).max()) for values in named.values())
     ax.use_sticky_edges = False  # a part of no height would hold the axis to the top of its bar
     place, wide = middles(budget)
     up, down = np.zeros(len(place)), np.zeros(len(place))
     for name, values in named.items():
-        label, color, hatch = PARTS[name]
+        label, color, hatch = ENERGY_TERMS[name]
         if np.abs(values).max() < 1e-3 * largest:
             continue
         bottom = np.where(values >= 0.0, up, down)

@@ -28,7 +28,7 @@ from stiction.text.quantity_text import metric_prefix
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
-PARTS = 80  # of a loading: means over them leave noise and fast oscillation out
+PARTS_OF_LOADING = 80  # of a loading: means over them leave noise and fast oscillation out
 MOST_LOADINGS = 40  # drawn, evenly chosen from more
 # yellow, at the upper end of the map, is too pale on white
 TIMES = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.85, 256)), "times")
@@ -100,7 +100,9 @@ def _paths(time: Floats, forces: Floats, found: Analysis) -> tuple[Floats, list[
     paths = []
     for begin, end in zip(starts[chosen], ends[chosen], strict=True):
         first, last = np.searchsorted(time, (begin, end))
-        parts = np.array_split(forces[:, first : last + 1], min(PARTS, last + 1 - first), axis=1)
+        parts = np.array_split(
+            forces[:, first : last + 1], min(PARTS_OF_LOADING, last + 1 - first), axis=1
+        )
         paths.append(np.array([part.mean(axis=1) for part in parts]))
     return starts[chosen], paths
 

@@ -26,14 +26,14 @@ TITLE = 48  # characters of a line above a panel
 PANEL = 1.35  # height of a row, in
 ACROSS = 2
 ROOM = 0.4  # of the visible range, above and below it
-MOST, FEW = 80, 8  # most swings in a panel, and the number shown if there are more
-LEAST = 0.1  # of the force's range: smaller swings are ripple
+MOST_SWINGS, LAST_SWINGS = 80, 8  # most swings in a panel, and the number shown if there are more
+LEAST_SWING = 0.1  # of the force's range: smaller swings are ripple
 SEEN = 0.02  # of the visible range: smaller swings are as thin as a line
 LASTING = 0.5  # of the range a quarter of the time before: less dies out
 # of the time shown, and of the force's range: less of the test before would mislead
 WIDE, WHOLE = 0.1, 0.5
 LARGE = 0.1  # of the largest force: with a smaller visible range the loading is cut off
-ROUNDING = 1e-6  # of the force: smaller variations are rounding
+FORCE_ROUNDING = 1e-6  # of the force: smaller variations are rounding
 
 
 class Trial(NamedTuple):
@@ -138,7 +138,7 @@ def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[s
     drawn["changed"] = draw_line(ax, record.time[then], changed, BLUE, 1.0, window)
     ax.set(xlim=(start, end), title=_wrap(title), ylim=(low, high))
     if count:
-        said = f"the last {FEW} of some {float(f'{count:.2g}'):.0f} swings"
+        said = f"the last {LAST_SWINGS} of some {float(f'{count:.2g}'):.0f} swings"
         ax.text(0.03, 0.08, said, transform=ax.transAxes, fontsize=7)
     name_time(ax)
     return drawn
@@ -152,16 +152,16 @@ def time_range(record: Record, least: float) -> tuple[float, float, int]:
     start, end = float(record.time[0]), float(record.time[-1])
     quarter = len(record) // 4
     before, last = record.force[-2 * quarter : -quarter], record.force[-quarter:]
-    least = max(least, ROUNDING * float(np.abs(record.force).max()))
+    least = max(least, FORCE_ROUNDING * float(np.abs(record.force).max()))
     if quarter < 2 or np.ptp(last) <= max(least, LASTING * np.ptp(before)):
         return start, end, 0  # it dies out, or hardly moves
-    height = int(LEAST * COUNTS)
+    height = int(LEAST_SWING * COUNTS)
     turns = len(standing_out(as_counts(last), height, height))  # two a swing
     if turns < 2:
         return start, end, 0
     period = 2.0 * (end - float(record.time[-quarter])) / turns
     count = round((end - start) / period)
-    return (end - FEW * period, end, count) if count > MOST else (start, end, 0)
+    return (end - LAST_SWINGS * period, end, count) if count > MOST_SWINGS else (start, end, 0)
 
 
 def later(factor: float, *records: Record) -> tuple[float, float]:

@@ -22,8 +22,8 @@ from stiction.plotting.page.style import BLACK
 SIDEWAYS = 0.3  # of a unit vector: a smaller component does not shift a text beside a point
 Placement = Callable[[ArrayLike], Floats]
 
-LEAST, EXAGGERATED = radians(20), radians(24)  # a smaller misalignment is drawn like this
-STEEP = radians(60)  # one within LEAST of a right angle, like this
+LEAST_ANGLE, EXAGGERATED = radians(20), radians(24)  # a smaller misalignment is drawn like this
+STEEP = radians(60)  # one within LEAST_ANGLE of a right angle, like this
 
 
 def line(
@@ -149,9 +149,9 @@ def drawn_misalignment(phi: float) -> float:
     size = abs(phi)
     if min(size, abs(pi / 2 - size)) < 1e-9:
         return phi
-    if size < LEAST:
+    if size < LEAST_ANGLE:
         return copysign(EXAGGERATED, phi)
-    return copysign(STEEP, phi) if size > pi / 2 - LEAST else phi
+    return copysign(STEEP, phi) if size > pi / 2 - LEAST_ANGLE else phi
 
 
 def drawn_slip_angle(drawn: float) -> float:

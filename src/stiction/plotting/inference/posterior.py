@@ -33,7 +33,7 @@ SMOOTH = 1.2  # bins: width of the smoothing of a two-dimensional histogram
 OUTER = 0.002  # share of the prior beyond each end of an axis
 PLAIN = {"deg": " (deg)", "1": ""}  # units without a metric prefix, as on axes
 SHARPEST = 6.0  # times as tall as its prior, a posterior is drawn; a sharper one, lower
-SHOWN = 5  # cycles
+SHOWN_CYCLES = 5  # cycles
 RANK_BINS = 10  # of a histogram of ranks
 
 
@@ -273,7 +273,10 @@ def draw_cycles(ax: Axes, seen: Any, found: Any) -> None:
         (example, SKY, 1.8, "simulated"),
         ((seen.force, seen.cycles), BLACK, 0.7, "measured"),
     ):
-        part = factor * force[cycles.before[0] : cycles.after[min(SHOWN, len(cycles.after)) - 1]]
+        part = (
+            factor
+            * force[cycles.before[0] : cycles.after[min(SHOWN_CYCLES, len(cycles.after)) - 1]]
+        )
         ax.plot(step * np.arange(len(part)), part, color=color, linewidth=width, label=label)
     ax.set(xlabel="time from a trough (s)", ylabel=f"force ({prefix}N)")
 

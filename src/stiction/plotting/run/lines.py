@@ -15,7 +15,7 @@ from stiction.analysis.signals.turning_points import COUNTS, as_counts
 from stiction.arrays import TINY, Floats, Indices
 from stiction.plotting.page.style import BLACK
 
-FEW = 50  # so few samples are drawn as points: the motion between them is unknown
+FEW_SAMPLES = 50  # so few samples are drawn as points: the motion between them is unknown
 BINS = 1500  # more than a printed line has dots
 LINES = 3.0  # widths of a line in a period: fewer leave next to no paper between its two strokes
 TURNS = 6  # at least, of an oscillation: three periods
@@ -142,7 +142,7 @@ def draw_line(
     figure has its size already.
     """
     times, shown = np.asarray(time, dtype=np.float64), np.asarray(values, dtype=np.float64)
-    if len(times) > FEW:
+    if len(times) > FEW_SAMPLES:
         height = np.fmax.reduce(shown) - np.fmin.reduce(shown)
         span, height = window or (times[-1] - times[0], height)
         across = POINT * ax.get_window_extent().width / ax.figure.get_dpi()
@@ -151,7 +151,7 @@ def draw_line(
         if found:
             shown = _draw_range(ax, times, shown, found, color)
     (line,) = ax.plot(*envelope(times, shown), color=color, linewidth=width)
-    if len(times) <= FEW:
+    if len(times) <= FEW_SAMPLES:
         line.set(linestyle="none", marker="o", markersize=2.5, clip_on=False, zorder=3)
     if times[-1] > times[0]:
         ax.set_xlim(times[0], times[-1])

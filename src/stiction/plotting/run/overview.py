@@ -32,7 +32,7 @@ LINE, GAP = 10.5, 3.0  # of text, pt
 DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
 
 SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
-SHOWN = ("force", "direction", "speed")
+SHOWN_PANELS = ("force", "direction", "speed")
 HEIGHT = 1.9  # in
 
 
@@ -228,6 +228,6 @@ def plot_glance(run: Trajectory, axes: Mapping[str, Axes] | None = None) -> dict
     with style():
         panels = axes
         if panels is None:
-            made = canvas(PAGE, HEIGHT).subplots(1, len(SHOWN))
-            panels = dict(zip(SHOWN, fix_ticks(list(made)), strict=True))
+            made = canvas(PAGE, HEIGHT).subplots(1, len(SHOWN_PANELS))
+            panels = dict(zip(SHOWN_PANELS, fix_ticks(list(made)), strict=True))
     return plot_run(run, panels)

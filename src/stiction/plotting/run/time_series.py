@@ -16,14 +16,14 @@ from stiction.analysis.slip import Slip, averaged_slip
 from stiction.arrays import Floats
 from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
-from stiction.plotting.run.lines import BAND, EDGE, FEW, draw_line, mean_course
+from stiction.plotting.run.lines import BAND, EDGE, FEW_SAMPLES, draw_line, mean_course
 from stiction.text.quantity_text import metric_prefix, percent
 from stiction.trajectory import Trajectory
 
-PARTS = 500  # of the time: finer than a printed line shows
+PARTS_OF_TIME = 500  # of the time: finer than a printed line shows
 HARDLY = 1.0  # %, of the time stuck: less is hardly seen
 DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
-LEAST = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
+LEAST_MOTION = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
 CONSTANT = 1e-9  # of a quantity: a smaller range is rounding
 STILL = 1.0  # deg: least range of the axis of an angle
 
@@ -88,7 +88,7 @@ def _after_start(run: Trajectory, variable: str) -> Floats:
     sticks, or creeps far slower, at once. Few samples, which are shown as such, keep it.
     """
     values = run.samples[variable].astype(np.float64)
-    if len(values) > FEW:
+    if len(values) > FEW_SAMPLES:
         values[0] = np.nan
     return values
 
@@ -134,7 +134,7 @@ def draw_position(ax: Axes, run: Trajectory) -> Line2D:
 def stays(run: Trajectory) -> bool:
     """Return whether the mass stays where it is, but for rounding, while the drive moves."""
     way = fastest_drive(run) * float(np.ptp(run.samples["time"]))
-    return bool(way > 0.0 and np.ptp(run.samples["X"]) <= LEAST * way)
+    return bool(way > 0.0 and np.ptp(run.samples["X"]) <= LEAST_MOTION * way)
 
 
 def fastest_drive(run: Trajectory) -> float:
@@ -166,12 +166,12 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     speed = _after_start(run, "slip_speed")
     largest = np.fmax.reduce(speed, initial=0.0)
     ax.set_ylabel(r"$v_\mathrm{slip}$ (m/s)")
-    if not largest > LEAST * fastest_drive(run):
+    if not largest > LEAST_MOTION * fastest_drive(run):
         say_only(ax, "no slip")
         return draw_line(ax, run.samples["time"], np.zeros(len(speed)), GREEN)
     ax.set_yscale("log")
     least = 0.0 if hasattr(run.slider.law, "grain") else 1e-7 * largest
-    if len(speed) <= FEW:
+    if len(speed) <= FEW_SAMPLES:
         shown = np.where(speed > least, speed, np.nan)
         return draw_line(ax, run.samples["time"], shown, GREEN)
     slip = average_slip(run)
@@ -190,7 +190,7 @@ def slipping(slip: Slip, drive: float) -> Floats | None:
     `drive` is in m/s.
     """
     moves = np.isfinite(slip.mean) & (slip.mean > DEEPEST * drive)
-    if not moves[1:].any() or not np.fmax.reduce(slip.high[1:]) > LEAST * drive:
+    if not moves[1:].any() or not np.fmax.reduce(slip.high[1:]) > LEAST_MOTION * drive:
         return None  # but for the release of the mass
     moving = moves & (slip.rest < 0.5)
     rests = np.pad(slip.rest >= 1.0, 1, mode="edge")
@@ -225,7 +225,7 @@ def average_slip(run: Trajectory) -> Slip:
     """
     times, slider = run.samples["time"], run.slider
     rapid = 0.5 / slider.natural_frequencies[0]
-    parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS, 20 * PARTS)
+    parts = np.clip(5 * (times[-1] - times[0]) / rapid, PARTS_OF_TIME, 20 * PARTS_OF_TIME)
     slip = averaged_slip(run, int(parts))
     mean, high = mean_course(slip.time, slip.mean, slip.high, rapid)
     return slip._replace(mean=mean, high=high)

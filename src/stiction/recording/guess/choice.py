@@ -16,8 +16,8 @@ from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
 DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
-SHOWN = 3  # columns that a message suggests
-EVEN = 0.01  # of a step: displacements whose steps differ by more have no interval
+SHOWN_COLUMNS = 3  # columns that a message suggests
+EVEN_STEPS = 0.01  # of a step: displacements whose steps differ by more have no interval
 # of a suggestion: what only the user knows. A number instead would be run as it stands
 GAP = "?"
 FILL = f"with its number in place of {GAP}"
@@ -301,7 +301,7 @@ def _say_time(table: FileTable, columns: Sequence[FileColumn]) -> str:
         if size_of(column.unit, "m") is not None and _increases(column.values):
             steps = np.diff(column.values)
             step = float(np.median(steps))
-            if np.abs(steps - step).max() <= EVEN * step:
+            if np.abs(steps - step).max() <= EVEN_STEPS * step:
                 interval = Suggestion("interval", f"{GAP} s")
                 return (
                     f"column {column} rises in steps of {step:.4g} {column.unit}: say the time of "
@@ -388,7 +388,9 @@ def _article(meaning: str) -> str:
 
 def _ambiguous(path: object, name: str, matches: Sequence[FileColumn]) -> NoReturn:
     choices = ", ".join(str(each) for each in matches)
-    each_of_them = " or ".join(str(Suggestion(name, each.number)) for each in matches[:SHOWN])
+    each_of_them = " or ".join(
+        str(Suggestion(name, each.number)) for each in matches[:SHOWN_COLUMNS]
+    )
     raise ResultError(
         f"{path}: {len(matches)} columns may be the {CHANNELS[name].meaning}: {choices}; say which "
         f"by its number: {each_of_them}"

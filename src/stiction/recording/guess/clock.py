@@ -12,17 +12,17 @@ from stiction.formats.table import FileTable, number_of
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
-ALIKE = 1e-3  # relative: intervals, of which the file rounds one
+ALIKE_INTERVALS = 1e-3  # relative: intervals, of which the file rounds one
 AGAIN = 0.05  # of a block's duration: a time so near its first begins the next block
 STEADY = 30.0  # largest of intervals over the smallest
-FEW = 0.02  # of the samples: with so few different values a column is a clock or a period
-FIRST = 0.01  # relative: how far the first interval may differ from the others
+FEW_VALUES = 0.02  # of the samples: with so few different values a column is a clock or a period
+FIRST_INTERVAL = 0.01  # relative: how far the first interval may differ from the others
 ODD = 3.0  # times as far off as any other interval: it differs by more than jitter
 TIED = 0.5  # of the samples with the time of the one before
 FALLING = 0.05  # of the steps: times fall where a block begins again, intervals at every other step
 ONE_MISSING = 1.75  # steps between two samples: in a longer interval at least one is missing
 GAP = 3.0  # medians: longer intervals do not count in the rate; shorter ones may be those of jitter
-EVEN = 0.5  # of their mean: how far the other intervals may spread for that to be sure
+EVEN_INTERVALS = 0.5  # of their mean: how far the other intervals may spread for that to be sure
 
 
 class Block(NamedTuple):
@@ -89,7 +89,7 @@ def _are_periods(path: object, values: Floats, said: str | None, name: str) -> b
         return True
     # few values, each for many samples: a coarse clock, or a period that changes
     distinct = len(np.unique(values))
-    if steady and falls == 0.0 and ties > TIED and distinct <= max(3.0, FEW * len(values)):
+    if steady and falls == 0.0 and ties > TIED and distinct <= max(3.0, FEW_VALUES * len(values)):
         raise ResultError(
             f"{path}: {name} has only {distinct} values, {values.min():g} to {values.max():g} s, "
             "in ascending order: the times of a coarse clock, or the interval of each sample? say "
@@ -108,7 +108,7 @@ def rate_of(time: Floats) -> float:
     if not len(steps) or time[-1] <= time[0]:
         return 0.0
     near = steps[steps <= GAP * np.median(steps)]
-    if len(near) < len(steps) and near.std() < EVEN * near.mean():
+    if len(near) < len(steps) and near.std() < EVEN_INTERVALS * near.mean():
         return len(near) / float(near.sum())
     return len(steps) / float(time[-1] - time[0])
 
@@ -121,7 +121,7 @@ def _first_interval(time: Floats) -> list[str]:
     usual = float(np.median(steps[1:]))
     others = np.abs(steps[1:] - usual).max()
     odd = abs(steps[0] - usual)
-    if usual > 0.0 and odd > FIRST * usual and odd > ODD * others:
+    if usual > 0.0 and odd > FIRST_INTERVAL * usual and odd > ODD * others:
         return [
             f"the first interval is {in_words(steps[0], 's')}, the others {in_words(usual, 's')}"
         ]
@@ -133,7 +133,7 @@ def check_stated(time: Floats, interval: float | None, stated: str) -> list[str]
     if interval is None or len(time) < 3:
         return []
     usual = float(np.median(np.diff(time)))
-    if usual <= 0.0 or abs(interval / usual - 1.0) <= ALIKE:
+    if usual <= 0.0 or abs(interval / usual - 1.0) <= ALIKE_INTERVALS:
         return []
     return [
         f"the file states an interval of {stated}, and its times are {in_words(usual, 's')} apart: "

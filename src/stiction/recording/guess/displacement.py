@@ -7,7 +7,7 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.recording.guess.clock import ONE_MISSING
 
-ALIKE = 0.1  # relative difference of jumps that are one wrap
+ALIKE_JUMPS = 0.1  # relative difference of jumps that are one wrap
 WHOLE = 0.8  # of the range of values: smaller jumps are motion
 QUIET = 0.25  # of the jump: other steps are smaller
 
@@ -40,7 +40,7 @@ def unwrap(values: Floats, time: Floats, period: float | None) -> tuple[Floats, 
     if not len(at) or gap or rest.max(initial=0.0) > QUIET * span:
         return values, 0.0, 0
     sizes = np.abs(steps[at])
-    if np.ptp(sizes) > ALIKE * span or abs(np.sign(steps[at]).sum()) != len(at):
+    if np.ptp(sizes) > ALIKE_JUMPS * span or abs(np.sign(steps[at]).sum()) != len(at):
         return values, 0.0, 0
     # a jump is the period less the step that the motion takes meanwhile
     inner = np.clip(at, 1, len(steps) - 2)

@@ -13,7 +13,7 @@ from stiction.arrays import TINY
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 from stiction.solver.exact.collocation import SlipStep, products
-from stiction.solver.exact.oscillation import MOST, Oscillator, Swing, after, swings
+from stiction.solver.exact.oscillation import MOST_SQUARE, Oscillator, Swing, after, swings
 from stiction.solver.exact.slip_frame import Frame, Outset, friction, pull
 from stiction.solver.problem import Problem, drive_rate, drive_rate_change
 from stiction.solver.stepping.block_algebra import Triple, less
@@ -69,7 +69,7 @@ def local_error(
     s, h = step.swing, step.h
     over = s.p_in, s.rest_in, s.slid_in
     error = error_at(problem, frame, step, over, accuracy, motion, INTERIOR, DEFECT_WEIGHT)
-    if max(frame.k_11, frame.k_22) * h * h > MOST:
+    if max(frame.k_11, frame.k_22) * h * h > MOST_SQUARE:
         over = superpose(o, s, h)
         later = error_at(problem, frame, step, over, accuracy, motion, LATER, LATER_WEIGHT)
         error = max(error, later)

@@ -25,9 +25,11 @@ from stiction.solver.stepping.block_algebra import Triple, dot
 from stiction.solver.stepping.radau import DERIVATIVE, INTEGRAL, INTERIOR, VALUE, A, C, D
 
 FIFTH, APART = 0.2, sqrt(6.0) / 10.0  # the stages are 2/5 -+ sqrt(6)/10 and 1
-LEAST, MOST = 1e-3, 6.25  # of k h^2: below, a cubic is as good; above, it replaces the swing
-JUST_BELOW = 0.99  # of MOST: a step that is cut to it is superposed still
-CALM = 3.0  # of k h^2 over a drifting level: near MOST, the defect misses what is left of cos
+# Of k h^2: below, a cubic is as good; above, it replaces the swing
+LEAST_SQUARE, MOST_SQUARE = 1e-3, 6.25
+JUST_BELOW = 0.99  # of MOST_SQUARE: a step that is cut to it is superposed still
+# Of k h^2 over a drifting level: near MOST_SQUARE, the defect misses what is left of cos
+CALM = 3.0
 UNEXPLAINED = 0.5  # of the slip's change: a drift that leaves more of it is none
 STRONGEST = 0.2  # of |beta|/sqrt(k): with stronger damping it dies out within one swing
 
@@ -97,7 +99,7 @@ def drift_of_level(frame: Frame, start: Outset, beta: float) -> float:
 def swings(o: Oscillator, h: float) -> bool:
     """Return whether a step of size `h` is superposed on the oscillation."""
     square = o.k * h * h
-    return LEAST < square < MOST and weakly_damped(o)
+    return LEAST_SQUARE < square < MOST_SQUARE and weakly_damped(o)
 
 
 @inlined
@@ -112,7 +114,7 @@ def within_reach(o: Oscillator, h: float, accuracy: Accuracy, motion: float) -> 
 
     `motion` is that about steady sliding, m/s.
     """
-    most = JUST_BELOW * MOST if o.drift == 0.0 else CALM
+    most = JUST_BELOW * MOST_SQUARE if o.drift == 0.0 else CALM
     if o.k * h * h < most or not weakly_damped(o):
         return h
     size = accuracy.tolerance * min(accuracy.speed + o.level + o.x, motion)

@@ -18,7 +18,7 @@ from stiction.solver.stepping.control import ATTEMPTS, FAILED, RESOLUTION, step_
 from stiction.solver.stepping.limit import Limit, Time, limit_there, within_limit
 
 ROUNDING_OF_TIME = 1e-15  # of the time: a landing so close to the end of the segment is at its end
-DIRECT, EVEN = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
+DIRECT, EVEN_STEPS = 1.1, 0.55  # of the time to landing: land at once, or in two even steps
 # of the slip, at the first two stages: a first guess where a step turns out to land
 LANDING_FIRST, LANDING_SECOND = 0.5, 0.2
 
@@ -107,9 +107,9 @@ def size_before_landing(
     It lands unless two even steps are better than a long and a short one, or slip passes by zero.
     """
     until = inf if frame.r == 0.0 else time_to_landing(frame, start, o, h)
-    if not EVEN * until < h:
+    if not EVEN_STEPS * until < h:
         return h, False
     rest = swung_to_rest(o, until)
     if h < DIRECT * until or passes(problem, frame, o, rest):
-        return EVEN * until, False
+        return EVEN_STEPS * until, False
     return rest, True

@@ -52,7 +52,7 @@ from stiction.solver.stick import stick_duration
 
 TRIES = 3  # with twice the pieces each
 NODE_STEPS = number(10_000)
-FIRST = number(0)  # row of samples
+FIRST_ROW = number(0)  # row of samples
 NODE_SHARE = 0.1  # tolerance of a node's steps over that of others; their noise is below `closing`
 
 
@@ -99,7 +99,7 @@ def solve_cycle(
     times, samples, stick = known.never, known.nowhere, known.stick
     known.record.used[0] = 0
     code, state, _, turns = take_steps(
-        problem, state, early + longest, fine, most, times, samples, FIRST, stick, known
+        problem, state, early + longest, fine, most, times, samples, FIRST_ROW, stick, known
     )
     end = state.motion
     state = State(end, with_limit(state.memory, NO_LIMIT), state.counts)

@@ -16,7 +16,7 @@ SMALL = 0.2  # below, the series are exact to the last digit; above, differences
 # ratios of successive factors of q^2 in sinh(q)/q, and in 3 (cosh(q) - sinh(q)/q)/q^2
 ROUND = (1 / 6, 1 / 20, 1 / 42, 1 / 72, 1 / 110)
 OUTER = (1 / 10, 1 / 28, 1 / 54, 1 / 88, 1 / 130)
-LARGEST = 700.0  # sinh of more overflows
+LARGEST_ARGUMENT = 700.0  # sinh of more overflows
 ROUNDS = 30
 GENTLE = 0.1  # rise that is not damped
 ROUGHLY = 1e-3  # change of q: the damped one need not be known better
@@ -49,7 +49,7 @@ def slip_and_slope(eps: float, q_x: float, q_y: float) -> SlipAndSlope:
         f, outer = eps * series(square, ROUND), eps / 3.0 * series(square, OUTER)
     else:
         q = sqrt(square)
-        up = 0.5 * exp(min(q, LARGEST))
+        up = 0.5 * exp(min(q, LARGEST_ARGUMENT))
         down = 0.25 / up
         f = eps * (up - down) / q
         outer = (eps * (up + down) - f) / square
@@ -88,7 +88,7 @@ def damped_rise(q: float, rise: float, share: float) -> float:
     """
     if rise < GENTLE:
         return q + rise
-    most = min(q + rise / max(1.0 - share, TINY), LARGEST)
+    most = min(q + rise / max(1.0 - share, TINY), LARGEST_ARGUMENT)
     if share > 0.0:
         # sinh q' = sinh q + cosh q rise/share, for large values too
         x = rise / share
@@ -96,7 +96,7 @@ def damped_rise(q: float, rise: float, share: float) -> float:
         most = min(most, there)
     y = most
     for _ in range(ROUNDS):
-        up, down = exp(min(y - q, LARGEST)), exp(-y - q)
+        up, down = exp(min(y - q, LARGEST_ARGUMENT)), exp(-y - q)
         unit = 1.0 + exp(-2.0 * q)
         # sinh y/cosh q and cosh y/cosh q without overflow
         sinh_y, cosh_y = (up - down) / unit, (up + down) / unit

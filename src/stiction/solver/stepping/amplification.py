@@ -17,7 +17,7 @@ from stiction.solver.compilation.stand_in import called_from_both
 from stiction.solver.problem import Problem, cross_damping
 
 LONGER = 64.0  # times what is left: so much later a growth shows
-SHOWN = 1e20  # times the disturbance: more than one that does not grow becomes in between
+SHOWN_GROWTH = 1e20  # times the disturbance: more than one that does not grow becomes in between
 FINER = 0.1  # of a step: the trapezoidal rule then shows most of the growth
 DOUBLINGS = 100
 DAMPED = 7200.0  # |R(iy)| = 1 - y^6/7200 + ... of Radau IIA
@@ -70,12 +70,12 @@ def grows(rates: np.ndarray, room: np.ndarray, h: float, left: float) -> bool:
         power, product = product, power
         over *= 2.0
         size = largest(power)
-        if not size < SHOWN:
+        if not size < SHOWN_GROWTH:
             return True
-        if size < 1.0 / SHOWN:
+        if size < 1.0 / SHOWN_GROWTH:
             return False
     multiply(inverse, power, product)  # in which fast modes are small
-    return not largest(product) < SHOWN
+    return not largest(product) < SHOWN_GROWTH
 
 
 @piece

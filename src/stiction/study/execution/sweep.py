@@ -211,7 +211,7 @@ class Tally(NamedTuple):
         if not self.rate > 0.0 or waited > LONGER * self.pause:
             return float("inf")
         longer = growth(self.trend, 2.0 * missing / self.now)
-        known = 1.0 / ALIKE <= longer <= ALIKE
+        known = 1.0 / ALIKE_TIMES <= longer <= ALIKE_TIMES
         return max(missing / self.rate - waited, 0.0) if known else float("inf")
 
 
@@ -236,7 +236,7 @@ def growth(trend: float, halves: float) -> float:
 Report = Callable[[Tally], None]
 LATER = 1.1  # times the time of the first task: until then others began beside it
 FEWEST = 4  # tasks after the first, from which a rate may say how long the others take
-ALIKE = 2.0  # times as long by the trend as by the rate is still about the same
+ALIKE_TIMES = 2.0  # times as long by the trend as by the rate is still about the same
 MOST_GROWTH = 500.0  # trend times halves; more is beyond all floating-point numbers
 LONGER = 2.0  # times the longest pause until now is more than chance
 

@@ -15,7 +15,7 @@ from stiction.errors import DescriptionError, Fault, echo
 from stiction.text.units import Read, Whole, unread
 from stiction.text.validation import Described, unknown_name
 
-MOST = 1_000_000_000  # values of an axis
+MOST_VALUES = 1_000_000_000  # values of an axis
 
 
 def _list(value: Any) -> Any:
@@ -30,7 +30,7 @@ def _list(value: Any) -> Any:
 # the parameter of the axis determines the unit
 Quantity = Annotated[Any, AfterValidator(unread)]
 Quantities = Annotated[Read[tuple[Quantity, ...]], BeforeValidator(_list)]
-Count = Annotated[Whole, Field(ge=1, le=MOST)]
+Count = Annotated[Whole, Field(ge=1, le=MOST_VALUES)]
 Spacing = Literal["linear", "log"]
 
 

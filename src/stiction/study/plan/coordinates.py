@@ -22,7 +22,7 @@ from stiction.text.validation import unknown_name
 
 # reserved names in a store; an old name is read as its new one
 TAKEN = {"status", "message", "time", *MEASURES, *FORMERLY, *map(trace_name, TRACES)}
-ROUNDING = 8.0 * np.finfo(float).eps  # relative: what a value on a grid may be off by
+GRID_ROUNDING = 8.0 * np.finfo(float).eps  # relative: what a value on a grid may be off by
 DIGITS = 12  # of a value on a grid that somebody would write
 NAME = re.compile(r"\w[\w ,.-]*")
 
@@ -172,10 +172,10 @@ def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
         if not start * stop > 0.0:
             raise ValueError("logarithms need values of one sign, none zero; use spacing 'linear'")
         made: Floats = start * (stop / start) ** share
-        off = ROUNDING * (1.0 + abs(log(stop / start))) * np.abs(made)
+        off = GRID_ROUNDING * (1.0 + abs(log(stop / start))) * np.abs(made)
     else:
         made = start + (stop - start) * share
-        off = np.full(len(made), ROUNDING * max(abs(start), abs(stop)))
+        off = np.full(len(made), GRID_ROUNDING * max(abs(start), abs(stop)))
     if isinstance(axis, Grid):
         made = decimals(made, off)
     made[share == 0.0], made[share == 1.0] = start, stop  # without rounding
@@ -190,7 +190,7 @@ def decimals(values: Floats, off: Floats) -> Floats:
     >>> decimals(np.array([0.45 - 1e-16, 1.0 / 3.0]), np.array([4e-16, 4e-16]))
     array([0.45      , 0.33333333])
     """
-    places = DIGITS - np.ceil(np.log10(np.maximum(np.abs(values), off / ROUNDING) + TINY))
+    places = DIGITS - np.ceil(np.log10(np.maximum(np.abs(values), off / GRID_ROUNDING) + TINY))
     near = np.array([*map(round, values.tolist(), places.astype(int).tolist())])
     return np.where(np.abs(near - values) <= off, near, values) + 0.0  # no -0
 

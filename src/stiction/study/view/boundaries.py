@@ -17,7 +17,7 @@ from stiction.study.plan.coordinates import ascending, values_at, vary
 from stiction.study.plan.study import Study
 from stiction.system.slider import Slider
 
-FINE = 60  # points in each direction, or as many as there are runs
+FINE_POINTS = 60  # points in each direction, or as many as there are runs
 
 PHI_C = r"steady sliding loses stability ($\varphi_c$)"
 ZETA = r"$\zeta(\theta = \varphi) = 1$"
@@ -74,7 +74,7 @@ def along(study: Study, dim: str) -> dict[str, Floats]:
     order = ascending(known, dim)
     axes = {path: each.values[order] for path, each in known.items() if each.dim == dim}
     count = len(next(iter(axes.values())))
-    parts = -(-FINE // max(count - 1, 1)) if count > 1 else 1
+    parts = -(-FINE_POINTS // max(count - 1, 1)) if count > 1 else 1
     places = np.linspace(0.0, count - 1, (count - 1) * parts + 1)
     return {path: interpolate(values, places) for path, values in axes.items()}
 

@@ -256,7 +256,7 @@ def test_noise_on_a_long_loading_is_no_break_away(samples, lasts, noise):
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("MEMORY", 30.0), ("FINE", 120.0), ("ALONE", 1e3), ("ALONE", 40.0)]
+    ("name", "value"), [("MEMORY", 30.0), ("FINE_SAMPLES", 120.0), ("ALONE", 1e3), ("ALONE", 40.0)]
 )
 def test_what_makes_the_error_of_a_filter_quick_to_find_does_not_change_it(
     monkeypatch, name, value

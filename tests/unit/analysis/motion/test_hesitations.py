@@ -5,7 +5,7 @@ import pytest
 from tests.drawn import inside
 
 from stiction.analysis.motion import hesitations
-from stiction.analysis.motion.hesitations import ALIKE, AROUND, FEW_FALLS, LEAST, OFTEN
+from stiction.analysis.motion.hesitations import ALIKE_FALLS, AROUND, FEW_FALLS, LEAST_FALL, OFTEN
 
 SIZES = [np.array(each) for each in inside(3, *[(0.1, 1.0)] * 40)]
 
@@ -108,7 +108,7 @@ def test_half_the_swing_divides_falls_that_differ():
 def test_falls_of_one_size():
     """Their standard deviation is less than 0.23 of their mean, with twice its own error added."""
     for spread, alike in ((0.9, True), (1.1, False)):
-        falls = 1.0 + spread * ALIKE / (1 + (2 / 40) ** 0.5) * np.array([1.0, -1.0] * 20)
+        falls = 1.0 + spread * ALIKE_FALLS / (1 + (2 / 40) ** 0.5) * np.array([1.0, -1.0] * 20)
         # over what is typical of them, the larger ones
         assert hesitations._alike(falls) == alike
     assert hesitations._alike(np.ones(FEW_FALLS))
@@ -138,7 +138,7 @@ def test_what_the_record_cuts_of_a_hesitation_is_left_out_even_if_its_first_leg_
     assert set(values[hesitations.remove_hesitations(values).kept].tolist()) == {5.0, 5.1, 10.0}
     # unless a leg before is more than a tenth of the swing, of the largest falls the same
     values = np.array([10.0, 10.05, 9.95, 10.5, 4.5, *[9.5, 4.5] * 7, 8.0])[::way]
-    assert 10.05 in values[hesitations._below(values, LEAST).kept]
+    assert 10.05 in values[hesitations._below(values, LEAST_FALL).kept]
 
 
 @pytest.mark.parametrize("steep", [-0.8, -0.5, 0.5, 0.8])

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.drive.recorded.columns import LARGEST
+from stiction.drive.recorded.columns import LARGEST_TEXT
 from stiction.errors import DescriptionError
 
 T = np.linspace(0.0, 1.0, 101)
@@ -210,7 +210,7 @@ def test_files_that_are_none(tmp_path):
         with pytest.raises(DescriptionError, match=words):
             st.protocols.read_recorded(path)
     with path.open("wb") as file:
-        file.truncate(LARGEST + 1)
+        file.truncate(LARGEST_TEXT + 1)
     with pytest.raises(DescriptionError, match="thin its rows"):
         st.protocols.read_recorded(path)
 
@@ -219,7 +219,7 @@ def test_a_file_may_be_packed_and_unpacks_to_no_more_than_others(tmp_path):
     path = tmp_path / "stage.csv.gz"
     path.write_bytes(gzip.compress((HEAD + rows(",")).encode()))
     assert st.protocols.read_recorded(path).duration == pytest.approx(1.0)
-    path.write_bytes(gzip.compress(bytes(LARGEST + 1), 1))
+    path.write_bytes(gzip.compress(bytes(LARGEST_TEXT + 1), 1))
     with pytest.raises(DescriptionError, match="more than 67,108,864 bytes; thin its rows"):
         st.protocols.read_recorded(path)
 

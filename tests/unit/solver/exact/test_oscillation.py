@@ -14,7 +14,7 @@ from stiction.solver.exact.collocation import SlipStep
 from stiction.solver.exact.error_estimate import dips
 from stiction.solver.exact.oscillation import (
     CALM,
-    MOST,
+    MOST_SQUARE,
     STRONGEST,
     Oscillator,
     after,
@@ -56,7 +56,7 @@ def _swing(o, h):
 @pytest.mark.parametrize("part", [0.1, 0.5, 1.0])
 def test_it_solves_its_equation(o, part):
     """(M21) for p, p' and the distance, by the exponential of the matrix; the force grows."""
-    t = part * sqrt(0.99 * MOST / o.k)
+    t = part * sqrt(0.99 * MOST_SQUARE / o.k)
     generator = np.zeros((5, 5))
     generator[0, 1] = generator[2, 0] = generator[3, 4] = 1.0
     generator[1] = [-o.k, -2 * o.beta, 0, o.k * o.drift, o.k * o.level + 2 * o.beta * o.drift]
@@ -71,7 +71,7 @@ def test_it_solves_its_equation(o, part):
 @pytest.mark.parametrize("part", [0.25, 1.0])
 def test_the_series_of_a_quarter_of_the_longest_step(part):
     """Of cosine and sine, to the first term that each leaves out; with a few roundings."""
-    square = part * MOST / 16.0
+    square = part * MOST_SQUARE / 16.0
     o, t = OSCILLATORS[2]._replace(beta=0.0), sqrt(square)
     found = plain(propagator)(o, t)
     rounding = 4 * np.finfo(float).eps
@@ -89,7 +89,7 @@ def test_the_series_of_a_quarter_of_the_longest_step(part):
 @pytest.mark.parametrize("early", [0.3, 0.5, 0.7])
 def test_a_dip_between_the_stages_is_seen(least, early):
     """Of the oscillation itself; of a cubic through its values both kinds look alike."""
-    h = sqrt(0.98 * MOST)
+    h = sqrt(0.98 * MOST_SQUARE)
     o = Oscillator(1.0, 1.0, 0.0, 1.0 + least, 0.0, -np.cos(early * h), -np.sin(early * h))
     p = tuple(_after(o, c * h)[0] for c in C)
     assert min(p) > 0.0
@@ -107,7 +107,7 @@ def test_a_dip_before_another_fall_is_seen(least):
     """In a step too long to be laid over an oscillation: the slip is its cubic."""
     bottom = 0.3
     slip = np.polynomial.Polynomial([0.0, 0.0, 3.0, -4.0])(np.polynomial.Polynomial([-bottom, 1.0]))
-    slip, h = slip + least, sqrt(2.0 * MOST)
+    slip, h = slip + least, sqrt(2.0 * MOST_SQUARE)
     p = tuple(float(slip(c)) for c in C)
     assert min(p) > 0.0
     assert p[1] > p[2]
@@ -133,7 +133,7 @@ def test_a_dip_of_an_oscillation_before_another_fall_is_seen(off):
 
 @pytest.mark.parametrize("o", OSCILLATORS)
 def test_what_it_adds_to_the_equations_is_what_its_cubic_leaves(o):
-    h = 0.5 * sqrt(MOST / o.k)
+    h = 0.5 * sqrt(MOST_SQUARE / o.k)
     p, v, slid = np.array([_after(o, c * h) for c in C]).T
     s = _swing(o, h)
     scale = np.abs(p).max() + h * np.abs(v).max()
@@ -210,7 +210,7 @@ def test_constant_friction_along_an_axis_is_exact_at_any_tolerance():
 
 @pytest.mark.parametrize(("x", "v"), [(1.0, 0.0), (0.0, 1.0), (0.6, -0.8)])
 @pytest.mark.parametrize("motion", [inf, 1e-4])
-@pytest.mark.parametrize(("drift", "square"), [(0.0, 0.99 * MOST), (7.0, CALM)])
+@pytest.mark.parametrize(("drift", "square"), [(0.0, 0.99 * MOST_SQUARE), (7.0, CALM)])
 def test_a_step_covers_a_part_of_an_oscillation_that_can_be_seen(x, v, motion, drift, square):
     """One of less than the tolerance, of the slip or of the slower motion, is none."""
     k, accuracy = 400.0, held_to(1e-3)._replace(tolerance=1e-3)

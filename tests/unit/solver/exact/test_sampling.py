@@ -87,7 +87,7 @@ def test_where_that_is_accurate_enough_the_polynomial_is_taken(name, drawn, size
 def test_nothing_swings_in_a_part_of_a_step_longer_than_an_oscillation(name, drawn):
     """Section 14 of the method: the error of a step laid over it would not have been estimated."""
     problem, frame, o, _, _ = begin(name, drawn, "not")
-    h = 1.4 * np.sqrt(oscillation.MOST / o.k)
+    h = 1.4 * np.sqrt(oscillation.MOST_SQUARE / o.k)
     start, motion = plain(slip_frame.outset)(problem, frame), 1.0
     step = SlipStep(plain(oscillation.still)(), h, (frame.r,) * 3, (0.0,) * 3)
     assert not plain(oscillation.swings)(o, h)

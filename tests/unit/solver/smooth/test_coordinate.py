@@ -9,7 +9,7 @@ from tests.entry import plain
 
 from stiction.solver.smooth import coordinate as of
 from stiction.solver.smooth.coordinate import (
-    LARGEST,
+    LARGEST_ARGUMENT,
     coordinate,
     damped_rise,
     slip_and_slope,
@@ -32,7 +32,7 @@ def test_there_and_back(q):
 
 
 def test_slip_that_is_no_float_is_the_largest_that_is():
-    assert plain(slip_at)(1.0, 800.0, 0.0)[0] == pytest.approx(sinh(LARGEST))
+    assert plain(slip_at)(1.0, 800.0, 0.0)[0] == pytest.approx(sinh(LARGEST_ARGUMENT))
     tiny = plain(coordinate)(1e-200, 3e-200, 4e-200)  # whose squares are none
     assert tiny == pytest.approx((0.6 * asinh(5.0), 0.8 * asinh(5.0)))
 
@@ -74,7 +74,7 @@ def test_a_damped_update(q, rise, share):
         grown = (exp(y - q) - exp(-y - q)) / (1.0 + exp(-2.0 * q)) - tanh(q)
         return share * grown + (1.0 - share) * (y - q) - rise
 
-    if left(LARGEST - 1.0) > 0.0:
-        assert up == pytest.approx(brentq(left, q, LARGEST - 1.0), abs=2e-3)
+    if left(LARGEST_ARGUMENT - 1.0) > 0.0:
+        assert up == pytest.approx(brentq(left, q, LARGEST_ARGUMENT - 1.0), abs=2e-3)
     else:
-        assert up >= LARGEST - 1.0
+        assert up >= LARGEST_ARGUMENT - 1.0

@@ -19,15 +19,15 @@ from stiction.analysis.signals.turning_points import CLEAR, TurningPoints, witho
 from stiction.arrays import TINY, Floats, Indices
 from stiction.recording.noise import white_noise
 
-FEW = 8  # slips; more stand apart by their heights
-LEAST, FALLS = 0.05, 8.0  # of the range of the force, and standard deviations of noise: a fall
+FEW_SLIPS = 8  # slips; more stand apart by their heights
+LEAST_FALL, FALLS = 0.05, 8.0  # of the range of the force, and standard deviations of noise: a fall
 LOADED, RELOADED = 0.3, 0.15  # of a fall, at least: the rises before and after it
 TOP = 0.2  # of a rise, near its peak: there the mass creeps
-FEWEST_MEANS, PARTS = 8, 32  # in the rest of it, and in how many it is looked at
+FEWEST_MEANS, PARTS_OF_LOADING = 8, 32  # in the rest of it, and in how many it is looked at
 STRAIGHT = 0.05  # of a rise: its root mean square distance from a straight line
 REACH = 2.0  # standard deviations of noise, which hide where a fall begins and ends
 RISEN = 0.5  # of a rise, passes the line
-ALIKE = 1.6  # ratio of two rates of loading
+ALIKE_RATES = 1.6  # ratio of two rates of loading
 SLOW = float(1.0 / rise_share(STICKING) - 1.0)  # a fall over the time in which it is loaded again
 
 
@@ -49,17 +49,17 @@ def few_slips(time: Floats, force: Floats) -> FewSlips | None:
 
     All falls that are as large as a twentieth of its range must be slips.
     """
-    if len(force) < PARTS:
+    if len(force) < PARTS_OF_LOADING:
         return None
     noise = white_noise(force, order=2)
-    height = LEAST * float(np.ptp(part_means(force, MEANS_OF_RECORD)))
+    height = LEAST_FALL * float(np.ptp(part_means(force, MEANS_OF_RECORD)))
     width = int(max((FALLS * noise / max(height, TINY)) ** 2, 1.0))
-    if len(force) < PARTS * width:
+    if len(force) < PARTS_OF_LOADING * width:
         return None
     values, times = (block_means(each, width) for each in (without_spikes(force), time))
     points = _without_small_ends(values, remove_reversals(values, height)[0], height)
     falls = np.flatnonzero(np.diff(values[points]) < 0.0)
-    if not 0 < len(falls) <= FEW or falls[0] == 0 or falls[-1] >= len(points) - 2:
+    if not 0 < len(falls) <= FEW_SLIPS or falls[0] == 0 or falls[-1] >= len(points) - 2:
         return None
     rates = [_rate_of_slip(times, values, points[k - 1 : k + 3]) for k in falls]
     if not all(rates):
@@ -90,7 +90,7 @@ def _rate_of_slip(time: Floats, values: Floats, corners: Indices) -> float:
     drop = float(values[peak] - values[trough])
     before = _rate(time[begin : peak + 1], values[begin : peak + 1], drop, LOADED * drop)
     after = _rate(time[trough : end + 1], values[trough : end + 1], drop, RELOADED * drop)
-    alike = before > 0.0 and 1.0 / ALIKE < after / before < ALIKE
+    alike = before > 0.0 and 1.0 / ALIKE_RATES < after / before < ALIKE_RATES
     if not alike or float(time[trough] - time[peak]) > SLOW * drop / max(before, after):
         return 0.0
     return before
@@ -108,7 +108,7 @@ def _rate(time: Floats, rise: Floats, drop: float, least: float) -> float:
     last = int(np.argmax(rise[first:] > rise[-1] - TOP * height)) + first
     if last - first < FEWEST_MEANS:
         return 0.0
-    parts = np.stack([part_means(each[first:last], PARTS) for each in (time, rise)])
+    parts = np.stack([part_means(each[first:last], PARTS_OF_LOADING) for each in (time, rise)])
     way = line(*parts)
     even = float(np.std(way.deviations(*parts))) < STRAIGHT * height
     risen = way.slope * float(time[last] - time[first])  # else it is a step, or noise

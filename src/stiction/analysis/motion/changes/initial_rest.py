@@ -15,11 +15,11 @@ from stiction.analysis.signals.robust import largest_magnitude
 from stiction.arrays import Floats
 from stiction.recording.noise import white_noise
 
-FIRST = 8, 400  # readings at the beginning: so many, or one in so many of all
+FIRST_READINGS = 8, 400  # readings at the beginning: so many, or one in so many of all
 NOISE = 5.0  # standard deviations: noise alone is as far from zero once in a million readings
 SAME = 1e-9  # of the largest force: readings that differ by less are equal but for rounding
 # Parts of the time up to half of the first loading, two of which are compared
-PARTS = (8, 16, 32, 64)
+PARTS_OF_LOADING = (8, 16, 32, 64)
 FEWEST = 4  # samples in each of them
 CONSTANT = 0.5  # of the average rate of that loading: a spring that is loaded already has all of it
 
@@ -33,7 +33,7 @@ class InitialRest(NamedTuple):
 
 def first_reading(force: Floats) -> Floats:
     """Return the first readings of a force."""
-    fewest, part = FIRST
+    fewest, part = FIRST_READINGS
     return force[: max(fewest, len(force) // part)]
 
 
@@ -52,12 +52,12 @@ def initial_rest(force: Floats, top: float) -> InitialRest | None:
     In a force that rises from the first sample on, neighbouring parts differ by as much as half of
     its loading has it.
     """
-    if len(force) < FIRST[0]:
+    if len(force) < FIRST_READINGS[0]:
         return None
     rise = top - first_level(force)[0]
     half = int(np.argmax(force >= top - 0.5 * rise))
     noise = white_noise(force)
-    for parts in PARTS:
+    for parts in PARTS_OF_LOADING:
         size = half // parts
         if size < FEWEST:
             break

@@ -16,13 +16,13 @@ from stiction.analysis.signals.robust import part_means
 from stiction.arrays import Floats, median
 from stiction.recording.noise import rounding_error, white_noise
 
-PARTS = 200  # means of a record
+RECORD_MEANS = 200  # means of a record
 LONG = 12  # of them, in each level; levels take so much of the record together
-MOST = 0.6
+SHARE_OF_LEVELS = 0.6
 # Standard deviations of a mean: by how much those of a level differ from its median, the standard
 # deviation of all of them, and the change to the next level. A random walk is 1.4 in 12 steps and
 # comes no farther than its root of their number
-WITHIN, EVEN, CHANGED = 5.0, 2.0, 12.0
+WITHIN, EVEN_MEANS, CHANGED = 5.0, 2.0, 12.0
 WORTH = 0.02  # of the force: a change that is less is not worth a level
 QUICK = 1.0  # of the shorter level: a change takes no longer
 
@@ -44,17 +44,21 @@ def levels(record: Record) -> list[Level]:
     They are sought in the force under one load, if the load is measured. One at which the spring
     is unloaded, as before and after a test, is none of sliding: one may be left.
     """
-    if len(record) < 4 * PARTS:
+    if len(record) < 4 * RECORD_MEANS:
         return []
-    raw, times = (part_means(x, PARTS) for x in (record.force, record.time))
-    means = raw if record.load is None else part_means(record.force / record.relative_load(), PARTS)
+    raw, times = (part_means(x, RECORD_MEANS) for x in (record.force, record.time))
+    means = (
+        raw
+        if record.load is None
+        else part_means(record.force / record.relative_load(), RECORD_MEANS)
+    )
     if not np.isfinite(means).all():
         return []
     noise = white_noise(means, order=1)
     if not np.ptp(means) > CHANGED * noise:
         return []
     runs = _runs(means, noise)
-    if len(runs) < 2 or sum(run.stop - run.start for run in runs) < MOST * PARTS:
+    if len(runs) < 2 or sum(run.stop - run.start for run in runs) < SHARE_OF_LEVELS * RECORD_MEANS:
         return []
     if not all(_changes(means, noise, *pair) for pair in pairwise(runs)):
         return []
@@ -75,7 +79,7 @@ def _runs(means: Floats, noise: float) -> list[slice]:
     """Return the long runs of means that stay about their median, as independent ones do."""
     windows = np.lib.stride_tricks.sliding_window_view(means, LONG)
     far = np.abs(windows - np.median(windows, axis=1)[:, None]).max(axis=1)
-    stays = (far < WITHIN * noise) & (windows.std(axis=1) < EVEN * noise)
+    stays = (far < WITHIN * noise) & (windows.std(axis=1) < EVEN_MEANS * noise)
     runs, end = [], 0
     for first in np.flatnonzero(stays):
         if first < end:

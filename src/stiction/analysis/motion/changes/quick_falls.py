@@ -26,7 +26,7 @@ NEAR = 16  # lengths over which the mean change is taken off: what a slow wave a
 AS_GOOD = 0.9  # of the clearest: of two lengths as good, more of a fall ends within the longer one
 # The clearness at which slips are as likely as noise. Of 10 000 records of noise (white, filtered,
 # of heavy tails), vibration, settling and loading, 4 have more than 4, the most 4.9.
-EVEN = 4.5
+EVEN_CHANCE = 4.5
 TINIEST = 1e-9  # of the force: smaller falls are those of numbers
 # The steps of a converter, in which a drift falls one at a time, are clear if there are seven, and
 # then the standard deviation of the force is two: falls above one deviation are not of a drift

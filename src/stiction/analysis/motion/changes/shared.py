@@ -12,7 +12,7 @@ from stiction.analysis.signals.straight_line import LASTING
 from stiction.arrays import TINY, Floats
 
 FEWEST = 4  # cycles that show such a change
-MOST = 20  # means of cycles: more would take long
+MOST_MEANS = 20  # means of cycles: more would take long
 LASTS = LASTING[::2]  # correlations of neighbours that are tried
 # Changes over a record that are tried, over the scatter of the forces that show them: each factor
 # is as likely. Two of three records are taken to have none. Where the zero is steady, the errors of
@@ -45,7 +45,7 @@ def shared_change(begin: float, at: Floats, peak: Floats, trough: Floats) -> flo
     """
     if len(at) < FEWEST:
         return 0.0
-    at, peak, trough = (part_means(each, MOST) for each in (at, peak, trough))
+    at, peak, trough = (part_means(each, MOST_MEANS) for each in (at, peak, trough))
     drop, forces = peak - trough, _without_friction(peak, trough)
     shapes = _shapes((at - begin) / (at[-1] - begin))
     found = _shifts(forces, shapes, SIZES)

@@ -23,7 +23,7 @@ from stiction.recording.noise import seeming_motion
 
 CHANGES = 0.05  # of the larger of two velocities: a drive that is to keep to one differs by less
 SOON = 0.25  # of the stretch at the new velocity. So soon come a quarter of all cycles by chance
-MOST = 0.75  # of all swings: then none of them is a cycle of stick-slip
+MOST_SWINGS = 0.75  # of all swings: then none of them is a cycle of stick-slip
 NEAR = 0.02  # of a swing: noise places its peak no better
 # Times that a drive becomes faster again in a swing: one that moves in short steps does so more
 # often, and the spring is loaded over many of them
@@ -69,7 +69,7 @@ def made_by_jumps(swings: CycleTable, jumps: list[VelocityJump]) -> bool:
     near = NEAR * swings["period"]
     peaks = _soon_after(swings["peak_time"], near, jumps, rises=True)
     troughs = _soon_after(swings["trough_time"], near, jumps, rises=False)
-    return bool(np.mean(peaks | troughs) >= MOST)
+    return bool(np.mean(peaks | troughs) >= MOST_SWINGS)
 
 
 def _times_faster(swings: CycleTable, jumps: list[VelocityJump]) -> Indices:

@@ -16,7 +16,7 @@ from stiction.analysis.signals.digitised import resolution
 from stiction.recording.noise import white_noise
 from stiction.text.units import in_words
 
-FEW = 0.05  # of the cycles: if fewer are cut off, means over all of them hardly change
+FEW_CYCLES = 0.05  # of the cycles: if fewer are cut off, means over all of them hardly change
 # Of samples at the end of a range in noise: so many, so many times as dense as those below, in so
 # many of the cycles, and so many in each of these; and widths that are tried, over the noise, up to
 # a part of the drop. At the top of a sine samples are 2.7 times as dense as below, and five times
@@ -28,7 +28,7 @@ WIDTHS, WIDE = np.geomspace(1e-3, 8.0, 14), 0.1
 # where friction differs by a third of the noise, less in two of 12
 FEWEST_LEVELS, UNLIKE = 3, 4.0
 ENDS = {"largest": "peaks", "least": "troughs"}
-SHOWN = {
+EFFECTS = {
     "largest": "static and kinetic coefficients and drops are too small, and what seems to creep "
     "there may rest",
     "least": "drops are too small and kinetic coefficients too large",
@@ -88,7 +88,7 @@ def doubt_clipping(ends: Sequence[FlatEnd]) -> Iterator[str]:
         yield (
             f"The force stays {near} {in_words(value, 'N')}, its {name} value, for up to {longest} "
             f"samples: if that is the end of the load cell's range, {ENDS[name]} are cut off, "
-            f"{SHOWN[name]}."
+            f"{EFFECTS[name]}."
         )
 
 
@@ -125,7 +125,7 @@ def _in_words(reached: Sequence[str]) -> str:
 
 def _ends_reached(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> list[str]:
     """Return the names of the ends that more than a few of the cycles reach."""
-    return [each.name for each in ends if _share_reached(record, cycles, each) > FEW]
+    return [each.name for each in ends if _share_reached(record, cycles, each) > FEW_CYCLES]
 
 
 def _breaks_at(record: Record, cycles: CycleTable, broke: Measured, end: FlatEnd) -> bool:

@@ -38,7 +38,7 @@ SHARP = 5.0
 BETWEEN = 0.5
 # Periods of the cut-off, after which a filter has forgotten; samples of each; times its cut-off,
 # from which on another filter does nothing beside it
-MEMORY, FINE, ALONE = 10.0, 40.0, 30.0
+MEMORY, FINE_SAMPLES, ALONE = 10.0, 40.0, 30.0
 ORDERS = (1, 2, 4)  # of a filter that is supposed: it draws a slip out, or swings after it
 
 
@@ -260,7 +260,7 @@ def _smear(cycles: CycleTable, fall: float, filters: Sequence[LowPass]) -> tuple
         return 0.0, 0.0
     slowest = min(each.cut for each in filters)
     filters = [each for each in filters if each.cut < ALONE * slowest]
-    rate = FINE * max(each.cut for each in filters)
+    rate = FINE_SAMPLES * max(each.cut for each in filters)
     period, drop = cycles.median("period"), cycles.median("drop")
     fall = max(fall**2 - slowest**-2, rate**-2) ** 0.5
     lasts = np.array([period - fall, fall])

@@ -12,7 +12,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.metadata.drive_velocity import drive_velocity
 from stiction.analysis.motion.metadata.loading_rate import loading_rates
-from stiction.analysis.motion.metadata.quantity import ALIKE, FEWEST_SAMPLES, StatedQuantity
+from stiction.analysis.motion.metadata.quantity import ALIKE_VALUES, FEWEST_SAMPLES, StatedQuantity
 from stiction.analysis.motion.metadata.stiffness_over_mass import stiffness_over_mass
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
@@ -21,7 +21,7 @@ from stiction.analysis.signals.robust import largest_magnitude
 from stiction.analysis.signals.straight_line import line
 
 SEEN = 0.4  # of the sample rate: a faster oscillation is lost, or seen at another frequency
-AT_REST, ROUNDING = 0.02, 1e-12  # of the largest force: a reading at rest, and one of zero
+AT_REST, ZERO_READING = 0.02, 1e-12  # of the largest force: a reading at rest, and one of zero
 
 
 def compare_metadata(
@@ -61,7 +61,9 @@ def _normal_load(record: Record) -> StatedQuantity | None:
     found, spread = float(record.load.mean()), float(record.load.std())
     stated = record.stated_load or nan
     how = "mean of its channel, with its spread"
-    return StatedQuantity("normal load", "N", found, spread, stated, 1 - ALIKE, 1 + ALIKE, how)
+    return StatedQuantity(
+        "normal load", "N", found, spread, stated, 1 - ALIKE_VALUES, 1 + ALIKE_VALUES, how
+    )
 
 
 def _transverse_frequency(record: Record) -> StatedQuantity | None:
@@ -90,7 +92,7 @@ def _zero(record: Record) -> StatedQuantity | None:
         return None
     largest = largest_magnitude(record.force)
     read, spread = float(np.median(some)), float(np.std(some))
-    read = read if abs(read) > ROUNDING * largest else 0.0
+    read = read if abs(read) > ZERO_READING * largest else 0.0
     if not abs(read) < AT_REST * largest or spread > AT_REST * largest:
         return None
     its = line(record.time[: len(some)], some)

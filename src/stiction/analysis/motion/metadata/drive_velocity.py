@@ -6,13 +6,14 @@ from math import nan
 
 import numpy as np
 
-from stiction.analysis.motion.metadata.quantity import ALIKE, FEWEST_SAMPLES, StatedQuantity
+from stiction.analysis.motion.metadata.quantity import ALIKE_VALUES, FEWEST_SAMPLES, StatedQuantity
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import correlation_time, standard_error
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 
-PARTS = 200, 66, 25  # of a record, for the speed of a drive that may turn, or rest within noise
+# Of a record, for the speed of a drive that may turn, or rest within noise
+PARTS_OF_RECORD = 200, 66, 25
 TO_AND_FRO = 0.8  # of its reach: a drive that comes less far on the whole turns
 HELD = 0.01  # of a drive's largest speed: in parts that are slower it rests
 NOISE = 20.0  # standard deviations, by which means of the displacement do not differ
@@ -27,11 +28,13 @@ def drive_velocity(record: Record) -> StatedQuantity | None:
     error = standard_error(way.deviations(record.time, record.drive_position))
     whole = StatedQuantity(
         "drive velocity", "m/s", abs(way.slope), error / float(record.time.std()), stated,
-        1 - ALIKE, 1 + ALIKE, "slope of the drive's displacement",
+        1 - ALIKE_VALUES, 1 + ALIKE_VALUES, "slope of the drive's displacement",
     )  # fmt: skip
     if whole.agrees:  # a drive that jerks, or rings, rests and turns as well
         return whole
-    divided = [_speeds_of_parts(record.time, record.drive_position, most) for most in PARTS]
+    divided = [
+        _speeds_of_parts(record.time, record.drive_position, most) for most in PARTS_OF_RECORD
+    ]
     speeds, net, reach, rests = next((each for each in divided if each[-1]), divided[0])
     turns = net < TO_AND_FRO * reach
     if not rests and not turns and whole.found * record.duration >= TO_AND_FRO * reach:

@@ -13,7 +13,7 @@ from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.drift import Drift
 from stiction.analysis.motion.load_cell.swings import swings_of_cell
 from stiction.analysis.motion.loading import late_rate, rounding_of_rates
-from stiction.analysis.motion.metadata.quantity import ALIKE, StatedQuantity, median_error
+from stiction.analysis.motion.metadata.quantity import ALIKE_VALUES, StatedQuantity, median_error
 from stiction.analysis.motion.regime.force_course import FASTEST
 from stiction.analysis.motion.regime.kinds import STICK_SLIP, TRANSITIONAL
 from stiction.analysis.record import Record
@@ -100,7 +100,7 @@ def _loading_rate(
     """
     found, later = float(np.median(slopes)), float(np.median(late))
     off = hypot(off, alike * found)
-    if found > FASTEST * stated and abs(later - stated) < ALIKE * stated:
+    if found > FASTEST * stated and abs(later - stated) < ALIKE_VALUES * stated:
         off = hypot(off, found - later)
     error = hypot(median_error(slopes), off)
     # a single cycle tells no error, but by how much drift and steps may change it

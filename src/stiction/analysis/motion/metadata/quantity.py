@@ -10,7 +10,7 @@ from stiction.analysis.signals.robust import trimmed_mean
 from stiction.arrays import Floats
 
 FEWEST_SAMPLES = 6  # the duration of a fall, or a slope, is not known by fewer
-ALIKE = 0.1  # relative: a mean that was measured agrees so far with its stated value
+ALIKE_VALUES = 0.1  # relative: a mean that was measured agrees so far with its stated value
 OF_MEDIAN = 1.22  # standard error of a median, over that of the mean without a tenth at each end
 
 
@@ -71,7 +71,7 @@ class StatedQuantity(NamedTuple):
     def is_same(self) -> bool:
         """Whether the value found is the stated one, not only one that it allows."""
         apart = abs(self.found - self.stated)
-        return bool(apart <= max(ALIKE * abs(self.stated), ERRORS_997 * self.error))
+        return bool(apart <= max(ALIKE_VALUES * abs(self.stated), ERRORS_997 * self.error))
 
 
 def median_error(values: Floats) -> float:

@@ -55,7 +55,7 @@ from stiction.trajectory import Trajectory
 FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
 # A run sticks again and again if it does so by so many times in this part of the record, its end;
 # so many samples from stick to stick show the cycles, though their falls differ in size
-FEWEST_STICKS, LATE, SHOWN = 3, 0.25, 16.0
+FEWEST_STICKS, LATE, SHOWN_SAMPLES = 3, 0.25, 16.0
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
 WITHOUT_CYCLES = (SETTLING, STEADY, STUCK)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
@@ -232,7 +232,7 @@ def _unless_it_sticks(record: Record, seen: Regime) -> Regime:
     share = stuck_share(begin, end, record.sticks)
     if count < FEWEST_STICKS or share <= TOUCHES:
         return seen
-    needed = SHOWN * count / (end - begin)
+    needed = SHOWN_SAMPLES * count / (end - begin)
     return Regime(
         UNDETERMINED, 0.0, {"late_sticks": count, "stick_share": share, "rate_needed": needed}
     )

@@ -32,7 +32,7 @@ from stiction.analysis.signals.hum import beat_frequency
 from stiction.arrays import TINY, Floats, median
 
 ENOUGH = 8.0  # samples a cycle, which show its shape
-ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more
+STICK_ROUNDING = 1e-9  # of a period: stick intervals are that accurate, and more
 # Samples that a quick fall seems to take at most, and that a fall takes which may be quick: a sine
 # of four samples falls for two
 QUICK, SLOWEST = 1.6, 3.0
@@ -88,7 +88,7 @@ class Shapes(NamedTuple):
     def chance(self) -> float:
         """Likelihood that one more cycle is of the kind, by the shares that decide."""
         if self.kind != self.by_speed:
-            return _chance(self.sticks, TOUCHES, np.inf, ROUNDING)
+            return _chance(self.sticks, TOUCHES, np.inf, STICK_ROUNDING)
         if self.by_speed != self.by_rise:
             return _chance(self.still, RESTING_SHARE, np.inf, self.resolution)
         return _chance(self.rise, *bounds(self.kind), self.resolution)

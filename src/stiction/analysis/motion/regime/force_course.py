@@ -6,7 +6,7 @@ from math import inf
 
 import numpy as np
 
-from stiction.analysis.motion.changes.quick_falls import EVEN, quick_falls
+from stiction.analysis.motion.changes.quick_falls import EVEN_CHANCE, quick_falls
 from stiction.analysis.motion.changes.sliding import sliding
 from stiction.analysis.motion.course import (
     BEGINS_UNLOADED,
@@ -65,7 +65,7 @@ EVEN_LINE, FAINT_LINE = 0.6, 0.3
 MAKES_UP = 2.1
 # Of the power of a hump: a line of so much is one vibration, in noise. In fewer periods an
 # irregular vibration has such a line, too
-MOST, MANY_PERIODS = 0.5, 100.0
+LINE_SHARE, MANY_PERIODS = 0.5, 100.0
 RIPPLE = 1e-3  # of the force's span: a vibration that is less is not a motion of its own
 
 
@@ -234,7 +234,7 @@ def _unless_it_slips(record: Record, seen: Regime) -> Regime:
     cycles. Fewer, or smaller ones, are evidence beside the kind.
     """
     falls = quick_falls(record.time, record.force)
-    chance = likelihood(falls.clearness / EVEN)
+    chance = likelihood(falls.clearness / EVEN_CHANCE)
     if chance > 0.5:
         its = {"quick_falls": falls.number, "quick_fall": falls.height}
         seen = seen._replace(evidence=seen.evidence | its)
@@ -261,7 +261,7 @@ def _hidden_line(record: Record, begin: int, least: float, clearness: float = 1.
 def _is_whole(line: Line, hump: Hump, record: Record) -> bool:
     """Return whether a line is the whole vibration of a hump, in a record that can tell."""
     known = line.frequency * record.duration > MANY_PERIODS
-    return known and line.height**2 > MOST * 8.0 * hump.rms**2
+    return known and line.height**2 > LINE_SHARE * 8.0 * hump.rms**2
 
 
 def _as_evidence(line: Line) -> dict[str, float]:

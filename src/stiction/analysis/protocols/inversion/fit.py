@@ -38,7 +38,9 @@ NOISIER = 10.0  # by which the variance of noise may grow with the step
 # derived. One of the laws ageing, slip and Perrin's fitted to another missed on 116 random rigs:
 # D_c was off by 12 times its error in the median, by 5 to 19 in eight of ten, by 45 at most
 AMISS = 15.0
-FIRST = tuple((by_a, by_D) for by_D in (0.01, 0.03, 0.1, 0.3, 1.0, 3.0) for by_a in (1.0, 1.6, 3.0))
+FIRST_GUESSES = tuple(
+    (by_a, by_D) for by_D in (0.01, 0.03, 0.1, 0.3, 1.0, 3.0) for by_a in (1.0, 1.6, 3.0)
+)
 STARTS = 2  # of these from which a fit begins at most: until one goes through the points
 
 
@@ -112,7 +114,7 @@ def _starts(problem: StepProblem) -> list[Floats]:
     slowest = max(-change, 0.0) / data.rig.stiffness  # D_c below which sliding is unstable
     clock_and_stiffness = [problem.delay.likely, 0.0] if data.clock else []
     found: list[tuple[float, int, Floats]] = []
-    for by_a, by_D in FIRST:
+    for by_a, by_D in FIRST_GUESSES:
         log_D = log(by_D * guess + 1.05 * slowest)
         at = np.array([data.level, log(by_a * least), log_D, change, *clock_and_stiffness])
         off = problem.residuals(at)

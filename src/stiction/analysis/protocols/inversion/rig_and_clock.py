@@ -14,7 +14,7 @@ from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.text.lists import in_list, number_text
 from stiction.text.units import in_words
 
-ALIKE = log(1.02)  # stiffnesses that are so near to each other are not worth a sentence
+ALIKE_STIFFNESSES = log(1.02)  # stiffnesses that are so near to each other are not worth a sentence
 
 
 def say_rig_and_clock(
@@ -61,7 +61,7 @@ def _say_clock(steps: Sequence[StepData], drive: str) -> list[str]:
 def _say_stiffness(found: CommonMean) -> list[str]:
     """Return that a rig is stiffer or softer than stated, if it surely is."""
     by, error = found.value, found.safe_error
-    if abs(by) < max(ERRORS_997 * error, ALIKE):
+    if abs(by) < max(ERRORS_997 * error, ALIKE_STIFFNESSES):
         return []
     share, way = 100.0 * abs(expm1(by)), "stiffer" if by > 0.0 else "softer"
     off = number_text(100.0 * exp(by) * error, ".1g")

@@ -27,7 +27,8 @@ Law = Literal["slip", "ageing", "perrin"]
 
 TOLERANCE = 1e-7  # of y and psi
 APART = 1e-3  # of D_c, between two places of which the difference is the slope
-MOST = 3000  # rates: more take a slip that runs away, and an oscillation that is hardly damped
+# Rates: more take a slip that runs away, and an oscillation that is hardly damped
+MOST_RATES = 3000
 FASTEST = 30.0  # logarithm of the slip speed over V at which a slip has run away
 YOUNGEST = -100.0  # logarithm of the state, in a trial step of one: none is so young
 
@@ -90,7 +91,7 @@ def _course(
     """Return y and psi, (n, 2), at times from 0 on; None where the slip runs away."""
     from scipy.integrate import ODEintWarning, odeint
 
-    ages, damping, left = EVOLUTIONS[law], rig.damping, MOST
+    ages, damping, left = EVOLUTIONS[law], rig.damping, MOST_RATES
 
     def rate(state: Floats, _: float) -> tuple[float, float]:
         nonlocal left
