@@ -84,7 +84,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     shown = drift if is_shown(drift, regime.kind) else None
     ends = ends or noisy_end(record, cycles)
     kind, slips = regime.kind, cycles
-    if "slips_at" in regime.evidence and found.few is not None:
+    if regime.has("slips_at") and found.few is not None:
         kind, slips = STICK_SLIP, found.few
     stated = compare_metadata(record, kind, slips, shown, ends)
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
@@ -145,7 +145,7 @@ def _friction(
     """
     changed = found.lines or found.ringing or found.cell
     clean = record.with_force(found.force) if changed else record
-    if "levels" in regime.evidence:
+    if regime.has("levels"):
         first = clean.before(levels(clean)[0].end)
         several = "the force stays at several levels, each with its own: see the parts"
         return friction_of(first, regime, usual).without_kinetic(several)
@@ -154,7 +154,7 @@ def _friction(
     friction = friction.with_errors(break_away=rounding)
     if changed:  # what is left without a line has no steps, but their error
         friction = friction.with_errors(static=rounding, kinetic=rounding)
-    if "forth" in regime.evidence or "straight" in regime.evidence:
+    if regime.has("forth", "straight"):
         return friction.without_any(turns)
     return friction.without_kinetic(turns) if turns else friction
 
@@ -166,11 +166,11 @@ def imposed_reversal(run: Trajectory | None, regime: Regime) -> str:
     """
     if run is not None and turns_round(run):
         return "the drive goes back and forth"
-    if "forth" in regime.evidence:
+    if regime.has("forth"):
         return "the force goes back and forth between both signs"
-    if "plateaus" in regime.evidence:
+    if regime.has("plateaus"):
         return "the force goes back and forth between two levels"
-    if "straight" in regime.evidence:
+    if regime.has("straight"):
         return "the force rises and falls evenly, as where the mass sticks"
     return ""
 

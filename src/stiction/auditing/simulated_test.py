@@ -14,7 +14,7 @@ from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, own_swings
 from stiction.analysis.motion.regime.classify import regime_of
-from stiction.analysis.motion.regime.evidence import SLOWER, Regime
+from stiction.analysis.motion.regime.evidence import SLOWER, Evidence, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record, across_force, record_of
@@ -95,8 +95,8 @@ class SimulatedTest:
         seen = regime_of(self.record, self.swings)
         if not seen.loads:
             return seen
-        slower = self.shares.rest + self.shares.creep
-        return seen._replace(evidence={SLOWER: slower} | seen.evidence)
+        slower: dict[Evidence, float] = {SLOWER: self.shares.rest + self.shares.creep}
+        return seen._replace(evidence=slower | seen.evidence)
 
     @cached_property
     def shares(self) -> Shares:

@@ -17,7 +17,7 @@ from stiction.analysis.motion.doubts.cycles import (
 )
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.doubts.zero import ABOUT_ZERO, ZERO
-from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.evidence import Evidence, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK, UNDETERMINED
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
@@ -32,7 +32,8 @@ from stiction.text.units import in_words
 
 ANALYSE = Instruction("stiction analyse", "st.analyse")
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip
-IN_NOISE = {"hidden", "quick_falls"}  # evidence of swings that noise hides
+# Evidence of swings that noise hides
+IN_NOISE: tuple[Evidence, ...] = "hidden", "quick_falls"
 OTHERWISE = 4.0 / 3.0  # times as many cycles, and one more that an end may cut, are others
 QUICKLY = 0.25  # of a cycle: a force that rises so fast, and falls slowly, has the other sign
 
@@ -65,7 +66,7 @@ def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
             f"{name} shows no stick-slip, of which a fit needs {LEAST_CYCLES} cycles: it is "
             f"{regime.kind}; `{ANALYSE}` tells what that says of friction"
         )
-    if regime.kind == UNDETERMINED and IN_NOISE & regime.evidence.keys():
+    if regime.kind == UNDETERMINED and regime.has(*IN_NOISE):
         raise ResultError(
             f"noise hides the cycles of {name}, of which a fit needs {LEAST_CYCLES}: measure with "
             f"less noise; `{ANALYSE}` tells what is seen of them"

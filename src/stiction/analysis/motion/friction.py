@@ -190,9 +190,9 @@ def _kinetic(
     kind = regime.kind
     if comes_to_rest(record.slip_speed) and kind != STUCK:
         return None, "the mass comes to rest"
-    if "slips_at" in regime.evidence:
+    if regime.has("slips_at"):
         return None, "the mass sticks before its only slip, and after it"
-    if "turns" in regime.evidence or "loads_on" in regime.evidence:
+    if regime.has("turns", "loads_on"):
         return None, "it is not determined whether the mass slides"
     if kind in (STEADY, SETTLING, TRANSVERSE) or (kind == UNDETERMINED and slid):
         return _sliding(record, slides, kind, relative), ""

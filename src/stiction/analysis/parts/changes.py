@@ -85,7 +85,7 @@ def _section_of_levels(parts: xr.Dataset) -> Section:
 def find(found: Analysis) -> xr.Dataset | None:
     """Return the means over each part of a record, with standard errors; None for one part."""
     cycles = found.cycles
-    if "levels" in found.regime.evidence:
+    if found.regime.has("levels"):
         its = levels(found.record)
         return xr.Dataset(
             {

@@ -10,7 +10,7 @@ import numpy as np
 from stiction.analysis.motion.cycle_columns import mean_in_words, table_of, with_spread
 from stiction.analysis.motion.doubts.creep_distance import hidden_way, way_of_lag
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE
-from stiction.analysis.motion.regime.kinds import TO_AND_FRO
+from stiction.analysis.motion.regime.evidence import TO_AND_FRO
 from stiction.arrays import xr
 from stiction.storage.table_files import number
 from stiction.text.columns import SHOWN_ROWS, Quantity, grid
@@ -74,7 +74,7 @@ def section(found: Analysis) -> Section:
 
 def turns_with_drive(found: Analysis) -> bool:
     """Return whether the swings of a force are those of a drive that goes back and forth."""
-    return any(name in found.regime.evidence for name in TO_AND_FRO)
+    return found.regime.has(*TO_AND_FRO)
 
 
 def _error_of_rate(found: Analysis) -> float:

@@ -15,6 +15,7 @@ from stiction.analysis.motion.changes.cycles import (
 )
 from stiction.analysis.motion.cycle_columns import mean_in_words, table_of
 from stiction.analysis.motion.doubts.warnings import turns_round
+from stiction.analysis.motion.regime.evidence import TO_AND_FRO, Evidence
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
@@ -22,7 +23,6 @@ from stiction.analysis.motion.regime.kinds import (
     STEADY,
     STICK_SLIP,
     STUCK,
-    TO_AND_FRO,
     TRANSITIONAL,
     TRANSVERSE,
     UNDETERMINED,
@@ -49,7 +49,7 @@ if TYPE_CHECKING:
 
 ALIKE_DROPS = 0.1  # standard deviation of the drops over their mean
 SLOW_SWING = 2.0  # times the mass's own period on its spring: a slower swing is not its own
-IMPOSED = {  # by the evidence
+IMPOSED: dict[Evidence, str] = {
     "unchanging": "The force is the same in all samples, as no measured force is: the channel is "
     "dead, or at an end of its range.",
     "forth": "The force goes back and forth between both signs, as where the drive does so.",
@@ -111,10 +111,10 @@ def _describe_imposed_force(found: Analysis) -> str:
             f"The motion changes at {in_words(change, 's')}: one part is {kind}, the other "
             f"{found.regime.runner_up}. Analyse each by itself: means over both mean little."
         )
-    name = next((name for name in IMPOSED if name in evidence), "")
+    name = next((name for name in IMPOSED if name in evidence), None)
     loops = "Of a run, or with the position, st.analysis.hysteresis gives the loops."
     remedy = f" Analyse {by_strokes()}. {loops}" if name in TO_AND_FRO else ""
-    return f"{IMPOSED.get(name, '')}{remedy}"
+    return f"{IMPOSED[name] if name else ''}{remedy}"
 
 
 def _describe_cycles(found: Analysis) -> str:
@@ -160,25 +160,25 @@ def _period(cycles: xr.Dataset, mean: str) -> str:
 def _describe_unclear_force(found: Analysis) -> str:
     """Describe a motion that noise hides, or whose force may have the other sign; '' for others."""
     evidence = found.regime.evidence
-    if found.regime.runner_up == STICK_SLIP and "quick_falls" in evidence:
+    if found.regime.runner_up == STICK_SLIP and found.regime.has("quick_falls"):
         fall = in_words(evidence["quick_fall"], "N", 2)
         return (
             f"The mass probably sticks and slips, in noise that hides its cycles: the force falls "
             f"quickly {evidence['quick_falls']:.0f} times, by about {fall}, and hardly ever rises "
             "so quickly. Measure with less noise."
         )
-    if found.regime.kind == UNDETERMINED and "hidden" in evidence:
+    if found.regime.kind == UNDETERMINED and found.regime.has("hidden"):
         swings, by = in_words(evidence["hidden"], "Hz"), in_words(evidence["hidden_height"], "N")
         return (
             f"Noise hides what the mass does. By its spectrum the force swings at {swings}, by "
             f"{by} from crest to trough: average neighbouring samples, or measure with less noise."
         )
-    if "late_sticks" in evidence:
+    if found.regime.has("late_sticks"):
         return (
             "The mass sticks and slips, too often for so few samples to show it: sample the run at "
             f"{advice(evidence['rate_needed'], 'Hz')} or more."
         )
-    against = "against" in evidence
+    against = found.regime.has("against")
     if evidence.get("backward", 0.0) <= 0.5 and not against:
         return ""
     fast = "The force falls slowly and rises fast"
@@ -224,7 +224,7 @@ def _describe_course(found: Analysis) -> str:
 def _begins_to_slip(found: Analysis) -> str:
     """Describe a single slip, or a loading that ends in a fall; else say that nothing is known."""
     evidence = found.regime.evidence
-    if "slips_at" in evidence:
+    if found.regime.has("slips_at"):
         at = in_words(evidence["slips_at"], "s")
         by = with_error(evidence["slips_by"], evidence["slips_by_error"], "N")
         return (
@@ -245,7 +245,7 @@ def _begins_to_slip(found: Analysis) -> str:
 
 def _sticks(found: Analysis) -> str:
     """Describe a mass that does not slip, as far as its record shows it."""
-    if "rests" in found.regime.evidence:
+    if found.regime.has("rests"):
         return "The mass rests from beginning to end: friction holds it."
     if found.regime.runner_up == STEADY:
         return "The force only rises: either the mass sticks, or it slides and the force drifts."
@@ -302,11 +302,11 @@ def _settles(found: Analysis, at: str) -> str:
     evidence = found.regime.evidence
     if comes_to_rest(found.record.slip_speed):
         return "The motion dies down, and the mass comes to rest."
-    swings = bool({"swings", "over"} & set(evidence))
+    swings = found.regime.has("swings", "over")
     if found.friction.break_away is not None and not swings:
         return f"The mass breaks away once, and comes to slide steadily{at}."
-    if swings or "fading" in evidence or evidence.get("change", 0.0) >= 0.0:
-        what = "force settles" if "late_share" in evidence else "vibration dies down"
+    if swings or found.regime.has("fading") or evidence.get("change", 0.0) >= 0.0:
+        what = "force settles" if found.regime.has("late_share") else "vibration dies down"
         return f"The {what}, and the mass comes to slide steadily{at}."
     if found.record.slip_speed is not None:
         return f"The force settles, and the mass comes to slide steadily{at}."
@@ -316,7 +316,7 @@ def _settles(found: Analysis, at: str) -> str:
     )
 
 
-def _slides(evidence: dict[str, float], at: str) -> str:
+def _slides(evidence: dict[Evidence, float], at: str) -> str:
     """Describe steady sliding, as far as its record shows it."""
     if (span := evidence.get("wanders")) is not None:
         return (
@@ -336,7 +336,7 @@ def _slides(evidence: dict[str, float], at: str) -> str:
 def _besides(found: Analysis) -> str:
     """Return at what frequency a force swings beside its course, if its spectrum shows it."""
     evidence, seen = found.regime.evidence, found.oscillation
-    if "hidden" in evidence:
+    if found.regime.has("hidden"):
         swings, height = in_words(evidence["hidden"], "Hz"), evidence["hidden_height"]
         return (
             f" Besides, the force swings at {swings}, by {in_words(height, 'N')} from crest to "

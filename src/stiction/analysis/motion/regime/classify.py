@@ -17,7 +17,7 @@ from stiction.analysis.motion.cycles import Swings, swings, swings_without
 from stiction.analysis.motion.disturbance import RESIDUE
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
-from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.evidence import Evidence, Regime
 from stiction.analysis.motion.regime.force_course import by_course
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -118,8 +118,9 @@ def regime_of(record: Record, found: Swings) -> Regime:
     if found.dying or _has_stopped(record, found):
         drop = found.table["drop"]
         sure = (len(drop) + 1) / (len(drop) + 3)
-        name = "over" if found.over and drop[-1] > BELOW * drop.max() else "swings"
-        evidence = {name: len(drop), "last_over_first": drop[-1] / drop[0]}
+        over = found.over and drop[-1] > BELOW * drop.max()
+        name: Evidence = "over" if over else "swings"
+        evidence: dict[Evidence, float] = {name: len(drop), "last_over_first": drop[-1] / drop[0]}
         last = float(drop[-1]), float(found.table["period"][-1])
         return _or_transverse(record, Regime(SETTLING, sure, evidence), *last)
     if len(found.table):
@@ -138,7 +139,7 @@ def regime_of(record: Record, found: Swings) -> Regime:
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
 
 
-def _single_slip(record: Record, found: Swings, slips: CycleTable) -> dict[str, float]:
+def _single_slip(record: Record, found: Swings, slips: CycleTable) -> dict[Evidence, float]:
     """Return the evidence of a slip that is the only one, so that there is no cycle.
 
     Its fall has the error of two samples, or of the loading from one to the next; of what its ends,
@@ -165,7 +166,7 @@ def _while_it_slides(record: Record, found: Swings) -> Regime:
     seen = by_course(until, found._replace(force=found.force[:last]))
     end = min(falls, len(record) - 1)
     before, later = (abs(float(np.median(part))) for part in np.split(record.force, [end]))
-    name = "unloaded" if later < NO_LOAD * before else "turned"
+    name: Evidence = "unloaded" if later < NO_LOAD * before else "turned"
     return seen._replace(evidence=seen.evidence | {name: float(record.time[end])})
 
 
@@ -202,8 +203,8 @@ def _beside_gaps(record: Record, seen: Regime) -> Regime:
     if its.kind in WITHOUT_CYCLES:
         return seen._replace(confidence=min(seen.confidence, its.confidence))
     other = its.runner_up if its.kind == UNDETERMINED else its.kind
-    gaps = {"gaps": float(grid.missing.mean())}
-    return Regime(UNDETERMINED, 0.0, seen.evidence | gaps, other)
+    evidence = seen.evidence | {"gaps": float(grid.missing.mean())}
+    return Regime(UNDETERMINED, 0.0, evidence, other)
 
 
 def _or_transverse(record: Record, seen: Regime, *last: float) -> Regime:
@@ -273,7 +274,7 @@ def _or_hum(record: Record, period: float, differs: float, seen: Regime) -> Regi
             without, left = swings_without(line, record)
             other = regime_of(without, left)
             kind = STEADY if other.runner_up == STEADY else other.kind
-            evidence = {name: seen.evidence[name] for name in seen.evidence if name != "backward"}
-            evidence["mains"] = line.frequency
+            evidence = seen.evidence | {"mains": line.frequency}
+            evidence.pop("backward", None)
             return Regime(seen.kind, 0.5 * seen.confidence, evidence, kind)
     return seen

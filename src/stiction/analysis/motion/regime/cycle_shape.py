@@ -11,7 +11,7 @@ from stiction.analysis.motion.changes.cycles import parts_of
 from stiction.analysis.motion.course import MANY, ORDERED, order
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
-from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.evidence import Evidence, Regime
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
@@ -102,7 +102,7 @@ def by_parts(record: Record, found: Swings) -> Regime:
     tables = [found.lasting.part(part) for part in parts]
     each = [by_shape(record, found._replace(table=table)) for table in tables]
     lasts = [float(table["period"].sum()) for table in tables]
-    changed = {"changed_at": float(tables[1]["start"][0])}
+    changed: dict[Evidence, float] = {"changed_at": float(tables[1]["start"][0])}
     main = each[int(np.argmax(lasts))]
     others = [
         (long, part) for long, part in zip(lasts, each, strict=True) if part.kind != main.kind
@@ -122,8 +122,8 @@ def by_shape(record: Record, found: Swings) -> Regime:
     if own is not None and couples(shapes.by_rise, table.mean("period"), own):
         return _transverse(table, shapes, own, evidence)
     if shapes.kind == UNDETERMINED and table.median("hesitations") >= 1.0:
-        turns_back = {"cycles": len(table), "rise_share": shapes.typical[0]}
-        return Regime(UNDETERMINED, 0.0, turns_back)  # two swings in one, or a ringing
+        # two swings in one, or a ringing
+        return Regime(UNDETERMINED, 0.0, {"cycles": len(table), "rise_share": shapes.typical[0]})
     evidence |= _sizes(found)
     return _no_vibration(record, found, shapes) or _weigh(record, table, shapes, evidence)
 
@@ -169,11 +169,11 @@ def _sticking(record: Record, table: CycleTable) -> Floats:
     return stick_shares(record.sticks, *ends)
 
 
-def _evidence(record: Record, table: CycleTable, shapes: Shapes) -> dict[str, float]:
+def _evidence(record: Record, table: CycleTable, shapes: Shapes) -> dict[Evidence, float]:
     """Return what the shape of the cycles says, and how alike they are."""
     count, (rise, still, sticks) = len(table), shapes.typical
     alike = shapes.kinds.count(shapes.kind) / count
-    evidence = {"cycles": count, "rise_share": rise}
+    evidence: dict[Evidence, float] = {"cycles": count, "rise_share": rise}
     if shapes.kind == UNDETERMINED:
         evidence["backward"] = alike
     else:
@@ -193,7 +193,7 @@ def _evidence(record: Record, table: CycleTable, shapes: Shapes) -> dict[str, fl
 
 
 def _transverse(
-    table: CycleTable, shapes: Shapes, own: float, evidence: dict[str, float]
+    table: CycleTable, shapes: Shapes, own: float, evidence: dict[Evidence, float]
 ) -> Regime:
     """Return the transverse oscillation, as sure as its periods are too short for the spring.
 
@@ -209,10 +209,11 @@ def _transverse(
     return Regime(TRANSVERSE, sure, evidence, other)
 
 
-def _sizes(found: Swings) -> dict[str, float]:
+def _sizes(found: Swings) -> dict[Evidence, float]:
     """Return what is to be said of the sizes of the cycles: over the noise, and over time."""
     drop = found.lasting["drop"]
-    evidence, grown = {}, float(drop[-1] / drop[0])
+    evidence: dict[Evidence, float] = {}
+    grown = float(drop[-1] / drop[0])
     if found.noise > NOISE_SHOWS * np.median(drop):
         evidence["drop_over_noise"] = float(np.median(drop)) / found.noise
     if len(drop) >= MANY and abs(order(drop)) >= -ORDERED and abs(grown - 1.0) > GROWN:
@@ -252,7 +253,9 @@ def _near_ends(record: Record, table: CycleTable) -> tuple[float, float]:
     return float(np.mean(place < NEAR)), float(np.mean(place > 1.0 - NEAR))
 
 
-def _weigh(record: Record, table: CycleTable, shapes: Shapes, evidence: dict[str, float]) -> Regime:
+def _weigh(
+    record: Record, table: CycleTable, shapes: Shapes, evidence: dict[Evidence, float]
+) -> Regime:
     """Return the kind of the cycles with its confidence: from their number, and their scatter."""
     kinds, kind, count = shapes.kinds, shapes.kind, len(table)
     confidence = max((kinds.count(kind) + 1) / (count + 3), shapes.chance)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import Final, Literal, NamedTuple
 
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -16,8 +16,26 @@ from stiction.analysis.motion.regime.kinds import (
 from stiction.text.quantity_text import percent
 from stiction.text.units import advice, in_words
 
-SLOWER = "slower_share"  # evidence, too: of the motion itself, as an audit knows it
-SLOW_SHARES = ("rest_share", "still_share")  # evidence of rest or creep, by the shape and the slip
+# Names of evidence: a checker finds one that is misspelt where others look for it
+# fmt: off
+Evidence = Literal[
+    "cycles", "rise_share", "rest_share", "slower_share", "backward", "against", "still_share",
+    "stick_share", "cycles_alike", "period_spread", "drop_spread", "natural_period",
+    "drop_over_noise", "line_taken_off", "beat", "wave", "wave_period", "plateaus", "straight",
+    "changed_at", "mains", "swings", "over", "last_over_first", "turns", "driven", "levels",
+    "unloaded", "turned", "rests", "change", "span", "scatter", "loads_on", "wanders",
+    "falls_at", "falls_by", "slips_at", "slips_by", "slips_by_error", "slips_within",
+    "ends_falling_from", "ends_falling_by", "stops", "across", "late_share", "one_way",
+    "rate_kept", "rate_over_drive", "hump", "hump_height", "fading", "fades_to", "hidden",
+    "hidden_height", "quick_falls", "quick_fall", "gaps", "few_periods", "late_sticks",
+    "samples_per_cycle", "rate_needed", "samples", "unchanging", "forth", "back",
+]
+# fmt: on
+SLOWER: Final = "slower_share"  # evidence, too: of the motion itself, as an audit knows it
+# Evidence of rest or creep, by the shape and the slip
+SLOW_SHARES: tuple[Evidence, ...] = "rest_share", "still_share"
+# Evidence of a force that goes back and forth with the drive
+TO_AND_FRO: tuple[Evidence, ...] = "forth", "plateaus"
 CERTAIN = 0.995  # a confidence that is written as 1.00: it leaves no room for another kind
 NO_MORE = 1e-6  # a ratio that is less is nothing, up to rounding
 
@@ -42,7 +60,7 @@ def _frequency(value: float) -> str:
     return in_words(value, "Hz")
 
 
-WORDS: dict[str, tuple[str, Callable[[float], str]]] = {
+WORDS: dict[Evidence, tuple[str, Callable[[float], str]]] = {
     "cycles": ("complete cycles: {}", _whole),
     "rise_share": ("the force rises for {} of a cycle (a sine: 50 %, a sawtooth: 100 %)", percent),
     "rest_share": ("by this shape the mass rests or creeps for {} of it", percent),
@@ -184,13 +202,17 @@ class Regime(NamedTuple):
 
     kind: str
     confidence: float
-    evidence: dict[str, float]
+    evidence: dict[Evidence, float]
     runner_up: str = ""
 
     def __repr__(self) -> str:
         """Return the kind and its confidence; ``str(regime)`` tells why."""
         other = f", perhaps {self.runner_up}" if self.runner_up else ""
         return f"<Regime: {self.kind} with confidence {self.confidence:.2f}{other}>"
+
+    def has(self, *names: Evidence) -> bool:
+        """Return whether the evidence has any of these names, which a checker knows."""
+        return any(name in self.evidence for name in names)
 
     @property
     def loads(self) -> bool:
@@ -207,9 +229,9 @@ class Regime(NamedTuple):
         """How long a mass that sticks and slips rests, in words; empty if it does not stick."""
         if self.kind not in (STICK_SLIP, TRANSITIONAL):
             return ""
-        if not self.loads and "stick_share" in self.evidence:
+        if not self.loads and self.has("stick_share"):
             return f"stuck for {percent(self.evidence['stick_share'])} of a cycle"
-        if SLOWER in self.evidence:
+        if self.has(SLOWER):
             share = percent(self.evidence[SLOWER])
             return f"with the mass slower than the drive for {share} of a cycle"
         slow = [self.evidence[name] for name in SLOW_SHARES if name in self.evidence]

@@ -26,7 +26,7 @@ from stiction.analysis.motion.regime.band import (
     likelihood,
     remaining,
 )
-from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.evidence import Evidence, Regime
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
@@ -51,8 +51,8 @@ FASTEST = 1.1  # times stiffness times drive velocity, as both are known: nothin
 # Times the scatter about it, and share of the mean force: by more a force wanders that slides, or
 # the mass sticks and slips more slowly than the record shows. Measured steady sliding: 3.7
 SMOOTH, VARIES = 5.0, 0.05
-LONE_FALL = ("falls_at", "falls_by")  # evidence
-FINAL_FALL = ("ends_falling_from", "ends_falling_by")
+LONE_FALL: tuple[Evidence, ...] = ("falls_at", "falls_by")
+FINAL_FALL: tuple[Evidence, ...] = ("ends_falling_from", "ends_falling_by")
 SLOW = 0.1  # of stiffness times drive velocity: the mass goes at 9/10 of the drive's speed or more
 # Of the scatter about the course: swings that stand out in the spectrum may be stick-slip if they
 # are as high, which is 3 % of the variance
@@ -80,7 +80,8 @@ def _without_slips(record: Record, found: Swings) -> Regime:
     """Return the kind of motion, were there no slips that noise hides."""
     way = course(record.time, record.force)
     drive = record.loading_rate
-    evidence = {"change": way.change, "span": way.span, "scatter": way.scatter}
+    evidence: dict[Evidence, float] = {"change": way.change, "span": way.span}
+    evidence["scatter"] = way.scatter
     if found.lines:
         evidence["line_taken_off"] = found.lines[0].frequency
     if drive:
@@ -131,7 +132,7 @@ def _under_one_load(record: Record) -> Course:
 
 
 def _vibration(
-    record: Record, hump: Hump, begin: int, least: float, evidence: dict[str, float]
+    record: Record, hump: Hump, begin: int, least: float, evidence: dict[Evidence, float]
 ) -> Regime:
     """Return the kind of a force that vibrates without cycles, or whose vibration fades.
 
@@ -151,7 +152,7 @@ def _vibration(
 
 
 def _loading(
-    record: Record, way: Course, drive: float, sure: float, evidence: dict[str, float]
+    record: Record, way: Course, drive: float, sure: float, evidence: dict[Evidence, float]
 ) -> Regime:
     """Return that the mass is stuck if the force goes on rising as fast as a spring is loaded.
 
@@ -179,7 +180,7 @@ def _toggles(record: Record) -> float:
 
 
 def _steady(
-    record: Record, found: Swings, ripple: float, sure: float, evidence: dict[str, float]
+    record: Record, found: Swings, ripple: float, sure: float, evidence: dict[Evidence, float]
 ) -> Regime:
     """Return steady sliding, or as likely stick-slip whose cycles are longer than the record.
 
@@ -236,7 +237,7 @@ def _unless_it_slips(record: Record, seen: Regime) -> Regime:
     falls = quick_falls(record.time, record.force)
     chance = likelihood(falls.clearness / EVEN_CHANCE)
     if chance > 0.5:
-        its = {"quick_falls": falls.number, "quick_fall": falls.height}
+        its: dict[Evidence, float] = {"quick_falls": falls.number, "quick_fall": falls.height}
         seen = seen._replace(evidence=seen.evidence | its)
     if not falls.times > MAKES_UP:
         return seen
@@ -264,5 +265,5 @@ def _is_whole(line: Line, hump: Hump, record: Record) -> bool:
     return known and line.height**2 > LINE_SHARE * 8.0 * hump.rms**2
 
 
-def _as_evidence(line: Line) -> dict[str, float]:
+def _as_evidence(line: Line) -> dict[Evidence, float]:
     return {"hidden": line.frequency, "hidden_height": line.height}

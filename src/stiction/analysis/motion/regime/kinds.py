@@ -63,6 +63,3 @@ def couples(kind: str, period: float, own: float) -> bool:
     than it rises, as the mass does not swing along x alone.
     """
     return kind != STICK_SLIP and period < COUPLED * own
-
-
-TO_AND_FRO = ("forth", "plateaus")  # evidence of a force that goes back and forth with the drive

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from math import pi
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ from tests.measured import bare, read_measured
 import stiction as st
 from stiction.analysis.motion.course import dies_out, final_fall
 from stiction.analysis.motion.regime.band import highest_hump
-from stiction.analysis.motion.regime.evidence import Regime
+from stiction.analysis.motion.regime.evidence import WORDS, Evidence, Regime
 from stiction.analysis.motion.rest import rest_share
 from stiction.analysis.motion.vibration import is_irregular
 from stiction.plotting.analysis.overview import figures
@@ -961,3 +961,7 @@ def test_a_force_that_rises_faster_than_its_spring_is_loaded_may_drift() -> None
     sure = st.analysis.classify(st.Record(time=time, force=begun + 1.05 * time, **known))
     assert sure.kind == "stuck"
     assert sure.confidence > 0.8
+
+
+def test_each_name_of_evidence_has_words():
+    assert get_args(Evidence) == (*WORDS,)
