@@ -33,7 +33,8 @@ def show_progress(title: str) -> Iterator[Progress]:
     from rich.console import Console  # slow to import: only where work takes long
 
     console = Console(stderr=True, emoji=False)
-    with telling(title), (_bar if console.is_terminal else _lines)(title, console) as report:
+    shown = _bar(title, console) if console.is_terminal else _lines(title)
+    with telling(title), shown as report:
         yield report
 
 
@@ -78,7 +79,7 @@ def _bar(title: str, console: Any) -> Iterator[Progress]:
 
 
 @contextmanager
-def _lines(title: str, console: Any) -> Iterator[Progress]:
+def _lines(title: str) -> Iterator[Progress]:
     """Print lines while the work lasts; yield a function that takes the fraction."""
     begun, done = monotonic(), [0.0]
     first: list[tuple[float, float]] = []  # the first fraction, and when it was reported
