@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import cycles_apart
+from stiction.analysis.motion.changes.initial_rest import InitialRest
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
@@ -16,7 +17,7 @@ from stiction.analysis.motion.doubts.creep_distance import unseen_creep
 from stiction.analysis.motion.doubts.load_cell import with_ringing
 from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
 from stiction.analysis.motion.doubts.warnings import VARIES, turns_round, warnings, warnings_of_run
-from stiction.analysis.motion.doubts.zero import why_no_friction, with_zero
+from stiction.analysis.motion.doubts.zero import why_no_friction, with_zero, zero_shown
 from stiction.analysis.motion.drift import NO_DRIFT, Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
 from stiction.analysis.motion.load_cell.swings import swings_of_cell
@@ -56,6 +57,7 @@ class Assessment(NamedTuple):
     warnings: tuple[str, ...]  # to be read first
     # the reason for each column that is blank, and for creep where no cycle shows it
     missing: dict[str, str]
+    zero: InitialRest | None = None  # that which a record shows before its first loading
 
 
 def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -> Assessment:
@@ -76,48 +78,51 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a record, whose stated parameters may contradict its force."""
     cycles, turns = found.lasting, imposed_reversal(None, regime)
     apart = cycles_apart(cycles)
-    usual, ends = cycles.part(~apart), flat_ends(record.force)
-    friction = _friction(record, found, usual, regime, turns)
-    if found.cell is not None:
-        record = record.with_force(found.force)
-    drift = find_drift(record, cycles)
+    usual = cycles.part(~apart)
+    of_force = _friction(record, found, usual, regime, turns)
+    clean = record if found.cell is None else record.with_force(found.force)
+    drift = find_drift(clean, cycles)
     shown = drift if is_shown(drift, regime.kind) else None
-    ends = ends or noisy_end(record, cycles)
+    ends = flat_ends(record.force) or noisy_end(clean, cycles)
     kind, slips = regime.kind, cycles
     if regime.has("slips_at") and found.few is not None:
         kind, slips = STICK_SLIP, found.few
-    stated = compare_metadata(record, kind, slips, shown, ends)
+    stated = compare_metadata(clean, kind, slips, shown, ends)
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
+    zero = zero_shown(clean, of_force, alike)
     slips_on = regime.kind in (STICK_SLIP, TRANSITIONAL) and not (turns or ends)
-    seen = record.with_force(found.force) if found.lines else record
+    seen = clean.with_force(found.force) if found.lines else clean
     rings = swings_of_cell(seen, usual) if slips_on else None
-    doubts = warnings(record, regime.kind, alike, friction, stated, drift, ends, rings)
-    drifts = drift if record.load_variation() <= VARIES else NO_DRIFT
-    friction = with_drift(friction, record, cycles, drifts)
-    friction = with_supposed_filter(friction, record, usual, stated)
-    friction = with_zero(with_ringing(friction, rings), record, cycles)
-    unreal = why_no_friction(record, friction, cycles)
-    if unreal:
-        friction = friction.without_static(unreal).without_kinetic(unreal)
-    whole, friction = friction, without_cut_off(friction, record, usual, ends)
+    doubts = warnings(clean, regime.kind, alike, of_force, stated, drift, ends, rings, zero)
+
+    # the friction of the force, with one error after the other, then without what is unreal
+    drifts = drift if clean.load_variation() <= VARIES else NO_DRIFT
+    drifting = with_drift(of_force, clean, cycles, drifts)
+    filtered = with_supposed_filter(drifting, clean, usual, stated)
+    whole = with_zero(with_ringing(filtered, rings), clean, zero)
+    unreal = why_no_friction(clean, whole, cycles)
+    real = whole.without_static(unreal).without_kinetic(unreal) if unreal else whole
+    friction = without_cut_off(real, clean, usual, ends)
+
     other = other_velocity(stated, cycles)
-    if other.any() and record.position is None:
-        cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
-    sticking, why = _sticking(record, cycles, regime, other, apart)
-    missing = _meaningless(record, cycles, regime, stated, shown)
-    cut = cut_off(record, usual, ends)
-    if cut and record.position is None:
+    suits = cycles
+    if other.any() and clean.position is None:
+        suits = cycles.blank(("stiffness", *BY_STIFFNESS), other)
+    sticking, why = _sticking(clean, suits, regime, other, apart)
+    missing = _meaningless(clean, suits, regime, stated, shown)
+    cut = cut_off(clean, usual, ends)
+    if cut and clean.position is None:
         missing |= {name: cut for name in BY_DROP if name not in missing}
     if len(cycles):
         reasons = {"mu_static": unreal, "mu_kinetic": turns or unreal}
         missing |= {name: reason for name, reason in reasons.items() if reason}
     for name in ("static", "kinetic"):
-        if getattr(whole, name) is not None and getattr(friction, name) is None:
+        if getattr(real, name) is not None and getattr(friction, name) is None:
             missing[f"mu_{name}"] = cut
-    given = cycles.blank(missing)
+    given = suits.blank(missing)
     if why:
         missing |= dict.fromkeys(("creep", "misalignment"), f"not determined: {why}")
-    return Assessment(given, given.part(~apart), sticking, friction, stated, doubts, missing)
+    return Assessment(given, given.part(~apart), sticking, friction, stated, doubts, missing, zero)
 
 
 def _sticking(

@@ -205,7 +205,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         source, record, regime, dataset(its.cycles), summary(dataset(its.usual)),
         creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
         missing | creep.missing | its.missing, its.friction,
-        its.warnings + taken_out, {"metadata": its.stated},
+        its.warnings + taken_out, {"metadata": its.stated, "zero": its.zero},
     )  # fmt: skip
     return _with_parts(analysis)
 

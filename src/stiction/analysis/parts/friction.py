@@ -5,8 +5,9 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.cycle_columns import table_of, with_spread
-from stiction.analysis.motion.doubts.zero import is_stated, zero_shown
+from stiction.analysis.motion.changes.initial_rest import InitialRest
+from stiction.analysis.motion.cycle_columns import with_spread
+from stiction.analysis.motion.doubts.zero import is_stated
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.arrays import xr
@@ -91,9 +92,9 @@ def force_in_words(its: Measured) -> str:
 
 def _zero(found: Analysis) -> str:
     """Return the zero that a record shows at its start, if the errors are those that it makes."""
-    shown = zero_shown(found.record, found.friction, table_of(found.cycles))
+    shown: InitialRest | None = found.parts["zero"]
     errors = [each.error for each in found.friction[:3] if each is not None]
-    if shown is None or abs(shown.reading) < MAKES * min(errors):
+    if shown is None or not errors or abs(shown.reading) < MAKES * min(errors):
         return ""
     read = in_words(shown.reading, "N")
     return f" The errors allow for that which the rest at the start shows, {read}."

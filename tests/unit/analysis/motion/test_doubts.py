@@ -1216,3 +1216,13 @@ def test_the_first_warning_is_that_which_costs_most_of_friction() -> None:
         said = assess(record.with_force(record.force + moved)).warnings
         assert any(each.startswith("Static friction is") for each in said)
         assert said[0].startswith("Static friction is") == (shift > way)
+
+
+def test_errors_allow_for_the_zero_of_a_drive_that_goes_to_and_fro_as_the_warning_says():
+    time = np.arange(6000) / 500.0
+    strokes = 1.0 + 0.9 * np.tanh(6.0 * np.sin(2.0 * np.pi * 3.0 * (time - 1.0)))
+    noise = 0.03 * np.random.default_rng(1).standard_normal(len(time))
+    force = np.where(time < 1.0, 0.1, strokes) + noise
+    found = assess(st.Record(time=time, force=force, normal_load=10.0))
+    assert any("The errors of friction allow for it" in each for each in found.warnings)
+    assert found.friction.break_away.error > 0.1

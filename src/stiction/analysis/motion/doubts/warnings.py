@@ -7,6 +7,7 @@ from math import log10, pi
 
 import numpy as np
 
+from stiction.analysis.motion.changes.initial_rest import InitialRest
 from stiction.analysis.motion.changes.mean_load import followed_load
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.cycle_columns import CycleTable
@@ -77,12 +78,13 @@ def warnings(
     drift: Drift,
     ends: Sequence[FlatEnd],
     rings: CellSwings | None,
+    zero: InitialRest | None,
 ) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first.
 
     These are of numbers that cannot be true, then those that shift friction, then those of cycles
     and samples. `stated` is what was compared, `drift` that of the force, sure or not, `ends` where
-    it is cut off, `rings` the swings of the load cell.
+    it is cut off, `rings` the swings of the load cell, `zero` the one that the record shows.
     """
     seen = numbers_of(_largest_mu(friction, cycles), stated)
     wrong = {each.quantity: each for each in stated if each.agrees is False}
@@ -95,7 +97,7 @@ def warnings(
         *_loading(record, [x for x in stated if x.quantity == LOADING_RATE], seen),
         *_mass(record, wrong.get(SWING), kind, seen),
         *_mains(kind, cycles),
-        *_shifts(record, kind, cycles, friction, drift, rings),
+        *_shifts(record, kind, cycles, friction, drift, rings, zero),
         *doubt_cycles_apart(cycles),
         *doubt_quiet(record, friction, cycles),
         *doubt_few_samples(record, cycles),
@@ -114,10 +116,14 @@ def _shifts(
     friction: Friction,
     drift: Drift,
     rings: CellSwings | None,
+    zero: InitialRest | None,
 ) -> list[str]:
     """Return the doubts about a force that is shifted, the one by most first."""
     found = [
-        (shift_of_zero(record, friction, cycles), doubt_zero(record, friction, cycles)),
+        (
+            shift_of_zero(record, friction, cycles, zero),
+            doubt_zero(record, friction, cycles, zero),
+        ),
         (shift_of_drift(drift, record.duration), _drift(record, drift, kind, cycles)),
         (0.0 if rings is None else rings.shift, doubt_ringing(rings)),
     ]

@@ -86,27 +86,32 @@ def zero_shown(record: Record, friction: Friction, cycles: CycleTable) -> Initia
     return rest if rest.reading < lowest else None
 
 
-def shift_of_zero(record: Record, friction: Friction, cycles: CycleTable) -> float:
-    """Return by how much a zero that is off shifts friction, N; all of it if that is unreal."""
+def shift_of_zero(
+    record: Record, friction: Friction, cycles: CycleTable, shown: InitialRest | None
+) -> float:
+    """Return by how much a zero that is off shifts friction, N; all of it if that is unreal.
+
+    `shown` is what `zero_shown` returns, here and below.
+    """
     if why_no_friction(record, friction, cycles):
         return inf
-    shown = zero_shown(record, friction, cycles)
     return 0.0 if shown is None else abs(shown.reading)
 
 
-def with_zero(friction: Friction, record: Record, cycles: CycleTable) -> Friction:
+def with_zero(friction: Friction, record: Record, shown: InitialRest | None) -> Friction:
     """Return the friction with the errors that it has if its zero is that which a record shows.
 
     A correction is made for an effect that is known (GUM, 3.2.4: JCGM 100:2008). This one is not: a
     spring that friction holds reads as much. So the values are those of the zero as it is supposed,
     and the error reaches to those of the other zero. A stated zero has its stated uncertainty.
     """
-    shown = zero_shown(record, friction, cycles)
     further = stated_error(record) if shown is None else hypot(shown.reading, shown.error)
     return friction.with_errors(break_away=further, static=further, kinetic=further)
 
 
-def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterator[str]:
+def doubt_zero(
+    record: Record, friction: Friction, cycles: CycleTable, shown: InitialRest | None
+) -> Iterator[str]:
     """Doubt the zero if a record begins unloaded, or reaches impossible values."""
     largest = largest_magnitude(record.force)
     if friction.kinetic is not None and is_about_zero(friction, cycles):
@@ -136,7 +141,6 @@ def doubt_zero(record: Record, friction: Friction, cycles: CycleTable) -> Iterat
             f"friction is less than half of the static one; give {ZERO}, the reading without load."
         )
         return
-    shown = zero_shown(record, friction, cycles)
     if is_stated(record) or (shown is None and friction.break_away is None):
         return
     first, noise = first_level(record.force)
