@@ -4,15 +4,20 @@ The cut of a real file system is a command: ``python -m benchmarks.explore.power
 """
 
 import os
+import pickle
+import shutil
 
+import numpy as np
 import pytest
 import xarray as xr
 from tests.power import Disk, State, put
 
 import stiction as st
 from stiction.storage.files import folder_lock
-from stiction.study.execution.engines import Threads
+from stiction.study.execution.engines import Threads, never
+from stiction.study.execution.sweep import do, do_block
 from stiction.study.store.creation import create
+from stiction.study.store.store import BlockResults
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
 AXES = {"phi": st.Values(["1 deg", "95 deg", "3 deg"])}  # one is refused, and says why
@@ -131,3 +136,58 @@ def test_a_second_sweep_begins_at_the_other_end(tmp_path):
         st.sweep(STUDY, store.path, engine=Threads(1), progress=stop)
     assert store.has(last)
     assert not store.has(first)
+
+
+OTHER = st.Study(base=BASE, axes={"phi": st.Grid("1 deg", "3 deg", 5)}, measures=["peak_force"])
+
+
+def replace_store(path, study):
+    """Put a new store in place of another one; the file system may give it the same number."""
+    shutil.rmtree(path)
+    return create(study, path)
+
+
+def test_a_worker_that_outlives_a_store_opens_the_one_in_its_place(tmp_path):
+    """Workers of a cluster do: they took the blocks of the old layout for all blocks."""
+    path = tmp_path / "a.zarr"
+    old = sent(create(STUDY, path)).open()
+    new = replace_store(path, OTHER)
+    assert sent(new).open().layout == new.layout != old.layout
+    for task in range(OTHER.layout.tasks):
+        do_block(OTHER, sent(new), task, never)
+    assert (st.open_study(path)["status"] == 0).all()
+
+
+def sent(store):
+    """Return the address of a store as a worker has it."""
+    return pickle.loads(pickle.dumps(store.address))
+
+
+def test_equal_stores_are_opened_once(tmp_path):
+    """A worker opens a store for its first block, and a store of the same content is the same."""
+    store = create(STUDY, tmp_path / "a.zarr")
+    first = sent(store).open()
+    assert sent(store).open() is first
+    again = replace_store(store.path, STUDY)
+    assert again.identity == store.identity
+    assert sent(again).open() is first
+
+
+@pytest.mark.parametrize("instead", [OTHER, None])
+def test_a_store_in_place_of_another_one_is_not_written_to(tmp_path, instead):
+    """Nor by a run that began before, whose blocks have another shape."""
+    store = create(STUDY, tmp_path / "a.zarr")
+    address, region = sent(store), store.layout.region(0)
+    whole = BlockResults([], np.zeros(1, np.int8), np.array([""], object))
+    shutil.rmtree(store.path) if instead is None else replace_store(store.path, instead)
+    for write in (
+        lambda: do(STUDY, store, [0], Threads(1), None),
+        lambda: do_block(STUDY, address, 0, never),
+        lambda: store.write(region, whole),
+    ):
+        with pytest.raises(st.ResultError, match="removed or replaced by another store"):
+            write()
+    if instead is None:
+        assert not store.path.exists()
+    else:
+        assert (st.open_study(store.path)["status"] == -1).all()

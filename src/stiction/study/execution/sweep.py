@@ -31,6 +31,7 @@ from stiction.study.store.store import (
     REFUSED,
     BlockResults,
     Store,
+    StoreAddress,
     open_store,
 )
 from stiction.study.variables.observed_run import MOST_SAMPLES, ObservedRun, observe_run
@@ -80,11 +81,12 @@ class StoredOutcome(NamedTuple):
     values: tuple[Any, ...]
 
 
-def do_block(study: Study, store: Store, task: int, unwanted: Callable[[], bool]) -> Came:
+def do_block(study: Study, address: StoreAddress, task: int, unwanted: Callable[[], bool]) -> Came:
     """Do the runs of a block and write it, unless it is no longer wanted.
 
     A worker that outlived its client may have written it meanwhile; then it stays as it is.
     """
+    store = address.open()
     region = store.layout.region(task)
     size = size_of(region)
     if store.has(region):
@@ -383,7 +385,7 @@ def do(
     layout, begun = store.layout, perf_counter()
     left = runs_in(layout, tasks)
     tally, pace = Tally(layout.runs, layout.runs - left, 0, 0, 0.0), Pace()
-    for came in (engine or Cores()).results(partial(do_block, study, store), tasks):
+    for came in (engine or Cores()).results(partial(do_block, study, store.address), tasks):
         now, seconds = tally.now + came.runs, perf_counter() - begun
         tally = tally._replace(
             now=now,

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
@@ -44,6 +45,18 @@ def broken_files(folder: Path) -> list[str]:
     files = {name: folder / name for name in names}
     parts = {name: each.read_bytes() for name, each in files.items() if each.is_file()}
     return checksums.broken_parts(sealed, parts | own)
+
+
+def identity(folder: Path) -> str:
+    """Return a digest of a store's root metadata: equal for two stores only of the same content.
+
+    The root has the description, and the checksums of all other initial files. It is empty where
+    the root is missing.
+    """
+    try:
+        return sha256((folder / ROOT).read_bytes()).hexdigest()
+    except OSError:
+        return ""
 
 
 def damage(path: str | Path, files: Sequence[object]) -> ResultError:

@@ -69,12 +69,15 @@ class Store(NamedTuple):
         The layout of its runs and blocks.
     chunks : mapping of str to tuple of int
         The chunk shape of each array of values per run; each block is one chunk.
+    identity : str
+        The identity of its initial files: another store may take its place.
     """
 
     path: Path
     group: zarr.Group
     layout: Layout
     chunks: Mapping[str, Index]
+    identity: str
 
     @property
     def checked(self) -> bool:
@@ -135,7 +138,14 @@ class Store(NamedTuple):
         return str(self._array(MESSAGE)[index])
 
     def write(self, region: Region, block: BlockResults) -> None:
-        """Write a block to the disk, then the mark that it is done."""
+        """Write a block to the disk, then the mark that it is done.
+
+        Raises
+        ------
+        ResultError
+            If another store has taken its place, or the disk refuses.
+        """
+        _refuse_replaced(self.path, self.identity)
         files = {
             self._file(each.name, region): self._whole(values, each.unknown).tobytes()
             for each, values in block.values
@@ -176,9 +186,10 @@ class Store(NamedTuple):
     def _array(self, name: str) -> Any:
         return self.group[name]
 
-    def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the path: another process opens the store itself."""
-        return _reopen, (str(self.path.absolute()),)
+    @property
+    def address(self) -> StoreAddress:
+        """Where other processes find it."""
+        return StoreAddress(self.path.absolute(), self.identity)
 
 
 def encode_texts(texts: np.ndarray) -> bytes:
@@ -189,9 +200,44 @@ def encode_texts(texts: np.ndarray) -> bytes:
     return lengths[:1].tobytes() + b"".join(n.tobytes() + content for n, content in pairs)
 
 
+class StoreAddress(NamedTuple):
+    """The place of a store, for the processes of a sweep: each opens the store itself.
+
+    Parameters
+    ----------
+    path : Path
+        The folder.
+    identity : str
+        The identity of the store that is meant: a process may outlive it.
+    """
+
+    path: Path
+    identity: str
+
+    def open(self) -> Store:
+        """Open the store for writing, once in each process.
+
+        Raises
+        ------
+        ResultError
+            If another store has taken its place.
+        """
+        _refuse_replaced(self.path, self.identity)
+        return _opened(*self)
+
+
 @lru_cache(maxsize=4)
-def _reopen(path: str) -> Store:
+def _opened(path: Path, _identity: str) -> Store:
     return store_at(path, "r+")
+
+
+def _refuse_replaced(path: Path, identity: str) -> None:
+    """Refuse a path where the store of a sweep was removed or replaced by another one."""
+    if seal.identity(path) != identity:
+        raise ResultError(
+            f"{path}: was removed or replaced by another store during the sweep; sweep the study "
+            "again"
+        )
 
 
 @contextmanager
@@ -271,7 +317,7 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
     ResultError
         If it is not a store, or its description or metadata are damaged.
     """
-    group = group_at(path, mode)
+    group, identity = group_at(path, mode), seal.identity(Path(path))
     lost = seal.broken_files(Path(path)) if group.attrs["format"] == CHECKED else []
     try:
         study = json.loads(str(group.attrs["description"]))["study"]
@@ -290,7 +336,8 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
         raise ResultError(
             f"{path}: is damaged: a study cannot have {layout.tasks:,} blocks of runs"
         )
-    return Store(Path(path), group, layout, {name: each.chunks for name, each in arrays.items()})
+    chunks = {name: each.chunks for name, each in arrays.items()}
+    return Store(Path(path), group, layout, chunks, identity)
 
 
 def group_at(path: str | Path, mode: Literal["r", "r+"]) -> zarr.Group:
