@@ -295,7 +295,7 @@ def test_each_part_of_a_map_that_is_not_named_is_told_by_its_option(tmp_path, ca
     assert "--at '1 mm/s' is not NAME=VALUE" in said
 
 
-def test_a_refinement_says_where_its_changes_are(config, tmp_path, capsys):
+def test_a_refinement_says_where_its_changes_are(config, tmp_path, capsys, monkeypatch):
     """They were drawn by `stiction map` alone."""
     text = config.read_text().replace('duration = "50 ms"', 'duration = "3 s"')
     text = text.replace('"peak_force"', '"regime"').replace('values = ["1 mm/s", "2 mm/s"]', "@")
@@ -306,5 +306,10 @@ def test_a_refinement_says_where_its_changes_are(config, tmp_path, capsys):
     said = " ".join(capsys.readouterr().out.split())
     table = store / "refined" / "phi" / "changes"
     assert f"wrote {table}, which xarray.open_zarr reads" in said
+    assert "less accurate" not in said
     (width,) = xr.open_zarr(table, consolidated=False)["half_width"].values
     assert 0.0 < width <= 0.5
+    monkeypatch.setattr("stiction.study.execution.refine.INSIDE", ())  # as where all runs fail
+    assert inside("sweep", config, "-o", store, "--refine", "phi = 1 deg", "--threads", 1) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "failed runs leave 1 of them less accurate than asked for" in said

@@ -121,8 +121,15 @@ def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> lis
     return lines
 
 
-def draw_changes(ax: Axes, x: Side, y: Side) -> list[Line2D]:
-    """Draw a point at each refined change of motion; return the handles of the legend."""
+def draw_changes(
+    ax: Axes, x: Side, y: Side, low: tuple[Side, Side], high: tuple[Side, Side]
+) -> list[Line2D]:
+    """Draw a point at each refined change of motion; return the handles of the legend.
+
+    A line joins the ends of its interval, `low` and `high`, which failed runs may leave wide.
+    """
+    ends = ([begin.values, end.values] for begin, end in zip(low, high, strict=True))
+    ax.plot(*ends, "-", color=BLACK, linewidth=1.0, path_effects=CASING, zorder=4)
     return ax.plot(
         x.values, y.values, "o", color=BLACK, markersize=2.4, markeredgecolor="white",
         markeredgewidth=0.5, label="change, refined", zorder=5,

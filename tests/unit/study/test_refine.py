@@ -7,9 +7,11 @@ import pytest
 import xarray as xr
 
 import stiction as st
-from stiction.study.execution.refine import Intervals, halve, side
+from stiction.study.execution import refine
+from stiction.study.execution.refine import Intervals, narrow, side
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.variables.observed_run import REVERSAL
+from stiction.study.view.view import kinds
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="6 s"))
@@ -55,14 +57,55 @@ def test_changes_lie_at_the_loss_of_stability(found):
 
 
 @pytest.mark.parametrize("apart", [None, CALM])
-@pytest.mark.parametrize("kinds", [("settling", "stick-slip"), ("stick-slip", "settling")])
-def test_a_failed_run_half_way_leaves_a_change_between_two_kinds(kinds, apart):
-    """It tells nothing: the lower half is a guess. It had been the upper half, of one kind."""
+@pytest.mark.parametrize("pair", [("settling", "stick-slip"), ("stick-slip", "settling")])
+def test_a_failed_run_half_way_leaves_the_interval_as_it_is(pair, apart):
+    """It tells nothing. The lower half had been taken for measured, wherever the change was."""
     low, high, middle = ({"phi": np.array([value])} for value in (1.0, 3.0, 2.0))
-    below, above = (np.array([kind]) for kind in kinds)
-    found = halve(Intervals(low, high, below, above), middle, np.array([""]), apart)
-    assert (found.low["phi"], found.high["phi"]) == (1.0, 2.0)
+    below, above = (np.array([kind]) for kind in pair)
+    found = narrow(Intervals(low, high, below, above), middle, np.array([""]), apart)
+    assert (found.low["phi"], found.high["phi"]) == (1.0, 3.0)
     assert (found.below, found.above) == (below, above)
+
+
+@pytest.mark.parametrize(
+    ("hole", "wide"), [((6.1, 6.4), 1), ((6.3, 6.6), 1), ((6.45, 6.55), 0), ((6.1, 6.26), 1)]
+)
+def test_runs_that_fail_near_a_change_do_not_move_it(found, tmp_path, monkeypatch, hole, wide):
+    """The change stays in its interval, however many runs in it fail."""
+    edge = float(found[2]["phi"][0])
+
+    def some_failed(data):
+        fails = (hole[0] < data["phi"].values) & (data["phi"].values < hole[1])
+        return np.where(fails.reshape(data["regime"].shape), "", kinds(data))
+
+    monkeypatch.setattr(refine, "kinds", some_failed)
+    axes = {"phi": st.Grid("4 deg", "8 deg", 5), "drive.velocity": st.Values(["0.5 mm/s"])}
+    study = st.Study(base=BASE, axes=axes, measures=["regime"])
+    shown = st.refine(study, tmp_path / "a.zarr", "phi", "0.01 deg", apart=CALM)
+    (at,), (half,) = shown["phi"].values, shown["half_width"].values
+    assert abs(at - edge) < half + 0.01
+    assert shown.attrs["wide"] == wide == (half > 0.005)
+    if wide:
+        assert half <= hole[1] - hole[0]  # three points of a wider interval cannot all fail
+        assert at - half <= hole[0] < hole[1] <= at + half
+    tallies = []
+    again = st.refine(
+        study, tmp_path / "a.zarr", "phi", "0.01 deg", apart=CALM, progress=tallies.append
+    )
+    assert again.identical(shown)
+    assert not tallies
+
+
+def test_a_map_shows_how_wide_an_interval_is(found, tmp_path, monkeypatch):
+    study, path, _ = found
+    path = shutil.copytree(path, tmp_path / "a.zarr")
+    monkeypatch.setattr(refine, "INSIDE", ())  # as where all runs fail
+    changes = st.refine(study, path, "phi", "0.01 deg", apart=CALM)
+    assert changes.attrs["wide"] == changes.sizes["point"] == 2
+    drawn = [line.get_xdata() for line in st.map(path).plot()[0].lines]
+    at, half = changes["phi"].values, changes["half_width"].values
+    for ends in zip(at - half, at + half, strict=True):
+        assert any(np.array_equal(each, ends) for each in drawn)
 
 
 def test_it_goes_on_where_it_was_and_is_kept(found):

@@ -2,6 +2,8 @@
 
 Between neighbours of different kind on the grid, bisection finds the change. All intervals are
 halved at once, by a study inside the store, so that an interrupted refinement can be continued.
+Where the run in the middle fails, quarter points are tried; an interval is left as it is where
+these fail too.
 """
 
 from __future__ import annotations
@@ -34,6 +36,7 @@ from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
 
 MOST_HALVINGS = 50  # to the distance of two floats
+INSIDE = (0.5, 0.25, 0.75)  # of an interval: the next is tried where the run at the former fails
 
 
 class Intervals(NamedTuple):
@@ -80,31 +83,32 @@ def side(found: np.ndarray, apart: Sequence[str] | None) -> np.ndarray:
     return found if apart is None else np.isin(found.astype(str), list(apart))
 
 
-def half_way(low: Floats, high: Floats) -> Floats:
-    """Return the middle of two values, or the value where both are equal."""
-    return np.where(low == high, low, 0.5 * (low + high))
+def between(low: Floats, high: Floats, share: float) -> Floats:
+    """Return the values at a share of the way between others, or the value of two equal ones."""
+    return np.where(low == high, low, (1.0 - share) * low + share * high)
 
 
-def halve(
-    found: Intervals, middle: Mapping[str, Floats], at: np.ndarray, apart: Sequence[str] | None
+def narrow(
+    found: Intervals, inside: Mapping[str, Floats], at: np.ndarray, apart: Sequence[str] | None
 ) -> Intervals:
-    """Return the half of each interval that contains the change.
+    """Return the part of each interval, on one side of a point inside, that contains a change.
 
-    If the middle has a third kind, or its run failed, this is the lower half.
+    If the point has a third kind, this is the lower part. Where it has no kind, because its run
+    failed, nothing is known of either part: the interval stays.
     """
-    at = np.where(at == "", found.above, at)  # no information from a failed run: guess
-    upper = side(at, apart) == side(found.below, apart)
+    upper = (at != "") & (side(at, apart) == side(found.below, apart))
+    lower = (at != "") & ~upper
     return Intervals(
-        {name: np.where(upper, middle[name], low) for name, low in found.low.items()},
-        {name: np.where(upper, high, middle[name]) for name, high in found.high.items()},
+        {name: np.where(upper, inside[name], low) for name, low in found.low.items()},
+        {name: np.where(lower, inside[name], high) for name, high in found.high.items()},
         np.where(upper, at, found.below),
-        np.where(upper, found.above, at),
+        np.where(lower, at, found.above),
     )
 
 
-def widest(found: Intervals, along: str) -> float:
-    """Return the width of the widest interval."""
-    return float(np.max(np.abs(found.high[along] - found.low[along])))
+def widths(found: Intervals, along: str) -> Floats:
+    """Return the width of each interval."""
+    return np.abs(found.high[along] - found.low[along])
 
 
 @with_progress("simulating", told_by)
@@ -123,8 +127,8 @@ def refine(
     Parameters
     ----------
     study : Study, str or Path
-        The study, or its file. Its grid along the axis must be fine enough to show each change; it
-        keeps "regime".
+        The study, or its file. Its grid along the axis must be fine enough to show each change,
+        which a failed run hides; it keeps "regime".
     path : str or Path
         Its store; missing runs are done first.
     along : str
@@ -142,9 +146,11 @@ def refine(
     Dataset
         The changes over ``point``: the value of every axis, for ``along`` the middle of the final
         interval; its ``half_width``; ``below`` and ``above``, the kinds on both sides, coded like
-        "regime" in the store. Attributes ``runs``: the total number of runs, and ``apart``, if
-        given. The dataset is also kept in the store, in the group ``refined/ALONG/changes``, in
-        place of an earlier one; `stiction map` draws it. Refinements with other kinds share runs.
+        "regime" in the store. An interval stays wider than `to` where the runs at its middle and
+        its quarter points failed. Attributes ``runs``: the total number of runs; ``wide``: the
+        number of such intervals; and ``apart``, if given. The dataset is also kept in the store, in
+        the group ``refined/ALONG/changes``, in place of an earlier one; `stiction map` draws it.
+        Refinements with other kinds share runs.
 
     Raises
     ------
@@ -168,16 +174,27 @@ def refine(
     found, runs = changes(study, open_study(path).load(), along, apart), study.layout.runs
     folder = Path(path) / REFINED / along
     folder.mkdir(parents=True, exist_ok=True)
+    left = np.zeros(len(found.below), bool)
     for level in range(1, MOST_HALVINGS):
-        if not len(found.below) or widest(found, along) <= width:
+        if np.max(widths(found, along), initial=0.0, where=~left) <= width:
             break
-        middle = {name: half_way(found.low[name], found.high[name]) for name in found.low}
-        part = samples(study, middle)
-        store = _store_of(part, folder, level)
-        sweep(part, store, engine=engine, progress=progress)
-        at_middle = kinds(open_study(store).load())
-        found, runs = halve(found, middle, at_middle, apart), runs + part.layout.runs
+        waiting = ~left
+        for share in INSIDE:
+            inside = {
+                name: between(low, found.high[name], share) for name, low in found.low.items()
+            }
+            part = samples(study, {name: values[waiting] for name, values in inside.items()})
+            store = _store_of(part, folder, level)
+            sweep(part, store, engine=engine, progress=progress)
+            at = np.full(len(left), "", object)
+            at[waiting] = kinds(open_study(store).load())
+            found, runs = narrow(found, inside, at, apart), runs + part.layout.runs
+            waiting &= at == ""
+            if not waiting.any():
+                break
+        left |= waiting
     made = table(study, found, along, runs)
+    made.attrs["wide"] = int(np.count_nonzero(left & (widths(found, along) > width)))
     made.attrs |= {} if apart is None else {"apart": apart}
     _keep(made, folder / CHANGES)
     return made
@@ -266,13 +283,13 @@ def table(study: Study, found: Intervals, along: str, runs: int) -> xr.Dataset:
     data: dict[str, Any] = {
         name: (
             "point",
-            half_way(found.low[name], found.high[name]),
+            between(found.low[name], found.high[name], 0.5),
             {"units": each.unit or "1", "long_name": name},
         )
         for name, each in study.coordinates.items()
     }
     unit = study.coordinates[along].unit or "1"
-    half = 0.5 * np.abs(found.high[along] - found.low[along])
+    half = 0.5 * widths(found, along)
     names = {"units": unit, "long_name": f"half the width of what is left in {along}"}
     data["half_width"] = ("point", half, names)
     for name in ("below", "above"):

@@ -270,8 +270,17 @@ def _map(ax: Axes, view: View, name: str, theory: Plane) -> list[Any]:
     fine = side(view, x_dim, theory.x), side(view, y_dim, theory.y)
     for found in view.changes:
         if {x_dim, y_dim} <= {*found.data_vars} and not view.at:
-            handles += draw_changes(ax, *(side(view, d, found[d].values) for d in (x_dim, y_dim)))
+            places = (_place(view, found, (x_dim, y_dim), share) for share in (-1.0, 1.0))
+            x_at, y_at = _place(view, found, (x_dim, y_dim), 0.0)
+            handles += draw_changes(ax, x_at, y_at, *places)
     return handles + draw_theory(ax, *fine, theory.fields)
+
+
+def _place(view: View, found: xr.Dataset, dims: tuple[str, str], share: float) -> tuple[Side, Side]:
+    """Return where refined changes lie on a map, or the ends of their intervals (share -1, 1)."""
+    off = {found.attrs["along"]: share * found["half_width"].values}
+    x, y = (side(view, dim, found[dim].values + off.get(dim, 0.0)) for dim in dims)
+    return x, y
 
 
 def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:

@@ -109,7 +109,7 @@ def sweep(
         Write progress and outcome to standard output as lines of JSON, at most one a second.
     """
     from stiction.cli.tally import show_tally
-    from stiction.study.execution.refine import refine as halve
+    from stiction.study.execution.refine import refine as bisect
     from stiction.study.execution.refine import request
     from stiction.study.execution.sweep import count_done
     from stiction.study.execution.sweep import sweep as do
@@ -143,7 +143,7 @@ def sweep(
             before = count_done(study, output)
             result = do(study, output, engine=means, progress=report)
             if refine is not None:
-                found = halve(study, output, along, to, apart=apart, engine=means, progress=report)
+                found = bisect(study, output, along, to, apart=apart, engine=means, progress=report)
     except KeyboardInterrupt:
         say(f"{output}: stopped{_so_far(study, output)}; the same command continues", error=True)
         return 130
@@ -151,6 +151,8 @@ def sweep(
     if found is not None and not (quiet or json_lines):
         table = output / REFINED / found.attrs["along"] / CHANGES
         say(f"{found.sizes['point']} changes along {along}, by {found.attrs['runs']} runs in all")
+        if wide := found.attrs["wide"]:
+            say(f"failed runs leave {wide} of them less accurate than asked for")
         say(f"wrote {table}, which xarray.open_zarr reads")
     if not (quiet or json_lines):
         say(f"next: stiction map {argument(output)}{trust_in(study.base.slider)}")
