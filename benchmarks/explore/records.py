@@ -20,7 +20,7 @@ from rich.table import Table
 from scipy.signal import lfilter  # type: ignore[attr-defined]
 
 import stiction as st
-from stiction.analysis.motion.regime.classify import motion_of
+from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
     IRREGULAR,
@@ -396,7 +396,7 @@ class Judged(NamedTuple):
 def judge(make: Callable[[np.random.Generator], Labelled], seed: int, number: int) -> Judged:
     """Draw a record and judge what is seen of it."""
     record, count, kinds = make(np.random.default_rng([seed, number]))
-    _, seen, motion = motion_of(record)
+    _, seen, motion = classify_record(record)
     counted = count is None or abs(seen.cycles.sizes["cycle"] - count) <= 1
     return Judged(counted, motion.kind in kinds, motion.kind, motion.confidence)
 

@@ -21,7 +21,7 @@ from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycle_columns import CycleTable, summary
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.friction import Friction
-from stiction.analysis.motion.regime.classify import motion_of
+from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import apart, oscillation_by_phase, transverse_oscillation
 from stiction.analysis.parts import functions
@@ -185,7 +185,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         source = read_source(source, trust=trust)
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
-    _, found, regime = motion_of(record)
+    _, found, regime = classify_record(record, run)
     if found.load is not None:
         found = found._replace(force=found.force + found.load.share)
     missing: dict[str, str] = {}

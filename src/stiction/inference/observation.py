@@ -12,7 +12,7 @@ import numpy as np
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.motion.cycles import OWN_HARMONICS, Swings
 from stiction.analysis.motion.load_cell.free_swings import RingingCell
-from stiction.analysis.motion.regime.classify import motion_of
+from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.even_grid import MOST_MISSING, EvenGrid, even_grid
@@ -245,7 +245,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     """
     grid = grid_of(record, name)
     refuse_far(record, slider, name)
-    record, seen, regime = motion_of(record)
+    record, seen, regime = classify_record(record)
     refuse_other_motion(record, regime, name)
     refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
     step, lineless = float(f"{grid.step:.{DIGITS}g}"), without_lines(record, grid, seen)

@@ -483,3 +483,26 @@ def test_the_figure_of_creep_names_its_end_as_the_text_does() -> None:
         found = st.analyse(st.simulate(rig, "5 s", sample_rate="1 kHz"))
         assert text in " ".join(str(found).split())
         assert figures(found)["creep"].axes[0].get_xlabel() == label
+
+
+def test_an_analysis_says_that_its_run_ended_early():
+    """The loading seemed stuck for sure, and nothing said that the run had stopped half-way."""
+    short = st.simulate(st.presets.nakano_popov_2020(), "5 s", max_steps=2000)
+    whole = st.simulate(short.slider, float(short.final.time))
+    part, all_of_it = st.analyse(short), st.analyse(whole)
+    assert part.warnings[0].startswith(
+        "The run ended early, at 1.859 s of 5 s: the run used up its"
+    )
+    assert not all_of_it.warnings
+    assert part.regime.kind == all_of_it.regime.kind == "stuck"
+    share = float(short.final.time) / 5.0
+    assert part.regime.confidence == pytest.approx(share * all_of_it.regime.confidence, rel=1e-3)
+    assert "the run ended early, at 1.859 s" in str(part.regime)
+    assert st.analysis.classify(short) == part.regime
+
+
+def test_cycles_before_an_early_end_are_what_they_are():
+    run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="1 kHz")
+    cut = replace(run, status=st.Status.TOO_MANY_STEPS)
+    assert st.analyse(cut).regime == st.analyse(run).regime
+    assert len(st.analyse(cut).warnings) == len(st.analyse(run).warnings) + 1

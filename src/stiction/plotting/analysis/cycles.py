@@ -10,7 +10,7 @@ from matplotlib.markers import CARETDOWN, CARETUP
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.mean_load import under_mean_load
-from stiction.analysis.motion.regime.classify import motion_of
+from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import Floats, xr
@@ -54,7 +54,7 @@ def plot_cycles(
     >>> axes = st.plotting.plot_cycles(run)
     """
     record = as_record(source)
-    _, found, regime = motion_of(record)
+    _, found, regime = classify_record(record)
     return plot_motion(record, found.cycles, regime.kind, axes)
 
 

@@ -180,10 +180,22 @@ def _doubt_load(record: Record) -> Iterator[str]:
 def warnings_of_run(run: Trajectory, record: Record, cycles: CycleTable) -> tuple[str, ...]:
     """Return warnings about the samples of a run; its parameters are exact."""
     return (
+        *_ended_early(run),
         *([f"The load cell {ACROSS}."] if across_force(run, record) else []),
         *_unsteady(run),
         *doubt_few_samples(record, cycles),
         *doubt_slips_between_samples(record, cycles),
+    )
+
+
+def _ended_early(run: Trajectory) -> tuple[str, ...]:
+    """Return a sentence if a run did not reach its duration, and why."""
+    if run.status.ok:
+        return ()
+    end, whole = float(run.final.time), run.description.run.duration
+    return (
+        f"The run ended early, at {in_words(end, 's')} of {in_words(whole, 's')}: "
+        f"{run.status.value}.",
     )
 
 

@@ -82,22 +82,37 @@ def classify(source: Trajectory | Record) -> Regime:
     >>> st.analysis.classify(st.Record(time=time, force=0.1 * (time % 2.0))).kind
     'stick-slip'
     """
-    return motion_of(as_record(source))[2]
+    run = source if isinstance(source, Trajectory) else None
+    return classify_record(as_record(source), run)[2]
 
 
-def motion_of(record: Record) -> tuple[Record, Swings, Regime]:
-    """Return a record with its swings and its kind of motion.
+def classify_record(record: Record, run: Trajectory | None = None) -> tuple[Record, Swings, Regime]:
+    """Return a record, or that of a run, with its swings and its kind of motion.
 
     Where the force follows a load that varies, the record is that under the mean load.
     """
     load = followed_load(record)
     steady = record if load is None else load.taken_from(record)
     found = swings(steady)._replace(load=load)
-    return steady, found, regime_of(steady, found)
+    return steady, found, regime_of(steady, found, run)
 
 
-def regime_of(record: Record, found: Swings) -> Regime:
-    """Classify the motion in a record with known swings: see `classify`."""
+def regime_of(record: Record, found: Swings, run: Trajectory | None = None) -> Regime:
+    """Classify the motion in a record, or the record of a run, with known swings: see `classify`.
+
+    A motion without cycles is one to which nothing else happens. A run that ended early shows that
+    for a share of its duration, and the confidence is less by this share.
+    """
+    seen = _by_cycles_or_course(record, found)
+    if run is None or run.status.ok or seen.kind not in WITHOUT_CYCLES:
+        return seen
+    end, whole = float(run.final.time), run.description.run.duration
+    evidence = seen.evidence | {"ended_early": end}
+    return seen._replace(confidence=seen.confidence * min(end / whole, 1.0), evidence=evidence)
+
+
+def _by_cycles_or_course(record: Record, found: Swings) -> Regime:
+    """Return the kind of motion by the cycles of a record, or by the course of its force."""
     if len(record) < COURSE_PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
     if rests_throughout(record.time, record.slip_speed, record.sticks):

@@ -28,7 +28,7 @@ Evidence = Literal[
     "ends_falling_from", "ends_falling_by", "stops", "across", "late_share", "one_way",
     "rate_kept", "rate_over_drive", "hump", "hump_height", "fading", "fades_to", "hidden",
     "hidden_height", "quick_falls", "quick_fall", "gaps", "few_periods", "late_sticks",
-    "samples_per_cycle", "rate_needed", "samples", "unchanging", "forth", "back",
+    "samples_per_cycle", "rate_needed", "samples", "unchanging", "forth", "back", "ended_early",
 ]
 # fmt: on
 SLOWER: Final = "slower_share"  # evidence, too: of the motion itself, as an audit knows it
@@ -130,6 +130,7 @@ WORDS: dict[Evidence, tuple[str, Callable[[float], str]]] = {
     "ends_falling_from": ("from {} to the end it falls", _seconds),
     "ends_falling_by": ("by {} or more", _force),
     "stops": ("at the end, at {}, it rests with the drive", _seconds),
+    "ended_early": ("the run ended early, at {}", _seconds),
     "across": (
         "at the end it oscillates across the drive, by {} of the drive's velocity there",
         percent,
@@ -185,7 +186,8 @@ class Regime(NamedTuple):
     confidence : float
         0 to 1. With cycles, the likelihood that another one has the kind's shape, from their
         scatter, or from the number of those with another shape. Thus it is higher for cycles
-        that are alike than for different ones, and for thirty than for three.
+        that are alike than for different ones, and for thirty than for three. Without cycles, it
+        is less for a run that ended early, by the share of its duration that it reached.
     evidence : dict
         Numbers behind the decision; ``str(regime)`` puts them into words.
     runner_up : str
