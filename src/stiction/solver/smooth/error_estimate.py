@@ -178,9 +178,10 @@ def balance(
 
 @inlined
 def distance_error(w: Workspace) -> tuple[float, float]:
-    """Return the largest error of the distance slid inside the step, over h (m/s).
+    """Return the largest error of the distance slid inside the step, over h (m/s), from c_1.
 
-    The distance is the integral of the quadratic through the stages, the slip is the cubic.
+    The distance is the integral of the quadratic through the stages, the slip is the cubic. The
+    sign is reversed, as (M70) reverses that of the error at c_1.
     """
     v = w.values
     x = leading_factor((v[START, 0], v[1, 0], v[2, 0], v[3, 0]))

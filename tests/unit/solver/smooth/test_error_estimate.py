@@ -5,6 +5,7 @@ from math import hypot, inf
 import numpy as np
 import pytest
 from numpy.polynomial import Polynomial
+from scipy.integrate import solve_ivp
 from tests.drawn import inside
 from tests.entry import plain
 from tests.unit.solver.smooth.systems import (
@@ -151,13 +152,41 @@ def test_the_slip_that_rounding_makes(name, h):
     assert 0.3 < max(moved) / (known.rounding * share / CLOSEST) < 1.01
 
 
+def test_the_middle_does_not_see_the_distance_and_reverses_the_error_of_slip():
+    """(M70b): Pi(0.4) = 0, and gamma pi(0.4) = -Pi(c_1)."""
+    assert PI.integ()(INTERIOR) == pytest.approx(0.0, abs=1e-16)
+    assert DEFECT_WEIGHT * PI(INTERIOR) == pytest.approx(-PI.integ()(C[0]))
+
+
 def test_the_error_of_the_distance_slid():
-    """It is the integral of the cubic less that of the quadratic, at the first stage (M70b)."""
+    """It is the integral of the quadratic less that of the cubic, at the first stage (M70b)."""
     _, _, w = solved_step("smoothed", 1e-3)
     cubics = [fit(NODES, w.values[:4, i]) for i in (0, 1)]
     quadratics = [fit(C, w.values[1:4, i]) for i in (0, 1)]
-    off = [abs((a - b).integ()(C[0])) for a, b in zip(cubics, quadratics, strict=True)]
-    assert np.abs(plain(error_estimate.distance_error)(w)) == pytest.approx(off)
+    off = [(b - a).integ()(C[0]) for a, b in zip(cubics, quadratics, strict=True)]
+    assert plain(error_estimate.distance_error)(w) == pytest.approx(off)
+
+
+@pytest.mark.parametrize("name", STATELESS)
+def test_errors_of_slip_and_distance_add_up_as_they_do_at_the_first_stage(name):
+    """Both have the sign of the error there, reversed, where slip follows the springs."""
+    h = 1e-2
+    problem, start, w = solved_step(name, h, "steady")
+    equations = Equations(name, "steady")
+
+    def rates(dt, motion):
+        return [*equations.rates(dt, motion[2:], motion[:2], np.zeros(0))[0], *motion[:2]]
+
+    begin = [*w.values[START, :2], 0.0, 0.0]
+    right = solve_ivp(rates, (0.0, h * C[0]), begin, method="Radau", rtol=1e-10, atol=1e-15)
+    error = w.values[1, :2] - right.y[:2, -1]
+    p, farther = plain(error_estimate.within)(w, INTERIOR), plain(error_estimate.distance_error)(w)
+    of = problem, start, h, INTERIOR, DEFECT_WEIGHT
+    _, slip, slower, _ = plain(error_estimate.balance)(*of, p, w, 1e-20, farther)
+    seen, slower = np.array([p.s_x, p.s_y]) - slip, np.array(slower)
+    off, other = (np.hypot(*(seen + sign * slower + error)) for sign in (1.0, -1.0))
+    assert off < 0.6 * other
+    assert off < 0.8 * np.hypot(*error)
 
 
 def test_the_error_falls_with_the_fourth_power_of_the_step():
