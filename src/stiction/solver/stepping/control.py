@@ -12,7 +12,9 @@ from stiction.friction.law import Vector
 from stiction.solver.accuracy import Accuracy
 from stiction.solver.compilation.jit import inlined
 
-ATTEMPTS = 100  # of a step before it fails; 0.4^100 is below the resolution of any float
+# of a step before it fails: where it is not solved, 0.3^100 = 5e-53 is below RESOLUTION; where its
+# error stays just above the tolerance, each try is 0.9 times as long, and 0.9^100 = 3e-5
+ATTEMPTS = 100
 # of the time, far below a float's resolution: motion goes on within a thin boundary layer
 RESOLUTION = 1e-30
 GROWTH = 2.0  # of step sizes, at most
