@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
-from stiction.errors import Instruction, ResultError
+from stiction.errors import Instruction, ResultError, Status, echo
 from stiction.recording.stored import read_stored, root_attributes
-from stiction.result.attributes import SEAL, TIMES, intact_description, intact_times
+from stiction.result.attributes import (
+    SEAL,
+    TIMES,
+    intact_description,
+    intact_times,
+    legible_attributes,
+)
 from stiction.result.file import (
+    ATTRIBUTES,
     FIT_KIND,
     RECORD_KIND,
     TEXTS,
@@ -19,18 +26,24 @@ from stiction.result.file import (
     is_netcdf,
     read_tables,
     repair_of,
+    unlike_parts,
 )
 from stiction.result.fit_file import refuse_damaged_fit
+from stiction.result.table import stick_table
 from stiction.simulation import run
 from stiction.storage.checksums import broken_parts, bytes_of
 from stiction.storage.isolation import apart
 from stiction.storage.kinds import RESULT, use_of
+from stiction.storage.version import own_version
 from stiction.study.execution.repair import damage_of, restore, stores_in
 from stiction.study.store.store import CHECKED, group_at
 from stiction.study.view.view import broken_changes
 from stiction.system.description import Description
 from stiction.text.sections import Section, as_html, as_text
 from stiction.trajectory import Trajectory
+
+# ends of a run by a limit that its description does not hold
+LIMITED = (Status.TOO_MANY_STEPS.name, Status.TOO_MANY_STICKS.name)
 
 
 class Check(NamedTuple):
@@ -120,8 +133,9 @@ def check(path: str | Path, *, repair: bool = False, trust: bool = False) -> Che
     Raises
     ------
     ResultError
-        If `path` is none of these, or a repair needs a description that is damaged too; or if a
-        record is damaged, which must be imported again, or a fit, which must be made again.
+        If `path` is none of these, or a repair needs a description that is damaged too, or the
+        description does not give the same run: `max_steps` ended it, or another version wrote it;
+        or if a record is damaged, which must be imported again, or a fit, which must be made again.
 
     Examples
     --------
@@ -164,8 +178,41 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     text, known = apart(intact_description, path)
     if not repair:
         return Check(path, [told])
-    _computed_again(path, Description.from_json(text, trust=trust), known).save(path)
+    before = apart(legible_attributes, path)
+    _refuse_unrepeatable(path, before)
+    again = _computed_again(path, Description.from_json(text, trust=trust), known)
+    _refuse_another(path, before, again, known)
+    again.save(path)
     return Check(path, [told], repaired=True)
+
+
+def _refuse_unrepeatable(path: Path, before: Mapping[str, Any]) -> None:
+    """Refuse a damaged result whose description does not give the same run."""
+    status, version = before.get("status"), before.get("stiction_version", own_version())
+    if version != own_version():
+        raise ResultError(
+            f"{path}: stiction {version} wrote it, this is {own_version()}; use that one"
+        )
+    if status in LIMITED:
+        raise ResultError(
+            f"{path}: is damaged, and its description does not hold the limit that ended it: "
+            f"{Status[status].value}; run it again"
+        )
+
+
+def _refuse_another(path: Path, before: Mapping[str, Any], again: Trajectory, known: str) -> None:
+    """Refuse a run computed again that ended otherwise than the damaged one, as far as it tells."""
+    parts = unlike_parts(known, again.samples, stick_table(again.stick_intervals))
+    if ATTRIBUTES not in parts:
+        return
+    now: dict[str, Any] = {"status": again.status.name}
+    now |= {name: getattr(again.statistics, name) for name in ("steps", "stick_count")}
+    if unlike := [name for name in now if before.get(name, now[name]) != now[name]]:
+        name = unlike[0]
+        raise ResultError(
+            f"{path}: is damaged, and its description gives another run: {name} was "
+            f"{echo(before[name])}, is {echo(now[name])}; run it again"
+        )
 
 
 def _computed_again(path: Path, description: Description, known: str) -> Trajectory:
@@ -173,8 +220,7 @@ def _computed_again(path: Path, description: Description, known: str) -> Traject
     again = run(description)
     if TIMES not in broken_parts(known, {TIMES: bytes_of(again.samples["time"])}):
         return again
-    own = apart(intact_times, path)
-    return again if own is None else run(description, times=own)
+    return run(description, times=apart(intact_times, path))
 
 
 def _check_store(path: Path, repair: bool, trust: bool) -> Check:

@@ -3,6 +3,7 @@
 import json
 import pickle
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import h5py
@@ -15,6 +16,7 @@ import stiction as st
 from stiction import cli
 from stiction.result import file as result_file
 from stiction.result.file import DamageError
+from stiction.result.table import as_table
 
 SEED, DAMAGES = 1, 32  # of a result, and as many of a store
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
@@ -141,15 +143,56 @@ def test_a_result_at_times_of_its_own_is_repaired_as_it_was(tmp_path):
         st.load(path)
 
 
-def test_a_result_that_was_given_up_is_computed_to_its_end(tmp_path):
+def test_a_result_that_was_given_up_is_not_replaced_by_another_run(tmp_path):
+    """Its description does not hold max_steps: the repair was the whole run, and did not say so."""
     slider = st.presets.nakano_popov_2020()
     run = st.simulate(slider, "20 ms", max_steps=20)
     assert not run.status.ok
     path = run.save(tmp_path / "a.nc")
     with h5py.File(path, "r+") as file:
         file["u_x"][1] += 1e-9
+    content = path.read_bytes()
+    with pytest.raises(st.ResultError, match=r"the run used up its max_steps; .*; run it again$"):
+        st.check(path, repair=True)
+    assert path.read_bytes() == content
+    assert not st.check(path).ok
+
+
+@pytest.mark.parametrize("times", [None, [1e-3, 3e-3, 0.15, 0.3]])
+def test_a_run_that_ended_by_itself_is_repaired_as_it_was(tmp_path, times):
+    """Its times are as they were, too: where they were its own, they were those of a whole run."""
+    program = [st.protocols.Ramp("-20 N", "0.4 s")]
+    slider = st.presets.nakano_popov_2020()
+    slider = slider.replace(load=st.protocols.LoadProgram(program=program))
+    run = st.simulate(slider, "0.3 s", times=times)
+    assert run.status is st.Status.CONTACT_LOST
+    path = run.save(tmp_path / "a.nc")
+    with h5py.File(path, "r+") as file:
+        file["u_x"][1] += 1e-9
     assert st.check(path, repair=True).repaired
-    assert st.load(path) == st.simulate(slider, "20 ms")
+    assert st.load(path) == run
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "says"),
+    [
+        ("stiction_version", "0.4.9", "stiction 0.4.9 wrote it, this is .*; use that one"),
+        ("status", "CONTACT_LOST", "another run: status was 'CONTACT_LOST', is 'COMPLETED'"),
+        ("steps", 5, "another run: steps was 5, is "),
+        ("stick_count", 3, "another run: stick_count was 3, is "),
+    ],
+)
+def test_a_repair_is_the_run_that_was_damaged(tmp_path, name, value, says):
+    """As a file of another version, or of an unknown change, would have it."""
+    run = st.simulate(st.presets.nakano_popov_2020(), "20 ms")
+    data = run.data.assign_attrs({name: value})
+    path = replace(run, arrays=lambda: as_table(data)).save(tmp_path / "a.nc")
+    with h5py.File(path, "r+") as file:
+        file["u_x"][1] += 1e-9
+    content = path.read_bytes()
+    with pytest.raises(st.ResultError, match=says):
+        st.check(path, repair=True)
+    assert path.read_bytes() == content
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import ResultError, Status
+from stiction.errors import ResultError
 from stiction.storage.checksums import broken_parts, bytes_of
 from stiction.storage.foreign import opening
 
@@ -41,11 +42,20 @@ def intact_description(path: str | Path) -> tuple[str, str]:
     return text, known
 
 
-def intact_times(path: str | Path) -> list[float] | None:
-    """Return the times of the samples from a result file whose other parts are damaged, s.
+def legible_attributes(path: str | Path) -> dict[str, Any]:
+    """Return the texts and numbers among the attributes of a damaged result file."""
+    h5py: Any = import_module("h5py")  # slow to import
+    found: dict[str, Any] = {}
+    with suppress(OSError, RuntimeError, KeyError), h5py.File(path) as file:
+        for name in file.attrs:
+            with suppress(Exception):  # h5py raises anything where an attribute is damaged
+                value = file.attrs[name]
+                found[str(name)] = value if isinstance(value, str) else value.item()
+    return {name: value for name, value in found.items() if isinstance(value, str | int | float)}
 
-    None if the run was given up: its times end early, and need not be others than those of its
-    description.
+
+def intact_times(path: str | Path) -> list[float]:
+    """Return the times of the samples from a result file whose other parts are damaged, s.
 
     Raises
     ------
@@ -55,8 +65,6 @@ def intact_times(path: str | Path) -> list[float] | None:
     h5py: Any = import_module("h5py")  # slow to import
     lost = "is damaged, and so are its times, which its description does not hold; run it again"
     with opening(path, lost), h5py.File(path) as file:
-        if str(file.attrs["status"]) != Status.COMPLETED.name:
-            return None
         times = file["time"][()]
         if TIMES in broken_parts(str(file.attrs[SEAL]), {TIMES: bytes_of(times)}):
             raise ResultError(f"{path}: {lost}")

@@ -56,17 +56,29 @@ OTHER_KINDS = {
         "st.check({text}) looks for damage",
     ),
 }
+ATTRIBUTES = "attributes"  # what checksums call all attributes but the description
 MARK = b"stiction crc-32c"  # precedes the checksum of a whole file
 
 
 def write_result(samples: ColumnTable, sticks: ColumnTable, path: Path) -> None:
     """Write samples and sticks with checksums."""
-    about = {RESULT_KIND: LAYOUT, **samples.attributes}
-    seal = seal_tables({"samples": ColumnTable(samples.columns, about), "sticks": sticks})
+    tables = _tables_of(samples, sticks)
+    about = {**tables["samples"].attributes, SEAL: seal_tables(tables)}
     with new_netcdf(path, size_of(samples, sticks)) as file:
-        write_table(file, ColumnTable(samples.columns, {**about, SEAL: seal}))
+        write_table(file, ColumnTable(samples.columns, about))
         write_table(file.create_group(STICK_GROUP), sticks)
     sign(path)
+
+
+def unlike_parts(known: str, samples: ColumnTable, sticks: ColumnTable) -> list[str]:
+    """Return the parts of a run that differ from the one with these checksums."""
+    return damaged_parts(known, _tables_of(samples, sticks))
+
+
+def _tables_of(samples: ColumnTable, sticks: ColumnTable) -> dict[str, ColumnTable]:
+    """Return the tables of a result file as they are sealed."""
+    about = {RESULT_KIND: LAYOUT, **samples.attributes}
+    return {"samples": ColumnTable(samples.columns, about), "sticks": sticks}
 
 
 @contextmanager
@@ -288,7 +300,7 @@ def _parts(tables: Mapping[str, ColumnTable]) -> dict[str, Any]:
         for column, (dims, values, about) in table.columns.items():
             numbers[f"{name}.{column}"] = bytes_of(values)
             attributes[f"{name}.{column}"] = [values.dtype.kind, dims, _plain(about)]
-    return {**numbers, "attributes": json.dumps(attributes, sort_keys=True).encode()}
+    return {**numbers, ATTRIBUTES: json.dumps(attributes, sort_keys=True).encode()}
 
 
 def _plain(attributes: Mapping[Any, Any]) -> dict[str, Any]:
