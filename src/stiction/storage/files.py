@@ -278,6 +278,45 @@ def folder_lock(folder: Path, *, alone: bool = False) -> Iterator[bool]:
             os.close(handle)
 
 
+@contextmanager
+def claim(path: Path) -> Iterator[bool]:
+    """Claim a piece of work by a locked file, removed afterwards; yield whether nobody else has it.
+
+    The system releases the lock of a process that ends, however it ends. Where files cannot be
+    locked or made, every claim succeeds.
+    """
+    handle, mine = _claim(path)
+    try:
+        yield mine
+    finally:
+        if handle is not None:
+            with suppress(OSError):
+                path.unlink()  # as long as it is locked
+            os.close(handle)
+
+
+def _claim(path: Path) -> tuple[int | None, bool]:
+    """Return the handle of a claim's locked file, or None; and whether the claim succeeds."""
+    while fcntl is not None:
+        try:
+            handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        except OSError:
+            break
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            if os.fstat(handle).st_ino == path.stat().st_ino:
+                return handle, True
+        except BlockingIOError:
+            os.close(handle)
+            return None, False
+        except FileNotFoundError:
+            pass
+        except OSError:
+            return handle, True
+        os.close(handle)  # another process had it, and has removed it since
+    return None, True
+
+
 def _lock(handle: int, alone: bool) -> bool:
     if fcntl is None:
         return not alone

@@ -6,14 +6,18 @@ The cut of a real file system is a command: ``python -m benchmarks.explore.power
 import os
 import pickle
 import shutil
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 import xarray as xr
 from tests.power import Disk, State, put
+from tests.waiting import PATIENCE
 
 import stiction as st
 from stiction.storage.files import folder_lock
+from stiction.study.execution import sweep
 from stiction.study.execution.engines import Threads, never
 from stiction.study.execution.sweep import do, do_block
 from stiction.study.store.creation import create
@@ -136,6 +140,54 @@ def test_a_second_sweep_begins_at_the_other_end(tmp_path):
         st.sweep(STUDY, store.path, engine=Threads(1), progress=stop)
     assert store.has(last)
     assert not store.has(first)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot tell who is alive")
+@pytest.mark.parametrize("others", [1, 2, 4])
+def test_any_number_of_sweeps_share_the_work(tmp_path, monkeypatch, others):
+    """A sweep leaves out the blocks that others are doing; a third one did all again."""
+    study = st.Study(base=BASE, axes={"phi": st.Grid("1 deg", "3 deg", 9)}, measures=["peak_force"])
+    store, done, run_one = create(study, tmp_path / "a.zarr"), [], sweep.run_one
+    begun = threading.Barrier(others + 1)
+
+    def noted(study, wanted, index, *arguments):
+        if len(done) < others + 1:
+            done.append(index)
+            begun.wait(PATIENCE)  # each sweep is in its first block
+        else:
+            done.append(index)
+        return run_one(study, wanted, index, *arguments)
+
+    monkeypatch.setattr(sweep, "run_one", noted)
+    with ThreadPoolExecutor(others + 1) as pool:
+        sweeps = [
+            pool.submit(st.sweep, study, store.path, engine=Threads(1)) for _ in range(others + 1)
+        ]
+        assert all(each.result().pending == 0 for each in sweeps)
+    assert len({*done[: others + 1]}) == others + 1
+    assert {*done} == {(number,) for number in range(9)}
+    assert not [*store.path.glob("status/.*")]
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="Windows cannot tell who is alive")
+def test_a_block_that_another_sweep_keeps_is_done_last(tmp_path):
+    """One that is suspended keeps its claim; one that was killed leaves its file."""
+    store, told = create(STUDY, tmp_path / "a.zarr"), []
+    (store.path / "status" / ".claim-1").touch()  # of a killed sweep
+    with store.claim(0) as mine:
+        assert mine
+        with store.claim(0) as again:
+            assert not again
+        st.sweep(STUDY, store.path, engine=Threads(1), progress=lambda _: told.append(order(store)))
+        assert [*store.path.glob("status/.*")] == [store.path / "status" / ".claim-0"]
+    assert told == [[1], [1, 2], [0, 1, 2]]
+    assert not [*store.path.glob("status/.*")]
+
+
+def order(store):
+    """Return the blocks that are done."""
+    layout = store.layout
+    return [task for task in range(layout.tasks) if store.has(layout.region(task))]
 
 
 OTHER = st.Study(base=BASE, axes={"phi": st.Grid("1 deg", "3 deg", 5)}, measures=["peak_force"])

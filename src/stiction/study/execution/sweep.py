@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from math import prod
 from pathlib import Path
@@ -81,7 +81,17 @@ class StoredOutcome(NamedTuple):
     values: tuple[Any, ...]
 
 
-def do_block(study: Study, address: StoreAddress, task: int, unwanted: Callable[[], bool]) -> Came:
+def do_block(
+    study: Study, address: StoreAddress, task: int, unwanted: Callable[[], bool]
+) -> Came | None:
+    """Do the runs of a block as `finish_block` does; None if another sweep is doing them."""
+    with address.open().claim(task) as mine:
+        return finish_block(study, address, task, unwanted) if mine else None
+
+
+def finish_block(
+    study: Study, address: StoreAddress, task: int, unwanted: Callable[[], bool]
+) -> Came:
     """Do the runs of a block and write it, unless it is no longer wanted.
 
     A worker that outlived its client may have written it meanwhile; then it stays as it is.
@@ -307,7 +317,7 @@ def sweep(
     """Simulate the missing runs of a study, and store their results.
 
     It may be stopped at any moment; called again, it continues. Several processes may sweep the
-    same study at once, and share the work.
+    same study at once, and share the work: each does blocks that no other one is doing.
 
     Parameters
     ----------
@@ -385,7 +395,7 @@ def do(
     layout, begun = store.layout, perf_counter()
     left = runs_in(layout, tasks)
     tally, pace = Tally(layout.runs, layout.runs - left, 0, 0, 0.0), Pace()
-    for came in (engine or Cores()).results(partial(do_block, study, store.address), tasks):
+    for came in _outcomes(study, store, tasks, engine or Cores()):
         now, seconds = tally.now + came.runs, perf_counter() - begun
         tally = tally._replace(
             now=now,
@@ -397,3 +407,17 @@ def do(
         )
         if progress is not None:
             progress(tally)
+
+
+def _outcomes(study: Study, store: Store, tasks: Sequence[int], engine: Engine) -> Iterator[Came]:
+    """Yield the outcome of each task; those that other sweeps do are left to the end.
+
+    What they are still doing then is done here too: a sweep that is suspended, or on a machine that
+    is lost, keeps its claims.
+    """
+    for came in engine.results(partial(do_block, study, store.address), tasks):
+        if came is not None:
+            yield came
+    if left := [task for task in tasks if not store.has(store.layout.region(task))]:
+        yield from engine.results(partial(finish_block, study, store.address), left)
+    store.drop_claims()

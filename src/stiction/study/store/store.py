@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from functools import lru_cache
 from math import prod
 from pathlib import Path
@@ -22,7 +22,7 @@ from stiction import errors
 from stiction.arrays import xr
 from stiction.errors import Instruction, ResultError
 from stiction.storage.checksums import LENGTH, with_checksum, without_checksum
-from stiction.storage.files import place, reason, workshop
+from stiction.storage.files import claim, place, reason, workshop
 from stiction.storage.foreign import opening, refuse_links, refuse_size
 from stiction.storage.kinds import STORE, use_of
 from stiction.storage.version import own_version
@@ -46,6 +46,7 @@ OF_ANY_RUN = [status.name.lower() for status in errors.Status]
 ENDS = (*OF_ANY_RUN[:5], "refused", "error", *OF_ANY_RUN[5:])
 COMPLETED, REFUSED, ERROR = 0, ENDS.index("refused"), ENDS.index("error")
 STATUS, MESSAGE = "status", "message"
+CLAIM = ".claim-"  # prefix of the files of blocks that sweeps are doing, beside the blocks' status
 
 
 class BlockResults(NamedTuple):
@@ -95,6 +96,16 @@ class Store(NamedTuple):
     def mark(self, region: Region) -> Path:
         """Return the status file of a block, which marks it as done."""
         return self._file(STATUS, region)
+
+    def claim(self, task: int) -> AbstractContextManager[bool]:
+        """Claim a block for this sweep: see `stiction.storage.files.claim`."""
+        return claim(self.path / STATUS / f"{CLAIM}{task}")
+
+    def drop_claims(self) -> None:
+        """Remove what killed sweeps have left of their claims."""
+        for each in (self.path / STATUS).glob(f"{CLAIM}*"):
+            with claim(each):
+                pass
 
     def damaged_files(self, region: Region, *, read: bool = False) -> list[Path]:
         """Return the damaged files of a block that is marked as done.
