@@ -62,13 +62,13 @@ KINDS = {  # of arguments that may be given as text with a unit, by their names
     "c_x": Kind("a damping coefficient", "N*s/m", "1 N s/m"),
     "slope": Kind("a slope of friction over speed", "s/m", "1 s/m"),
 }
-F = TypeVar("F", bound=Callable[..., Any])
+_F = TypeVar("_F", bound=Callable[..., Any])
 
 
-def _units(function: F) -> F:
+def _units(function: _F) -> _F:
     """Decorate a formula: text with a unit becomes a number in SI; numbers are taken as they are.
 
-    A bare angle is in radians, as in the equations.
+    A bare angle is in radians, as in the equations; among texts it is refused.
     """
     names = tuple(signature(function).parameters)
 
@@ -79,21 +79,25 @@ def _units(function: F) -> F:
             values = {name: _in_si(name, value) for name, value in values.items()}
         return function(*args, **values)
 
-    return cast(F, read)
+    return cast(_F, read)
 
 
 def _is_text(value: Any) -> bool:
-    return isinstance(value, str) or (
-        isinstance(value, list | tuple) and _is_text(next(iter(value), 0))
-    )
+    """Return whether a value is text, or has text among its elements."""
+    return isinstance(value, str) or (isinstance(value, list | tuple) and any(map(_is_text, value)))
 
 
 def _in_si(name: str, value: Any) -> Any:
-    """Return text, or a list of text, as numbers in SI where it is a quantity."""
+    """Return text, or a list with text, as numbers in SI where it is a quantity."""
     if name not in KINDS or not _is_text(value):
         return value
     if isinstance(value, str):
         return read_number(name, value, KINDS[name])
+    angle = KINDS[name].unit == "rad"
+    for at, each in enumerate(value, 1):
+        if angle and not _is_text(each):
+            told = f"degree or radian? write '{echo(each)} deg' or '{echo(each)} rad'"
+            raise DescriptionError.of(f"{name}.{at}", told)
     return np.array([_in_si(name, each) for each in value])
 
 

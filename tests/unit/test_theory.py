@@ -320,3 +320,21 @@ def test_numbers_with_units_are_refused(stiffness, said):
 def test_the_closed_forms_are_listed_alone():
     assert {"creep_time", "damping_number_of"} < {*dir(theory)}
     assert not {"echo", "is_numeric", "np", "Slider", "Floats"} & {*dir(theory)}
+
+
+@pytest.mark.parametrize("angles", [["45 deg", 0.5], [0.5, "45 deg"], ("0.5 rad", (0.5, "1 deg"))])
+def test_a_bare_angle_among_texts_is_refused_wherever_it_stands(angles):
+    """The first element decided: one list was read in radians, the other one refused as a list."""
+    with pytest.raises(DescriptionError, match=r"theta.*degree or radian\? write '0\.5 deg'"):
+        theory.creep_time(angles, "1 mm/s", 0.01, "2 mm")
+
+
+def test_a_bare_number_in_si_among_texts_is_read():
+    for masses in (["250 g", 1.0], [0.25, "1 kg"]):
+        found = theory.natural_frequency("1 kN/m", masses)
+        np.testing.assert_allclose(found, [1e3**0.5 / 0.5, 1e3**0.5])
+
+
+def test_the_theory_lists_its_formulas_only():
+    assert all(callable(getattr(theory, name)) for name in dir(theory))
+    assert "F" not in dir(theory)
