@@ -1,5 +1,6 @@
 """The command line, run for real on real files."""
 
+import errno
 import json
 import re
 import shlex
@@ -643,3 +644,26 @@ def test_a_percentage_as_coefficient_is_named(tmp_path, capsys):
         with pytest.raises(SystemExit):
             main(arguments)
         assert (said in words(capsys)) == named
+
+
+@pytest.mark.parametrize(
+    ("error", "says"),
+    [
+        (OSError(errno.EADDRINUSE, "Address already in use"), "error system: Address already in"),
+        (OSError("what no number names"), "error system: what no number names; the operating"),
+        (OSError(errno.EIO, "Input/output error"), "error file: standard output: Input/output"),
+        (OSError(errno.EIO, "Input/output error", "a.nc"), "error file: a.nc: Input/output error"),
+    ],
+)
+def test_an_error_of_the_system_is_not_blamed_on_standard_output(monkeypatch, capfd, error, says):
+    """Unless it is one of writing there."""
+
+    def raise_it(*_, **__):
+        raise error
+
+    monkeypatch.setattr("stiction.cli.app", raise_it)
+    monkeypatch.setattr("stiction.cli.give_up", lambda _: None)
+    with pytest.raises(SystemExit) as end:
+        main(["presets"])
+    assert end.value.code == 2
+    assert " ".join(capfd.readouterr().err.split()).startswith(says)

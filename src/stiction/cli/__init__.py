@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 from collections.abc import Callable, Sequence
 from keyword import iskeyword
@@ -42,6 +43,8 @@ app = cyclopts.App(
     help_format="markdown",
     suppress_keyboard_interrupt=False,
 )
+# errors of writing to a standard output that is closed, full or broken
+OF_OUTPUT = (errno.EPIPE, errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EBADF)
 COMMANDS = (
     "paper",
     "init",
@@ -115,9 +118,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
         give_up(sys.stdout)
         sys.exit(1)
     except OSError as error:
+        why = error.strerror or str(error)
+        if error.filename is None and error.errno not in OF_OUTPUT:
+            refuse(errors, "system", f"{why}; the operating system refuses what the command needs")
         give_up(None if error.filename else sys.stdout)
         what = without_middle(str(error.filename or "standard output"), LONGEST_PATH)
-        refuse(errors, "file", f"{what}: {error.strerror or error}; choose another, or make room")
+        refuse(errors, "file", f"{what}: {why}; choose another, or make room")
     except RecursionError:
         refuse(errors, "command line", "an argument is nested too deeply to be read")
     except MemoryError as error:

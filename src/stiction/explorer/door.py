@@ -46,7 +46,8 @@ def explore(
     Raises
     ------
     StictionError
-        If the source cannot be read, or ``stiction[explorer]`` is not installed.
+        If the source cannot be read, the port is in use, or ``stiction[explorer]`` is not
+        installed.
     """
     if find_spec("websockets") is None:
         raise StictionError(
@@ -88,7 +89,7 @@ def serve_beside(serve: Callable[[Tell], Coroutine[Any, Any, None]], tell: Tell)
 
     Raises
     ------
-    OSError
+    StictionError
         If it cannot listen.
     """
     address: Future[str] = Future()

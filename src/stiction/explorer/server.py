@@ -9,6 +9,7 @@ while the browser is started, the list of processes may show it to them.
 from __future__ import annotations
 
 import asyncio
+import os
 from collections.abc import Callable
 from contextlib import suppress
 from hmac import compare_digest
@@ -23,6 +24,7 @@ from websockets.datastructures import Headers
 from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
+from stiction.errors import StictionError
 from stiction.explorer.session import Session
 from stiction.explorer.source import Opened
 
@@ -72,15 +74,27 @@ class Explorer:
         return f"{self.origin}/{self.token}/"
 
     async def start(self, port: int = 0) -> None:
-        """Listen; port 0 is any free one."""
-        self._server = await serve(
-            self._serve_page,
-            HOST,
-            port,
-            process_request=self._admit,
-            compression=None,  # it takes longer than it saves on one machine
-            max_size=LARGEST_REQUEST,
-        )
+        """Listen; port 0 is any free one.
+
+        Raises
+        ------
+        StictionError
+            If the port is in use, or may not be used.
+        """
+        try:
+            self._server = await serve(
+                self._serve_page,
+                HOST,
+                port,
+                process_request=self._admit,
+                compression=None,  # it takes longer than it saves on one machine
+                max_size=LARGEST_REQUEST,
+            )
+        except OSError as error:
+            why = os.strerror(error.errno) if error.errno else str(error)
+            raise StictionError(
+                f"port {port} cannot be listened on: {why}; choose another, or 0 for any free one"
+            ) from None
 
     async def wait(self) -> None:
         """Wait for the last page to be closed, if it ends with that; else for ever."""

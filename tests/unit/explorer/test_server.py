@@ -15,6 +15,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 import stiction as st
+from stiction.cli import main
 from stiction.explorer import server
 from stiction.explorer.answers import tables_of
 from stiction.explorer.door import explore
@@ -189,5 +190,27 @@ def test_in_a_notebook_a_port_that_is_taken_is_told():
     async def cell(port):
         explore(an_opened().description, browser=False, port=port)
 
-    with socket.create_server(("127.0.0.1", 0)) as taken, pytest.raises(OSError, match="in use"):
+    with (
+        socket.create_server(("127.0.0.1", 0)) as taken,
+        pytest.raises(st.StictionError, match="in use"),
+    ):
         asyncio.run(cell(taken.getsockname()[1]))
+
+
+def test_a_port_in_use_is_said_to_be_and_the_remedy(capsys):
+    """It was an OSError, and on the command line standard output was blamed."""
+    with socket.create_server((server.HOST, 0)) as busy:
+        port = busy.getsockname()[1]
+        says = f"port {port} cannot be listened on: Address already in use; choose another, or 0"
+
+        async def in_a_notebook():
+            explore(port=port, browser=False)
+
+        with pytest.raises(st.StictionError, match=says):
+            explore(port=port, browser=False)
+        with pytest.raises(st.StictionError, match=says):
+            asyncio.run(in_a_notebook())
+        with pytest.raises(SystemExit) as end:
+            main(["explore", "--port", str(port), "--no-browser"])
+    assert end.value.code == 2
+    assert says in " ".join(capsys.readouterr().err.split())
