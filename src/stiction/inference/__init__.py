@@ -1,1 +1,1 @@
-"""Inference: what records say about the parameters of a rig, and how surely."""
+"""Inference: estimation of a rig's parameters from records, with uncertainties."""

@@ -63,7 +63,7 @@ def slip_cycles(force: Floats, noise: float = 0.0) -> Cycles:
 
 
 def least_slip(force: Floats, noise: float) -> float:
-    """Return how high a fall must be to be a slip: above noise, and a share of the usual fall.
+    """Return the least height of a slip: above the noise, and a share of the usual fall.
 
     The span of the force does not tell it: that grows where the mean drifts, and where peaks
     and troughs scatter. A small fall may interrupt a large one, or the rise before it: falls are
@@ -92,7 +92,7 @@ def least_slip(force: Floats, noise: float) -> float:
 
 
 def usual_fall(turns: Floats) -> float:
-    """Return the fall that larger ones exceed which make up half of the squares of all falls.
+    """Return the fall beyond which the falls make up half of the sum of all squares.
 
     However many small ones noise makes, they hardly count.
 
@@ -106,7 +106,7 @@ def usual_fall(turns: Floats) -> float:
 
 
 def end_of_loading(force: Floats) -> int:
-    """Return the first sample that is as large as half of those after it; or as small.
+    """Return the first sample that reaches the median of the samples after it.
 
     A force that goes to and fro from the beginning reaches it within the first cycle.
 

@@ -1,4 +1,4 @@
-"""Whether records of a rig contradict each other, or the rate of loading that is stated.
+"""Contradictions between the records of a rig, or with the stated rate of loading.
 
 What each record says, apart from the others.
 """
@@ -32,9 +32,10 @@ class Disagreement(NamedTuple):
 
 
 class Told(NamedTuple):
-    """What one record says by itself of each parameter: middles and spreads, (n, p) and (1, p).
+    """One record's own estimates of each parameter: middles and spreads, (n, p) and (1, p).
 
-    Of the simulated rigs, each from all others, and of the measured one.
+    `middles` and `spreads` are leave-one-out estimates for the simulated rigs, `middle` and
+    `spread` the estimate for the measured one.
     """
 
     middles: Floats
@@ -46,10 +47,10 @@ class Told(NamedTuple):
 def disagreement(
     names: Sequence[str], truth: Floats, alone: Sequence[FeatureSummary], observed: Sequence[Floats]
 ) -> Disagreement:
-    """Return of which parameter several records say most clearly something else.
+    """Return the parameter about which several records contradict each other most clearly.
 
-    Two ways to tell what a record says count: the learned one knows how sure it is; a linear
-    regression has errors that records share, as that of a gain, and these cancel.
+    Two estimates of each record count: the learned one has a spread of its own; the errors of a
+    linear regression that records share, such as that of a gain, cancel.
 
     Parameters
     ----------
@@ -58,7 +59,7 @@ def disagreement(
     truth : ndarray
         (n, p), of the simulated rigs.
     alone : sequence of FeatureSummary
-        What the features of each record say by themselves, learned from these rigs.
+        The summary of each record's features by themselves, learned from these rigs.
     observed : sequence of ndarray
         (f,), the features of each record.
     """
@@ -71,7 +72,7 @@ def disagreement(
 
 
 def line_of(truth: Floats, summary: FeatureSummary, observed: Floats) -> Told:
-    """Return what a linear regression over its features says of a record."""
+    """Return a record's estimates by a linear regression over its features."""
     new = summary.standard.scores(observed[None])
     columns, row = (np.column_stack([np.ones(len(x)), x]) for x in (summary.scores, new))
     slopes = np.linalg.lstsq(columns, truth, rcond=None)[0]
@@ -79,7 +80,7 @@ def line_of(truth: Floats, summary: FeatureSummary, observed: Floats) -> Told:
 
 
 def _most_apart(names: Sequence[str], told: Sequence[Told]) -> Disagreement:
-    """Return of which parameter records differ most, over how far they usually do."""
+    """Return the parameter whose estimates differ most, relative to their usual difference."""
     pairs = [*combinations(told, 2)]
     usual = np.stack(
         [(a.middles - b.middles) / np.hypot(a.spreads, b.spreads) for a, b in pairs], axis=1
@@ -92,10 +93,10 @@ def _most_apart(names: Sequence[str], told: Sequence[Told]) -> Disagreement:
 
 
 def stated_rate(library: Library, seen: Sequence[Observation]) -> Conflict:
-    """Return how far the rate of loading is from stiffness times drive velocity, as stated.
+    """Compare the rate of loading with the stated one, stiffness times drive velocity.
 
-    Of the logarithm of the mean rate from trough to peak, which creep lowers, and the shape of
-    loading and slip says by how much. Of several records, that which contradicts most.
+    The logarithms of the mean rates from trough to peak are compared. Creep lowers these rates; the
+    shape of loading and slip determines by how much. The record that contradicts most is returned.
     """
     plan, found = library.plan, []
     stated = logarithms_of_rate(plan, library.scores)

@@ -27,7 +27,7 @@ SMALL = 1e-9  # of the scale: replaces zero in a logarithm
 
 
 class FeatureScale(NamedTuple):
-    """What features are relative to, from the middle of the priors."""
+    """The scales of the features, from the middle of the priors."""
 
     force: float  # friction force at rest, N
     loading: float  # rate of the force while the mass is at rest, N/s
@@ -57,7 +57,7 @@ def features(
 
 
 class FeatureGroup(NamedTuple):
-    """Features of one kind: what they describe, the channels they need, and their values."""
+    """Features of one kind: its name, the channels they need, and their values."""
 
     name: str
     needs: frozenset[str]
@@ -112,26 +112,26 @@ class Loadings:
         return np.asarray(step * (total - total[self.first][self.cycle]))
 
     def lean(self, along: Floats) -> Floats:
-        """Return cos(theta) of friction that is a little above the largest force of each loading.
+        """Return cos(theta) if friction is a little above the largest force of each loading.
 
-        Of the forces along the spring (N) at these samples.
+        `along` are the forces along the spring (N) at these samples.
         """
         peak = along[self.first + self.count - 1][self.cycle]
         return np.asarray(np.clip(along / (ABOVE * peak), 0.0, 1.0 / ABOVE))
 
     def way(self, along: Floats, step: float) -> Floats:
-        """Return the integral of cot(theta), theta by the force along the spring alone, in s."""
+        """Return the integral of cot(theta), theta from the force along the spring alone, s."""
         lean = self.lean(along)
         return self.integral(lean / np.sqrt(1.0 - lean * lean), step)
 
     def measured_way(self, along: Floats, across: Floats, friction: float, step: float) -> Floats:
-        """Return the integral of cot(theta), theta by both forces, in s."""
+        """Return the integral of cot(theta), theta from both forces, s."""
         least = LEAST_ACROSS * friction
         aside = np.where(np.abs(across) < least, np.copysign(least, across), across)
         return self.integral(along / aside, step)
 
     def regression(self, values: Floats, *columns: Floats) -> Floats:
-        """Return the slopes of values over columns, with a constant of its own for each loading."""
+        """Return the slopes of values over columns, with a separate constant for each loading."""
         within = (self.share > CREEP[0]) & (self.share < CREEP[1])
         cycle = self.cycle[within]
         filling = np.maximum(np.bincount(cycle, minlength=len(self.count)), 1)
@@ -147,7 +147,7 @@ class Loadings:
 
 
 def of_cycles(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> list[float]:
-    """Return size, length and scatter of the cycles, and how these hang together."""
+    """Return the size, length and scatter of the cycles, and the correlations between them."""
     peak, trough = force[cycles.peak], force[cycles.after]
     rise, fall = cycles.peak - cycles.before, cycles.after - cycles.peak
     drop = peak - trough
@@ -168,7 +168,7 @@ def of_cycles(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -
 
 
 def of_loading(step: float, force: Floats, scale: FeatureScale, loadings: Loadings) -> list[float]:
-    """Return the loading rate, by how much creep lowers it, and which kind of creep.
+    """Return the loading rate, its reduction by creep, and the kind of creep.
 
     Where the force leans by theta, creep goes as cot theta (Eq. (7) of Nakano & Popov). Bristles
     under a steadily growing force yield as 1/(1 - f), f being the force over that at which they
@@ -186,7 +186,7 @@ def of_loading(step: float, force: Floats, scale: FeatureScale, loadings: Loadin
 
 
 def of_bend(force: Floats, loadings: Loadings) -> list[float]:
-    """Return how far the loading is from a straight line, over its rise, in each of its parts."""
+    """Return the loading's departure from a straight line, over its rise, in each of its parts."""
     f = force[loadings.index]
     first, last = f[loadings.first], f[loadings.first + loadings.count - 1]
     height = (f - first[loadings.cycle]) / (last - first)[loadings.cycle]
@@ -194,7 +194,7 @@ def of_bend(force: Floats, loadings: Loadings) -> list[float]:
 
 
 def of_slip(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> list[float]:
-    """Return the share of the fall that is done after a peak, and of the rise after a trough.
+    """Return the completed share of the fall after a peak, and of the rise after a trough.
 
     Friction that falls with speed sets how fast the force falls, bristles how it rises again.
     """
@@ -212,7 +212,7 @@ def of_slip(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> 
 
 
 def of_trend(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) -> list[float]:
-    """Return the trend of peaks, and that of drops, which a zero that drifts leaves as they are."""
+    """Return the trend of the peaks and that of the drops; a drift of the zero changes no drop."""
     peak = force[cycles.peak]
     trends = np.stack([peak, peak - force[cycles.after]], axis=1)
     return [*np.polyfit(step * cycles.peak, trends, 1)[0] / scale.drift]
@@ -221,7 +221,7 @@ def of_trend(step: float, force: Floats, scale: FeatureScale, cycles: Cycles) ->
 def of_force_across(
     step: float, channels: dict[str, Floats], scale: FeatureScale, loadings: Loadings
 ) -> list[float]:
-    """Return the course of the force across in a loading, and the misalignment from both forces.
+    """Return the force across during a loading, and the misalignment from both forces.
 
     In creep the force's rate along the spring is k_x V (cos phi - sin phi cot theta) while the
     force leans by theta, the stiff spring hardly moving (Eq. (7) of Nakano & Popov): two slopes,
@@ -280,7 +280,7 @@ def logarithm(value: float) -> float:
 
 
 def correlation(a: Floats, b: Floats) -> float:
-    """Return the correlation coefficient; 0 where one of both is constant."""
+    """Return the correlation coefficient; 0 if one of the two is constant."""
     a, b = a - a.mean(), b - b.mean()
     size = float(np.sqrt((a @ a) * (b @ b)))
     return float(a @ b) / size if size > 0.0 else 0.0

@@ -1,4 +1,4 @@
-"""st.fit(records, rig): what records say about the parameters of a rig."""
+"""st.fit(records, rig): estimate the parameters of a rig from records."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def fit(
 
 
 def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int) -> None:
-    """Refuse so many simulations as soon as the first of them tell that too few will have cycles.
+    """Refuse a number of simulations once the first ones show that too few will have cycles.
 
     By the bound of Clopper and Pearson (Biometrika 26, 404 (1934)) on the share that has some.
     """
@@ -145,7 +145,7 @@ def refuse_few_of(library: Library) -> None:
 
 
 def check(rig: Rig, simulations: int = FEWEST_SIMULATIONS) -> None:
-    """Refuse a rig without priors or whose simulation has no cycles to jitter, and a small library.
+    """Refuse a rig without priors, a law or drive that cannot be fitted, and a small library.
 
     Fewer simulations than are needed with cycles would be too few if all of them had some.
     """
@@ -164,7 +164,7 @@ def check(rig: Rig, simulations: int = FEWEST_SIMULATIONS) -> None:
 
 
 def program_faults(slider: Slider) -> Iterator[Fault]:
-    """Yield where the drive stands still, or drive or load change in time."""
+    """Yield a fault for a drive that stands still, and for a drive or load that varies."""
     part = f"and take the part of the record in which it is so ({begin_and_end()})"
     if not isinstance(slider.motion, ConstantVelocity):
         yield Fault(
@@ -177,7 +177,7 @@ def program_faults(slider: Slider) -> Iterator[Fault]:
 
 
 def law_faults(law: Any) -> Iterator[Fault]:
-    """Yield why a law cannot be fitted, and which can."""
+    """Yield a fault for a law that cannot be fitted; the message names those that can."""
     inner = law.law if isinstance(law, Anisotropic) else law
     if _is_fitted(inner):
         return
@@ -198,7 +198,7 @@ def law_faults(law: Any) -> Iterator[Fault]:
 
 
 def _is_fitted(law: Any) -> bool:
-    """Return whether a law, or a kind of it, can be fitted: its coefficients alone vary by cycle.
+    """Return whether a law, or a kind of it, can be fitted: only its coefficients vary by cycle.
 
     It has no internal state, and a coefficient mu_... beside that of static friction.
     """
@@ -237,7 +237,7 @@ def compare(
     folder: Path | None = None,
     progress: Progress = silent,
 ) -> Fit:
-    """Return what the features of records say, by comparison with a library.
+    """Estimate the parameters from the features of records, by comparison with a library.
 
     What is learned from the library is kept in `folder`.
 
@@ -259,7 +259,7 @@ def compare(
 def _alone(
     library: Library, seen: Sequence[Observation], folder: Path | None, progress: Progress
 ) -> Iterator[FeatureSummary]:
-    """Yield what the features of each of several records say by themselves."""
+    """Yield the estimates from the features of each of several records by itself."""
     if len(seen) < 2:
         return
     ends = np.cumsum([len(each.features) for each in seen])[:-1]
@@ -271,5 +271,5 @@ def _alone(
 
 
 def _place(folder: Path | None, library: Library, of: str = "") -> Path | None:
-    """Return the file in which is kept what a library taught."""
+    """Return the file of the results learned from a library."""
     return None if folder is None else folder / f"learned-{library.wanted}{of}.npz"

@@ -1,4 +1,4 @@
-"""What a fit takes from a record: some whole cycles, thinned out, and how they were measured."""
+"""Observation of a record for a fit: whole cycles, thinned out, and their conditions."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ SAME = 0.02  # of the drive velocity: a record's differs by less if a cell lies 
 
 
 class Noise(NamedTuple):
-    """What a sensor does to a channel's samples.
+    """The errors that a sensor adds to a channel's samples.
 
     Parameters
     ----------
@@ -106,7 +106,7 @@ class Noise(NamedTuple):
 
 
 class Conditions(NamedTuple):
-    """How a record was taken, which its simulations repeat.
+    """The conditions of a record, which its simulations repeat.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ class Conditions(NamedTuple):
         return slider.model_copy(update=its)
 
     def truth_for(self, slider: Slider, middle: Slider) -> Self:
-        """Return these conditions as they truly are for a slider drawn from its priors.
+        """Return the true conditions for a slider drawn from its priors.
 
         Drive and load are off from what is stated by the factors by which the slider's are off from
         those in the `middle` of the priors: one lead screw and one dead weight serve all records.
@@ -158,7 +158,7 @@ class Conditions(NamedTuple):
         )
 
     def scale(self, slider: Slider) -> FeatureScale:
-        """Return what features are relative to."""
+        """Return the scales of the features."""
         rig = self.slider_of(slider)
         return FeatureScale(
             rig.F_0, rig.k_x * abs(self.velocity), 1.0 / rig.natural_frequencies[0],
@@ -177,7 +177,7 @@ class Trend(NamedTuple):
 
 
 class Observation(NamedTuple):
-    """A record's cycles as a fit uses them: conditions, features, thinned force and its cycles.
+    """A record's cycles, as a fit uses them: conditions, features, thinned force and its cycles.
 
     `changes` are sentences on how cycles differ within the record, as an analysis finds it;
     `averaged` the number of its samples of which each thinned one is the mean; `disputed` says
@@ -235,7 +235,7 @@ def steadiness(probabilities: Iterable[float]) -> float:
 
 
 def observe(record: Record, slider: Slider, name: str = "the record") -> Observation:
-    """Return the cycles of a record, under the conditions that it or else the rig states.
+    """Return the cycles of a record, under the conditions that the record or else the rig states.
 
     Raises
     ------
@@ -293,9 +293,9 @@ def grid_of(record: Record, name: str) -> EvenGrid:
 
 
 class Lineless(NamedTuple):
-    """A channel on an even grid, less its lines, and the bands (Hz) in which these lay.
+    """A channel on an even grid, without its spectral lines, and the bands (Hz) of the lines.
 
-    Of the force also the load cell that rings, if this is the force to which it answered.
+    `cell` is the ringing load cell if the values are the restored force, to which it answered.
     """
 
     values: Floats
@@ -304,7 +304,7 @@ class Lineless(NamedTuple):
 
 
 def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lineless]:
-    """Return the channels of a record without lines, as of the mains; the force as its swings."""
+    """Return the channels of a record without lines such as mains hum; of the force its swings."""
     found, least = {}, OWN_HARMONICS / seen.lasting.median("period")
     for name in USED:
         values, lines = getattr(record, name), list(seen.lines)
@@ -320,7 +320,7 @@ def without_lines(record: Record, grid: EvenGrid, seen: Swings) -> dict[str, Lin
 
 
 class Thinned(NamedTuple):
-    """Channels, of which blocks of samples are averaged, their noise, and their cycles."""
+    """Averages of blocks of samples for each channel, their noise, and their cycles."""
 
     channels: dict[str, Floats]
     noise: dict[str, Noise]
@@ -330,7 +330,7 @@ class Thinned(NamedTuple):
 def thin_out(
     lineless: Mapping[str, Lineless], noise: Mapping[str, Noise], step: float, block: int
 ) -> Thinned:
-    """Return means of blocks of samples, which are a step (s) apart, without the bands of lines."""
+    """Return means of blocks of samples, a step (s) apart, without the bands of lines."""
     its = {each: noise_of_means(own, block, step) for each, own in noise.items()}
     channels = {
         each: without_bands(block_means(values, block), step * block, its[each].stop_bands)
@@ -343,12 +343,12 @@ def thin_out(
 
 
 def sign_seen(conditions: Iterable[Conditions]) -> bool:
-    """Return whether records show the sign of a misalignment: by the force across, or turned."""
+    """Return whether records show the sign of a misalignment: by a force across or a turn."""
     return any("force_across" in each.noise or each.yaw for each in conditions)
 
 
 def drive_velocity(record: Record, slider: Slider) -> float:
-    """Return the velocity of the drive, in the sense of the rig's: that which a record states."""
+    """Return the drive velocity that a record states, else the rig's, with the rig's sign."""
     velocity, stated = nominal_velocity(slider.motion), record.drive_velocity
     if stated is None or abs(stated / abs(velocity) - 1.0) <= SAME:
         return velocity
@@ -358,9 +358,9 @@ def drive_velocity(record: Record, slider: Slider) -> float:
 def observe_all(
     records: Source | Sequence[Source], slider: Slider, rig_load: float
 ) -> list[Observation]:
-    """Observe one or several records of a rig, with the load of them that its description states.
+    """Observe one or several records of a rig, under the normal load of its description.
 
-    That is NaN where it is not certain.
+    `rig_load` is NaN if the description's load is uncertain.
     """
     given = [records] if isinstance(records, Source) else [*records]
     if not given:
@@ -372,7 +372,7 @@ def observe_all(
 
 
 def record_from(source: Source, rig_load: float | None = None) -> Record:
-    """Return a record as it is, that of a run, or that of a file of either, as `read_source`."""
+    """Return a record: as it is, of a run, or read from a file of either by `read_source`."""
     if isinstance(source, str | Path):
         source = read_source(source, rig_load=rig_load)
     return as_record(source)
@@ -385,7 +385,7 @@ def noise_of(
     bands: tuple[Band, ...] = (),
     cell: RingingCell | None = None,
 ) -> Noise:
-    """Return the noise of a channel, as its sensor states it or as its samples show it.
+    """Return the noise of a channel, from its sensor's statement or from its samples.
 
     `values` are its samples on an even grid, between which they are interpolated, less lines in
     some bands: rounding is noise where a line was rounded, too, and behind a `cell` that rings. The
@@ -406,7 +406,7 @@ def noise_of(
 
 
 def readings_to_simulate(block: int, noise: Mapping[str, Noise]) -> int:
-    """Return of how many readings a simulated sample is the mean, one of a record of `block`."""
+    """Return how many readings to average for a simulated sample; the record's is `block`."""
     rounded = any(each.quantisation for each in noise.values())
     return min(block, MOST_READINGS if rounded else MOST_PLACES)
 
@@ -428,12 +428,12 @@ def noise_of_means(noise: Noise, block: int, step: float) -> Noise:
 
 
 def amplification(noise: Noise, step: float, block: int = 1) -> float:
-    """Return by how much means of blocks of samples are noisier where a force is restored."""
+    """Return the factor by which restoring a force makes means of blocks noisier."""
     return 1.0 if noise.cell is None else noise.cell.amplification(step, block)
 
 
 def to_tenths(band: Band) -> Band:
-    """Return a band with ends rounded to a tenth of its width: one that many records share.
+    """Return a band with ends rounded to a tenth of its width, so that many records share it.
 
     >>> to_tenths(Band(149.43, 150.42)), to_tenths(Band(0.4956, 0.5056))
     (Band(low=149.4, high=150.4), Band(low=0.496, high=0.506))
@@ -445,9 +445,10 @@ def to_tenths(band: Band) -> Band:
 def with_lasting_noise(
     noise: Noise, values: Floats, cycles: Cycles, step: float, block: int
 ) -> Noise:
-    """Return the noise of means of blocks, a step (s) apart, that differ by more than white noise.
+    """Return the noise of means of blocks, a step (s) apart, with its coloured part, if any.
 
-    It is told from their loadings, which have the same course; where rounding shows, it is none.
+    The noise is the difference between loadings, which have the same course. Where rounding shows,
+    it has no coloured part.
     """
     if noise.quantisation:
         return noise
@@ -463,7 +464,7 @@ def with_lasting_noise(
 
 
 def near(value: float) -> float:
-    """Return a value to a tenth, on a scale of few: a time that many records share.
+    """Return the nearest value on a scale of few values, so that many records share it.
 
     >>> near(0.0123), near(9.8), near(0.0)
     (0.012, 10.0, 0.0)
@@ -472,7 +473,7 @@ def near(value: float) -> float:
 
 
 def round_up(value: float) -> float:
-    """Return a positive value rounded up by a quarter at most: noise that many records share.
+    """Return a positive value rounded up by at most a quarter, so that many records share it.
 
     >>> round_up(0.0123), round_up(0.0)
     (0.015, 0.0)
@@ -481,7 +482,7 @@ def round_up(value: float) -> float:
 
 
 def on_scale(value: float, choose: Callable[[float], float]) -> float:
-    """Return a positive value with another mantissa, chosen for its own from 1 to 10; or 0."""
+    """Return a positive value with its mantissa, 1 to 10, replaced by a choice; zero stays zero."""
     if value <= 0.0:
         return 0.0
     power = floor(log10(value))

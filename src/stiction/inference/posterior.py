@@ -74,7 +74,7 @@ MEANINGS = {
 
 
 class Estimate(NamedTuple):
-    """What is known of one parameter: medians and 95 % intervals after and before.
+    """The estimate of one parameter: medians and 95 % intervals, posterior and prior.
 
     In SI, angles in rad; in the datasets of a fit they are in degrees.
 
@@ -96,7 +96,7 @@ class Estimate(NamedTuple):
 
     @property
     def identified(self) -> bool:
-        """Whether the records say clearly more than the prior."""
+        """Whether the records narrow the prior clearly."""
         return self.narrower < NARROWER
 
 
@@ -159,7 +159,7 @@ class Fit(Report):
         learned: Learned,
         alone: Sequence[FeatureSummary] = (),
     ) -> Self:
-        """Return the fit of a weighted sample of normal scores, from what a library taught.
+        """Return the fit of a weighted sample of normal scores, with the results from a library.
 
         `alone` is what the features of each record say by themselves, where there are several.
         """
@@ -217,16 +217,16 @@ class Fit(Report):
         return any(name in (x.name, last_part(x.name)) for x in self.estimates)
 
     def tables(self) -> list[Section]:
-        """Return the report: what is known, and what the records do not say."""
+        """Return the report: the estimates, and the parameters that remain undetermined."""
         return [self.without_values()] if self.meaningless else self._with_values()
 
     def without_values(self) -> Section:
-        """Return the report of a fit whose values mean nothing: what speaks against them."""
+        """Return the report of a fit whose values mean nothing: the reasons against them."""
         compared = f"Compared with {self.simulations} simulated records."
         return Section("Fit", [*self.doubts, WITHHELD, compared, *self.disturbances])
 
     def _in_short(self) -> Section:
-        """Return the doubts, if there are any, what is known, and what is not."""
+        """Return the doubts, if any, then the identified parameters, then the others."""
         lines = self.doubts
         short = short_names(x.name for x in self.estimates)
         if self.known:
@@ -253,7 +253,7 @@ class Fit(Report):
         return [self._in_short(), table, Section("Notes on the fit", self._notes())]
 
     def _notes(self) -> list[str]:
-        """Return what the estimates suppose, and what the columns of their table mean."""
+        """Return the assumptions of the estimates, and the meaning of their table's columns."""
         sentences = []
         if "phi" in self.plan.priors and not sign_seen(self.plan.conditions):
             sentences.append("These channels do not show the sign of phi: it is that of the prior.")
@@ -280,22 +280,22 @@ class Fit(Report):
 
     @property
     def known(self) -> list[Estimate]:
-        """The parameters of which the records say clearly more than the prior, and within it."""
+        """The parameters that the records narrow clearly, with a posterior within the prior."""
         return [x for x in self.estimates if x.identified and x.name not in self.beyond]
 
     @property
     def beyond(self) -> list[str]:
-        """The parameters whose posterior lies in a tail of the prior, where it hardly can."""
+        """The parameters whose posterior lies far in a tail of the prior."""
         return self._out_by(TAIL)
 
     @property
     def at_an_end(self) -> list[str]:
-        """The parameters with a median near an end of the prior, beyond which few per cent lie."""
+        """The parameters whose median lies near an end of the prior."""
         return self._out_by(NEAR_AN_END)
 
     @property
     def narrow_priors(self) -> str:
-        """What a posterior at an end of its prior tells of records that are unlike, or ''.
+        """A warning of posteriors at an end of their prior, for records unlike simulations; or ''.
 
         By itself it tells nothing: of true values, 2 % lie as near to each end.
         """
@@ -307,19 +307,19 @@ class Fit(Report):
         )
 
     def _out_by(self, score: float) -> list[str]:
-        """Return the parameters with a median farther from the prior's than a normal score."""
+        """Return the parameters whose median is farther from the prior's than a normal score."""
         middles = np.median(self.scores, axis=0)
         pairs = zip(self.estimates, middles, strict=True)
         return [each.name for each, middle in pairs if abs(middle) > score]
 
     @property
     def unidentified(self) -> list[str]:
-        """The parameters of which the records say no more than the prior, nor point beyond it."""
+        """The parameters that the records neither narrow clearly nor move beyond the prior."""
         return [x.name for x in self.estimates if not x.identified and x.name not in self.beyond]
 
     @property
     def doubts(self) -> list[str]:
-        """What speaks against the estimates, in sentences; none if nothing does."""
+        """The reasons to doubt the estimates, as sentences; none if nothing speaks against them."""
         found = [self.disputed] * bool(self.disputed)
         if self.farther < RARE:
             found.append(unlike(self.farther, f"{self.narrow_priors}{self.explanation}"))
@@ -350,23 +350,23 @@ class Fit(Report):
 
     @property
     def contradictory(self) -> bool:
-        """Whether several records say something else of one parameter."""
+        """Whether several records contradict each other about a parameter."""
         return self.disagreement is not None and self.disagreement.p_value < CONTRADICTS
 
     @property
     def meaningless(self) -> bool:
-        """Whether the values mean nothing, as of other cycles, unlike records, or contradictory."""
+        """Whether the values mean nothing: disputed cycles, unlike or contradictory records."""
         return bool(self.disputed) or self.farther < RARE or self.contradictory
 
     @property
     def drifts(self) -> bool:
-        """Whether only the peaks have a trend, as under a drifting zero, and no drift is stated."""
+        """Whether only the peaks have a trend, as with a drifting zero, and no drift is stated."""
         stated = any(each.noise["force"].drift for each in self.plan.conditions)
         return not stated and self.trend.peaks < TREND <= self.trend.drops
 
     @property
     def disturbances(self) -> list[str]:
-        """What is left out of records, and what is added to simulations, as sentences."""
+        """Parts left out of records, and noise added to simulations, as sentences."""
         noises = [noise for each in self.plan.conditions for noise in each.noise.values()]
         bands = sorted({band for noise in noises for band in noise.stop_bands})
         times = sorted({noise.lasts for noise in noises if noise.lasting})
@@ -409,7 +409,7 @@ class Fit(Report):
 
 
 def possible(plan: Plan, sample: Sample) -> Sample:
-    """Return the part of a sample that the description takes, where priors are restricted.
+    """Return the draws of a sample that the description allows, where priors are restricted.
 
     A local regression moves some draws over the border.
     """
@@ -448,7 +448,7 @@ def estimate(
 
 
 def other_rate(its: Conflict) -> str:
-    """Return that a spring is loaded at another rate than stated, and what to do."""
+    """Return the doubt that the loading rate differs from the stated one, with the remedy."""
     factor = float(np.exp(its.found))
     return (
         f"The force rises at {with_error(factor, its.error * factor, '')} times the rate that is "
@@ -461,7 +461,7 @@ def other_rate(its: Conflict) -> str:
 
 
 def friction_drifts(p_value: float) -> str:
-    """Return that friction has a trend in a record, as it may have with this probability."""
+    """Return the doubt that friction has a trend in a record, with its p-value."""
     return (
         f"Friction drifts: peaks or drops have a trend from cycle to cycle (p = {p_value:.1g}), "
         f"which is not simulated. Take cycles after running in ({Suggestion('begin')})."
@@ -469,7 +469,7 @@ def friction_drifts(p_value: float) -> str:
 
 
 def unlike(farther: float, why: str) -> str:
-    """Return that records are not like simulated ones, of which so few are `farther`, and why."""
+    """Return the doubt that records are unlike simulated ones, with a share and a reason."""
     return (
         "The records are not like those of the rig as described, whatever the uncertain values are "
         f"within their priors: {percent(farther)} of the simulated records are less like the "
@@ -506,7 +506,7 @@ def dataset(plan: Plan, scores: Floats) -> xr.Dataset:
 
 
 def words(x: Estimate) -> str:
-    """Return an estimate in a few words."""
+    """Return the median of an estimate and its interval in words."""
     return f"{middle(x)} ({interval(x.low, x.high, x.median, x.unit)})"
 
 

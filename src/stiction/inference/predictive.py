@@ -39,7 +39,7 @@ class Curve(NamedTuple):
 
     @property
     def bend(self) -> Floats:
-        """How far the force is from a straight line between its ends, over its rise."""
+        """The departure of the force from a straight line between its ends, over its rise."""
         first, last = self.force[..., :1], self.force[..., -1:]
         return (self.force - first) / (last - first) - SHARES
 
@@ -95,7 +95,7 @@ def slip_time(step: float, cycles: Cycles) -> float:
 def predict(
     fit: Fit, seen: Observation, progress: Callable[[float], None] | None = None
 ) -> Predictive | None:
-    """Simulate a record with parameters of its posterior; None if hardly any has cycles."""
+    """Simulate a record with parameters of its posterior; return None if hardly any has cycles."""
     step = seen.conditions.step
     made: list[Synthetic] = []
     chosen = np.linspace(0, len(fit.scores) - 1, DRAWS).astype(int)
@@ -127,7 +127,7 @@ def simulate_one(
 
 
 def departures(measured: Floats, simulated: Floats) -> tuple[float, Floats]:
-    """Return how far curves depart from the mean simulated one, in standard deviations.
+    """Return the departures of curves from the mean simulated one, in standard deviations.
 
     The largest at any share: of the measured (s,) and of each simulated one (n, s), from the mean
     of the others.

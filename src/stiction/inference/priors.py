@@ -1,4 +1,4 @@
-"""Priors: what the description of a rig says is uncertain, and by how much.
+"""Priors: the uncertain values in a rig's description, and their distributions.
 
 A value of a description may be uncertain in three ways:
 
@@ -45,7 +45,7 @@ class Normal:
     high: float = inf
 
     def quantile(self, share: Floats) -> Floats:
-        """Return the values below which these shares of the distribution lie."""
+        """Return the quantiles of the distribution at these shares."""
         from scipy.special import ndtr, ndtri
 
         below, until = (ndtr((x - self.mean) / self.deviation) for x in (self.low, self.high))
@@ -74,7 +74,7 @@ class Uniform:
     scale: str = "linear"
 
     def quantile(self, share: Floats) -> Floats:
-        """Return the values below which these shares of the distribution lie."""
+        """Return the quantiles of the distribution at these shares."""
         if self.scale == "log":
             return np.asarray(self.low * (self.high / self.low) ** np.asarray(share))
         return np.asarray(self.low + (self.high - self.low) * np.asarray(share))
@@ -98,7 +98,7 @@ SPREAD = 0.035
 
 
 def jitter_of(peaks: Floats) -> Uniform:
-    """Return the prior of the jitter for the peaks of a force (n,), a trend of which is left out.
+    """Return the prior of the jitter for the peaks of a force (n,) without their trend.
 
     >>> jitter_of(np.r_[1.0:2.0:9j]) == JITTER, jitter_of(np.r_[0.9, 1.1, 0.9, 1.1]) == IRREGULAR
     (True, True)
@@ -144,7 +144,7 @@ PLAIN = Kind("a number", "", "5")
 
 
 def share_of(value: Any, percent: str) -> str | float:
-    """Return a share of the size of a quantity, in its unit and as its digits have it.
+    """Return a percentage of the size of a quantity, in the quantity's unit.
 
     >>> share_of("30 mN", "10"), share_of(0.3, "7")
     ('3.0 mN', 0.021)

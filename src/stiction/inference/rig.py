@@ -39,7 +39,7 @@ class _Parts(NamedTuple):
 
 
 class Rig(_Parts):
-    """A rig as its description states it.
+    """A rig: a slider, and the priors of its uncertain values.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Rig(_Parts):
     __slots__ = ()
 
     def __new__(cls, slider: Slider, priors: Mapping[str, Any] | None = None) -> Self:
-        """Read what is stated in text or as a table."""
+        """Read a slider and priors from text or tables."""
         if not isinstance(priors, Mapping | None):
             raise DescriptionError.of("priors", f"{echo(priors)} is not a dict; write {UNCERTAIN}")
         given = {canonical(path): its for path, its in (priors or {}).items()}
@@ -135,7 +135,7 @@ class Rig(_Parts):
         return table + picture("plot_slider", self.slider)
 
     def to_toml(self) -> str:
-        """Return the description as TOML with units, uncertain values as their priors state them.
+        """Return the description as TOML with units, with the priors of uncertain values.
 
         Examples
         --------
@@ -159,7 +159,7 @@ class Rig(_Parts):
 
 
 def with_priors(slider: Slider, stated: Mapping[str, Any]) -> tuple[Slider, dict[str, Prior]]:
-    """Return a slider in the middle of what is stated as uncertain, and all priors.
+    """Return a slider at the medians of its uncertain values, and all priors.
 
     One that is given as a prior says nothing of the slider.
     """
@@ -171,7 +171,7 @@ def with_priors(slider: Slider, stated: Mapping[str, Any]) -> tuple[Slider, dict
 
 
 def rig_of(source: Any, changes: Mapping[str, Any] | None = None, trust: bool = False) -> Rig:
-    """Return the rig that is given, that of a file or text, or a slider without priors.
+    """Return a rig: the given one, that of a file or text, or a slider without priors.
 
     `changes` and `trust` are those of `Rig.from_toml`, of a file or text.
 
@@ -188,7 +188,7 @@ def rig_of(source: Any, changes: Mapping[str, Any] | None = None, trust: bool = 
 
 
 def is_rig(source: Any) -> bool:
-    """Return whether this is a rig, a slider, a description or a path of one, not a record."""
+    """Return whether the argument is a rig, a slider, a description or its path, not a record."""
     if isinstance(source, str | Path):
         return Path(source).suffix.lower() == ".toml"
     return isinstance(source, Rig) or (
@@ -214,7 +214,7 @@ def refuse_swapped(rig: Any, records: Any, remedy: str) -> None:
 
 
 def load_of_records(rig: Rig) -> float:
-    """Return the normal load (N) of a rig's records; NaN if that is uncertain, or varies.
+    """Return the normal load (N) of a rig's records; NaN if it is uncertain or varies.
 
     >>> import stiction as st
     >>> text = st.presets.nakano_popov_2020().to_toml()
@@ -226,7 +226,7 @@ def load_of_records(rig: Rig) -> float:
 
 
 def stored_text(rig: Rig) -> str:
-    """Return a description as TOML for a file, with the text of a user's law, as results hold it.
+    """Return a description as TOML for a results file, with the text of a user's law.
 
     `Rig.from_toml` reads it: it runs that text only with `trust`.
     """
@@ -236,7 +236,7 @@ def stored_text(rig: Rig) -> str:
 
 
 def stated_names(source: Any, changes: Mapping[str, Any] | None = None) -> list[str]:
-    """Return the paths of a description's uncertain values, whatever else is wrong with it.
+    """Return the paths of a description's uncertain values, even if it has faults.
 
     None are known where no description is given, or where it cannot be read.
     """
@@ -254,13 +254,13 @@ def stated_names(source: Any, changes: Mapping[str, Any] | None = None) -> list[
 def without_spread(
     table: Mapping[str, Any], keys: tuple[str, ...], stated: dict[str, Any]
 ) -> Iterator[tuple[str, Any]]:
-    """Yield the items of a table, a plain value for each uncertain one; that is put in `stated`."""
+    """Yield a table's items with a plain value for each uncertain one, moved to `stated`."""
     for key, value in table.items():
         yield key, _certain(value, (*keys, key), stated)
 
 
 def _certain(value: Any, keys: tuple[str, ...], stated: dict[str, Any]) -> Any:
-    """Return a value without spread, that of tables and of lists of tables too."""
+    """Return a value without uncertainty; do the same inside tables and lists of tables."""
     parsed = spread(value)
     if parsed is not None:
         stated[canonical(".".join(keys))] = parsed
@@ -278,7 +278,7 @@ def _certain(value: Any, keys: tuple[str, ...], stated: dict[str, Any]) -> Any:
 
 
 def between(table: Mapping[str, Any]) -> Any:
-    """Return a value between the ends of a uniform prior, `low` where they differ in their unit.
+    """Return the middle of a uniform prior's ends; `low` if their units differ.
 
     >>> between({"low": 0.2, "high": 0.5}), between({"low": "1 deg", "high": "3 deg"})
     (0.35, '2.0 deg')
@@ -296,7 +296,7 @@ def between(table: Mapping[str, Any]) -> Any:
 
 
 def element_key(element: Mapping[str, Any], number: int) -> str:
-    """Return by which key a table in a list is known: its name, or its number.
+    """Return the key of a table in a list: its name, or its number.
 
     >>> element_key({"name": "Load cell"}, 1), element_key({}, 2)
     ('load-cell', '2')
@@ -321,7 +321,7 @@ def spread(value: Any) -> dict[str, Any] | None:
 def with_prior_faults(
     faults: Sequence[Fault], wrong: Sequence[Fault], stated: Mapping[str, Mapping[str, Any]]
 ) -> list[Fault]:
-    """Return the faults of a description, and the `wrong` ones of uncertain values elsewhere.
+    """Return a description's faults, and the faults of uncertain values at other paths.
 
     A value that cannot be read stands for a prior: where it is the middle of one, that is said.
     """
@@ -334,7 +334,7 @@ def with_prior_faults(
 
 
 def prior_faults(stated: Mapping[str, Mapping[str, Any]]) -> Sequence[Fault]:
-    """Return the faults of uncertain values by themselves, whatever they are values of."""
+    """Return the faults of uncertain values, checked without knowledge of their parameters."""
     try:
         read_priors(lambda path: own_unit(stated[path]), stated)
     except DescriptionError as error:
@@ -343,7 +343,7 @@ def prior_faults(stated: Mapping[str, Mapping[str, Any]]) -> Sequence[Fault]:
 
 
 def own_unit(table: Mapping[str, Any]) -> str:
-    """Return the first unit in which a prior is written; '' for plain numbers.
+    """Return the first unit that a prior's table contains; '' for plain numbers.
 
     >>> own_unit({"low": 0, "high": "3 deg"}), own_unit({"value": 0.3, "uncertainty": "10 %"})
     ('deg', '')
@@ -354,7 +354,7 @@ def own_unit(table: Mapping[str, Any]) -> str:
 
 
 def read_priors(unit_at: Callable[[str], str], stated: Mapping[str, Any]) -> dict[str, Prior]:
-    """Return the prior of each uncertain parameter, whose unit is known, or every fault."""
+    """Return the prior of each uncertain parameter, in the unit by `unit_at`, or every fault."""
     priors, faults = dict[str, Prior](), list[Fault]()
     for path, table in stated.items():
         try:
@@ -378,14 +378,14 @@ def read_priors(unit_at: Callable[[str], str], stated: Mapping[str, Any]) -> dic
 
 
 def in_the_middle(slider: Slider, priors: Mapping[str, Prior]) -> Slider:
-    """Return the slider with every uncertain value in the middle of its prior."""
+    """Return the slider with every uncertain value at the median of its prior."""
     middles = {name: middle(prior) for name, prior in priors.items()}
     given = {name: quantity(slider, name, value) for name, value in middles.items()}
     return change_parameters(slider, given) if given else slider
 
 
 def within_ranges(slider: Slider, priors: Mapping[str, Prior]) -> dict[str, Prior]:
-    """Return priors that end where a value would be impossible, or every fault.
+    """Return the priors, restricted to possible values; or every fault.
 
     `slider` is in the middle of them.
     """
@@ -402,7 +402,7 @@ def within_ranges(slider: Slider, priors: Mapping[str, Prior]) -> dict[str, Prio
 
 
 def within_range(slider: Slider, path: str, prior: Prior, others: Mapping[str, Prior]) -> Prior:
-    """Return a prior that ends where values become impossible; refuse one whose end is so."""
+    """Return a prior restricted to possible values; refuse a uniform one with an impossible end."""
     if isinstance(prior, Uniform):
         for end in (prior.low, prior.high):
             try:

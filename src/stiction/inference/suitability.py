@@ -1,4 +1,4 @@
-"""Whether a record suits a fit: what is refused, and what may explain that it is unlike others."""
+"""Suitability of a record for a fit: refusals, and explanations of an unusual record."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def refuse_far(record: Record, slider: Slider, name: str) -> None:
 
 
 def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
-    """Refuse a record without stick-slip, or whose drive or load goes back and forth.
+    """Refuse a record without stick-slip, or with a drive or load that reverses.
 
-    That of a run too, whose slip speed alone decides its kind of motion.
+    A run is refused too, though its slip speed alone decides its kind of motion.
     """
     turns = imposed_reversal(None, regime)
     if not turns and strokes(record) is not None:
@@ -83,7 +83,7 @@ def refuse_few(name: str, count: int) -> None:
 
 
 def refuse_hidden(name: str, count: int, of: int) -> None:
-    """Refuse a record of which too few of its cycles stand out of all that its force does."""
+    """Refuse a record of which too few cycles stand out from the rest of its force."""
     if count < LEAST_CYCLES:
         raise ResultError(
             f"of the {of} cycles of {name} only {count} stand out of what else the force does, as "
@@ -93,7 +93,7 @@ def refuse_hidden(name: str, count: int, of: int) -> None:
 
 
 def refuse_no_mean(name: str, force: Floats, cycles: Cycles) -> None:
-    """Refuse a force whose mean is about zero, within the standard error of that of its cycles.
+    """Refuse a force whose mean is zero within the standard error of its cycles' mean.
 
     The bends of its loadings are those of an amplifier, and a fit would take them for creep.
     """
@@ -111,7 +111,7 @@ def refuse_no_mean(name: str, force: Floats, cycles: Cycles) -> None:
 
 
 def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
-    """Refuse a force that is recorded with the other sign: most cycles rise within QUICKLY."""
+    """Refuse a force of the opposite sign: most of its cycles rise within the share QUICKLY."""
     shares = (cycles.peak - cycles.before) / (cycles.after - cycles.before)
     if force.mean() <= 0.0 and np.median(shares) < QUICKLY:
         raise ResultError(
@@ -122,7 +122,7 @@ def refuse_other_sign(name: str, force: Floats, cycles: Cycles) -> None:
 
 
 def changes_within(seen: Swings, regime: Regime, until: float) -> tuple[str, ...]:
-    """Return what an analysis says of cycles that differ until a time, s, as sentences.
+    """Return an analysis's warnings of cycles that differ until a time, s, as sentences.
 
     Simulated records have one velocity and one load, so that such a record is like none of them.
     """
@@ -137,7 +137,7 @@ def changes_within(seen: Swings, regime: Regime, until: float) -> tuple[str, ...
 
 
 def dispute(seen: Swings, troughs: Floats, name: str) -> str:
-    """Return that an analysis counts clearly more or fewer cycles than a fit, or ''.
+    """Return the warning that an analysis counts clearly more or fewer cycles than a fit, or ''.
 
     `troughs` (m + 1,) are the ends of the fit's cycles, s, first that before them. Counted are
     those that end in the time in which both see some.
@@ -162,9 +162,9 @@ def _name_other_motion(regime: Regime, until: float) -> Iterator[str]:
 
 
 def explain_unlike(changes: Sequence[Sequence[str]]) -> str:
-    """Return what may explain that records are unlike simulated ones, and the remedy; or ''.
+    """Return possible reasons why records are unlike simulated ones, and the remedy; or ''.
 
-    Of the changes within each record.
+    `changes` are the changes within each record, as sentences.
 
     >>> explain_unlike([(), ("At 3 s the force falls by 2 N.",)])[:63]
     'Cycles differ within the record, which may explain it. Record 2'

@@ -1,1 +1,1 @@
-"""What a library teaches: a summary of features, posteriors by it, and how truthful they are."""
+"""Learning from a library: a summary of features, posteriors from it, and their calibration."""

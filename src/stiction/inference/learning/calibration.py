@@ -1,4 +1,4 @@
-"""What is learned once from a library, and how well it holds for records of the library itself.
+"""The results learned from a library, and their calibration on the library's own records.
 
 The ranks of the truth in posteriors of records that were left out are uniform where posteriors are
 calibrated (S. Talts et al., arXiv:1804.06788).
@@ -38,7 +38,7 @@ REGRESSIONS = "middle", "spread"  # of a summary
 
 
 class Learned(NamedTuple):
-    """What features say about parameters, and how truthfully."""
+    """Estimators of parameters from features, with their calibration."""
 
     summary: FeatureSummary  # estimates from features
     truth: Floats  # (n, p), scores of the library
@@ -55,18 +55,18 @@ class Learned(NamedTuple):
             yield with_marginals(joint, [marginal(*arguments) for arguments in pairs])
 
     def farther(self, features: Floats) -> float:
-        """Return the share of the library that is less like the others than a record (f,)."""
+        """Return the share of the library that is less typical than a record (f,)."""
         (found,) = self.typicality.farther(self.summary.standard.scores(features[None]))
         return float(found)
 
     def coverage(self, interval: float) -> Floats:
-        """Return how often intervals of this probability hold the truth, (p,)."""
+        """Return how often intervals of this probability contain the truth, (p,)."""
         inside = np.abs(self.ranks - 0.5) < 0.5 * interval
         return np.asarray(inside.mean(axis=0))
 
 
 def estimates(summary: FeatureSummary, truth: Floats) -> Iterator[Known]:
-    """Yield what is known of each parameter of all records, each from all others."""
+    """Yield the leave-one-out estimate of each parameter, for all simulated records."""
     for middles, spreads, scores in zip(
         *(each.T for each in summary.library), truth.T, strict=True
     ):
@@ -74,7 +74,7 @@ def estimates(summary: FeatureSummary, truth: Floats) -> Iterator[Known]:
 
 
 def ranks(summary: FeatureSummary, truth: Floats) -> Floats:
-    """Return the ranks of the truth of the last records of the library, each from all others."""
+    """Return the leave-one-out ranks of the truth of the library's last records."""
     last = range(max(len(truth) - RANKED, 0), len(truth))
     columns = []
     for its in estimates(summary, truth):
@@ -86,7 +86,7 @@ def ranks(summary: FeatureSummary, truth: Floats) -> Floats:
 def learn_or_read(
     features: Floats, truth: Floats, path: Path | None = None, progress: Progress = silent
 ) -> Learned:
-    """Learn from features (n, f) and scores (n, p), or read from a file what was learned."""
+    """Learn from features (n, f) and scores (n, p), or read the stored result from a file."""
     summary = learn_or_read_summary(features, truth, path, part(progress, 0, 10, of=8))
     beside = None if path is None else path.with_name(f"{path.stem}-calibration.npz")
     stored = read(beside, summary)
@@ -100,7 +100,7 @@ def learn_or_read(
 
 
 def read(path: Path | None, summary: FeatureSummary) -> tuple[Floats, Typicality] | None:
-    """Return stored ranks and typicality; None where there are none of this summary's library."""
+    """Return stored ranks and typicality; None unless they belong to this summary's library."""
     arrays = read_arrays(path) or {}
     try:
         return arrays["ranks"], Typicality.read(arrays, summary.scores, summary.middle)
@@ -111,7 +111,7 @@ def read(path: Path | None, summary: FeatureSummary) -> tuple[Floats, Typicality
 def learn_or_read_summary(
     features: Floats, truth: Floats, path: Path | None, progress: Progress
 ) -> FeatureSummary:
-    """Learn what features say, or read it from a file."""
+    """Learn a summary of features, or read it from a file."""
     stored = read_summary(path, features)
     if stored is not None:
         return stored
@@ -123,7 +123,7 @@ def learn_or_read_summary(
 
 
 def read_summary(path: Path | None, features: Floats) -> FeatureSummary | None:
-    """Return a stored summary; None where there is none of these features."""
+    """Return a stored summary; None unless it was learned from these features."""
     try:
         standard, both = read_regressions(read_arrays(path) or {}, features, *REGRESSIONS)
     except KeyError:

@@ -1,4 +1,4 @@
-"""Whether a value that a record shows contradicts what is stated of it.
+"""Contradictions between a value that a record shows and its stated distribution.
 
 A record is compared with simulated ones by all of its features together; beside forty others one of
 them may be far off. A value that follows from stated ones but for a small part, which the shape of
@@ -30,7 +30,7 @@ OUTER = 1.0, 99.0  # percentiles, beyond which values are those of cycles that h
 
 
 class Conflict(NamedTuple):
-    """How far a value is from the middle of what is stated of it.
+    """Distance of a value from the median of its stated distribution.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""The features that are expected of a record with the parameters that it seems to have.
+"""The expected features of a record, given the parameters estimated from it.
 
 One regression estimates the parameters from the features, another one the features from these
 estimates. How far a record's features are from it tells a record of another kind, also one that
@@ -25,7 +25,7 @@ NARROW = 0.6  # width of the kernel by which estimates say what features are: th
 
 
 class Expectation(NamedTuple):
-    """Regressions of parameters over features, and of features over what these say of them."""
+    """Regressions of parameters over features, and of features over those estimates."""
 
     scores: Floats  # (n, f), standardised features of the library
     shown: Floats  # (p,), whether features say something of a parameter, 0 or 1
@@ -45,12 +45,12 @@ class Expectation(NamedTuple):
 
     @property
     def places(self) -> Floats:
-        """Estimates of the library's records (n, q), each from all others."""
+        """Leave-one-out estimates of the library's records (n, q)."""
         return in_deviations(self.estimates.library, self.estimates, self.shown)
 
     @property
     def library(self) -> tuple[Floats, Floats]:
-        """Estimates (n, q), and departures from what they let expect (n, f), from all others."""
+        """Leave-one-out estimates (n, q), and departures from the expected features (n, f)."""
         return self.places, self.scores - self.expected.library
 
     def __call__(self, new: Floats) -> tuple[Floats, Floats]:
@@ -60,6 +60,6 @@ class Expectation(NamedTuple):
 
 
 def in_deviations(values: Floats, estimates: Regression, shown: Floats) -> Floats:
-    """Return estimates (m, p) of the parameters that are shown, in standard deviations, (m, q)."""
+    """Return the estimates (m, q) of identified parameters, in standard deviations."""
     found: Floats = (values / estimates.library.std(axis=0))[:, shown > 0.0]
     return found

@@ -90,7 +90,7 @@ def posterior(
 
 
 class Known(NamedTuple):
-    """What is known of one parameter of all simulated records, (n,) each.
+    """The estimates and the true scores of one parameter of all simulated records, (n,) each.
 
     `middles` and `spreads` are estimates from the features, each without this record; `scores` the
     truth.
@@ -160,7 +160,7 @@ def local_regression(columns: Floats, values: Floats, weights: Floats) -> Floats
 
 
 def leverage(columns: Floats, weights: Floats) -> Floats:
-    """Return the share of each value in its own prediction by a weighted linear regression."""
+    """Return the weight of each value in its own prediction by a weighted linear regression."""
     weighted, square = normal_matrix(columns, weights)
     return np.asarray(np.einsum("ij,ij->i", weighted, np.linalg.solve(square, columns.T).T))
 

@@ -1,4 +1,4 @@
-"""A learned summary: what features say about each parameter, by kernel ridge regression.
+"""A learned summary: estimates of each parameter from features, by kernel ridge regression.
 
 The summary of a record is the regression's estimate of the posterior mean, which loses little of
 what the features say (P. Fearnhead & D. Prangle, J. R. Stat. Soc. B 74, 419 (2012)). That of each
@@ -48,14 +48,14 @@ class Standard(NamedTuple):
 
     @classmethod
     def of(cls, features: Floats) -> Self:
-        """Return those of a library's features, (n, f)."""
+        """Return the median and spread of each feature of a library, (n, f)."""
         low, middle, high = np.percentile(features, CENTRAL, axis=0)
         deviation = features.std(axis=0)
         spread = np.where(high - low > LEAST_CHANGE, 0.5 * (high - low), deviation)
         return cls(middle, np.where(deviation > LEAST_CHANGE, spread, np.inf))
 
     def scores(self, features: Floats) -> Floats:
-        """Return features in spreads from the middle, clipped."""
+        """Return features as distances from the median in spreads, clipped."""
         found: Floats = np.clip((features - self.middle) / self.spread, -FARTHEST, FARTHEST)
         return found
 
@@ -82,7 +82,7 @@ class Regression(NamedTuple):
 
 
 class FeatureSummary(NamedTuple):
-    """What features say about parameters: where they lie, and how far they scatter about that."""
+    """Estimates of parameters from features, and the scatter of the estimates."""
 
     standard: Standard  # how features are made comparable
     scores: Floats  # (n, f), standardised features of the library
@@ -97,7 +97,7 @@ class FeatureSummary(NamedTuple):
 
     @property
     def library(self) -> tuple[Floats, Floats]:
-        """Middles and spreads (n, p) of the library's own records, each from all others."""
+        """Leave-one-out middles and spreads (n, p) of the library's own records."""
         return self.middle.library, np.exp(0.5 * self.spread.library)
 
 
@@ -115,7 +115,7 @@ def learn(features: Floats, parameters: Floats, progress: Progress = silent) -> 
 
 
 def estimate(scores: Floats, targets: Floats, progress: Progress = silent) -> Regression:
-    """Learn what standardised features (n, f) say of targets (n, p), each by its own metric."""
+    """Learn a regression of targets (n, p) over standardised features (n, f), a metric for each."""
     with single_threaded_algebra():
         only = WIDTHS[0], *decompose(kernel(scores, scores, WIDTHS[0]))
         first = regression([only], targets, scores.shape[1])
@@ -129,14 +129,14 @@ def as_arrays(**parts: Standard | Regression) -> dict[str, Floats]:
 
 
 def from_arrays(name: str, fields: Sequence[str], arrays: Mapping[str, Floats]) -> list[Floats]:
-    """Return the fields of a stored part; a KeyError if one is not there."""
+    """Return the fields of a stored part; raise a KeyError if one is missing."""
     return [arrays[f"{name}_{field}"] for field in fields]
 
 
 def read_regressions(
     arrays: Mapping[str, Floats], features: Floats, *names: str
 ) -> tuple[Standard, list[Regression]]:
-    """Return what was stored by `as_arrays` of these features (n, f); a KeyError if nothing was."""
+    """Return stored regressions over these features (n, f); raise a KeyError without them."""
     standard = Standard(*from_arrays("standard", Standard._fields, arrays))
     found = [Regression(*from_arrays(name, Regression._fields, arrays)) for name in names]
     same = standard.middle.shape == features.shape[1:]
@@ -176,7 +176,7 @@ def regression(
 def adapt_metrics(
     first: Regression, scores: Floats, targets: Floats, progress: Progress
 ) -> Regression:
-    """Return a regression in which each target has a metric of its own, where that is better.
+    """Return a regression in which a target has its own metric, if that predicts it better.
 
     A metric that has seen a record would predict it too well, and new ones worse. So each half of
     the library is predicted with the metric that the other half taught.
@@ -239,7 +239,7 @@ def gaussian(a: Floats, b: Floats, width: float) -> Floats:
 
 
 def decompose(matrix: Floats) -> tuple[Floats, Floats]:
-    """Return eigenvalues, none below zero, and eigenvectors."""
+    """Return the eigenvalues, negative ones raised to zero, and the eigenvectors."""
     values, vectors = np.linalg.eigh(matrix)  # SciPy's holds Python back, a progress bar too
     return np.maximum(values, 0.0), vectors
 
@@ -247,7 +247,7 @@ def decompose(matrix: Floats) -> tuple[Floats, Floats]:
 def ridges(
     values: Floats, vectors: Floats, targets: Floats
 ) -> Iterator[tuple[float, Floats, Floats]]:
-    """Yield, for each ridge, the weights and the predictions for each record from all others.
+    """Yield, for each ridge, the weights and the leave-one-out predictions of all records.
 
     The latter in closed form (G. H. Golub, M. Heath & G. Wahba, Technometrics 21, 215 (1979)).
     """
@@ -260,7 +260,7 @@ def ridges(
 
 
 def solve(matrix: Floats, ridge: float, target: Floats) -> tuple[Floats, Floats]:
-    """Return the same for one target (n,) and one ridge, without eigenvectors."""
+    """Return weights and leave-one-out predictions for one target (n,) and one ridge."""
     factor, _ = dpotrf(matrix + ridge * np.eye(len(matrix)), lower=True, overwrite_a=True)
     weights, _ = dpotrs(factor, target, lower=True)
     inverse, _ = dtrtri(factor, lower=True, overwrite_c=True)

@@ -1,4 +1,4 @@
-"""How like a record is to those of a library: it is unlike, if nearly all of these are more alike.
+"""The typicality of a record: the share of a library that is less like the others.
 
 By its features in two ways: how far they lie from those of the nearest records, and how far from
 what is expected with the parameters that the record seems to have. Both over how far those around
@@ -32,7 +32,7 @@ CLOUDS, KEPT = ("near", "beside"), ("apart", "own")  # what is stored of which
 
 
 class Cloud(NamedTuple):
-    """Points, each of which is compared with those whose places are nearest to its own."""
+    """Points, each compared with the points whose places are nearest to its own."""
 
     places: Floats  # (n, q), where they are
     points: Floats  # (n, f), what is compared
@@ -56,12 +56,12 @@ class Cloud(NamedTuple):
 
     @property
     def ranks(self) -> Floats:
-        """The same share for each of the points, (n,)."""
+        """The share of the points that lie as near or nearer, for each of the points, (n,)."""
         return np.searchsorted(np.sort(self.own), self.own, side="right") / len(self.own)
 
 
 class Typicality(NamedTuple):
-    """Records of a library, with which others are compared."""
+    """Records of a library, with which new records are compared."""
 
     expectation: Expectation  # what their parameters let expect
     near: Cloud  # their features, at themselves
@@ -69,18 +69,18 @@ class Typicality(NamedTuple):
 
     @classmethod
     def of(cls, expectation: Expectation) -> Self:
-        """Return the typicality of those records from which an expectation was learned."""
+        """Return the typicality of the records from which an expectation was learned."""
         scores = expectation.scores
         return cls(expectation, Cloud.of(scores, scores), Cloud.of(*expectation.library))
 
     def farther(self, new: Floats) -> Floats:
-        """Return the share of the library that is less like the others, for new scores (m, f)."""
+        """Return the share of the library that is less typical, for new scores (m, f)."""
         nearer = np.maximum(self.near.nearer(new, new), self.beside.nearer(*self.expectation(new)))
         own = np.sort(np.maximum(self.near.ranks, self.beside.ranks))
         return 1.0 - np.searchsorted(own, nearer, side="right") / len(own)
 
     def alike(self, record: Floats, count: int) -> Indices:
-        """Return the records of the library with the parameters that one (f,) seems to have."""
+        """Return the library's records with parameters nearest to the estimates of one (f,)."""
         places, _ = self.expectation(record[None])
         return np.argsort(((self.beside.places - places) ** 2).sum(axis=1))[:count]
 
@@ -95,7 +95,7 @@ class Typicality(NamedTuple):
     def read(
         cls, arrays: Mapping[str, Floats], scores: Floats, estimates: Regression, of: str = ""
     ) -> Self:
-        """Return what was stored by name, of a library with these scores; KeyError without it."""
+        """Return a stored typicality of a library with these scores; raise a KeyError if none."""
         expected = Regression(*from_arrays(f"expected{of}", Regression._fields, arrays))
         shown = arrays[f"shown{of}"]
         lengths = {len(arrays[f"{cloud}{of}_{name}"]) for cloud in CLOUDS for name in KEPT}
@@ -116,7 +116,7 @@ def of_library(expected: Regression, scores: Floats) -> bool:
 
 
 def distances(square: Floats, some: Floats, points: Floats) -> Floats:
-    """Return how far some points (m, f) lie from those nearest to each, by Mahalanobis' distance.
+    """Return Mahalanobis distances of points (m, f) from the points nearest to each.
 
     Squared, over the number of features; nearest by squared distances of places (m, n), infinite
     for a point itself.
@@ -134,7 +134,7 @@ def distances(square: Floats, some: Floats, points: Floats) -> Floats:
 
 
 def apart_around(square: Floats, apart: Floats) -> Floats:
-    """Return how far those of the library around each record lie from their nearest, (m,)."""
+    """Return the median distance of the neighbours of each record from their own nearest, (m,)."""
     count = min(AROUND, len(apart) // 2)
     around = np.argpartition(square, count, axis=1)[:, :count]
     return np.asarray(np.median(apart[around], axis=1))

@@ -54,7 +54,7 @@ class Simulations(NamedTuple):
     parameters: tuple[Floats, ...] = ()
 
     def among(self, names: Sequence[str]) -> Self:
-        """Return those of the mechanisms with these names.
+        """Return the simulations of the mechanisms with these names.
 
         >>> two = Simulations(("a", "b"), np.array([[1.0], [2.0]]), np.array([0, 1]))
         >>> its = two.among(("b", "c"))
@@ -134,7 +134,7 @@ def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:
 
 
 class Discriminant(NamedTuple):
-    """What tells mechanisms apart, as learned from some simulations."""
+    """A discriminant of mechanisms, learned from some simulations."""
 
     scores: Floats  # (n, f), standardised features of the simulations
     membership: Regression  # of each mechanism, 0 or 1
@@ -153,7 +153,7 @@ class Discriminant(NamedTuple):
 
     @property
     def left_out(self) -> Floats:
-        """Probabilities (n, k) for each simulation, from all others."""
+        """Leave-one-out probabilities (n, k) of the simulations."""
         return self._calibrate(self.membership.library)
 
     def _calibrate(self, predicted: Floats) -> Floats:
@@ -162,7 +162,7 @@ class Discriminant(NamedTuple):
 
 
 class Classifier(NamedTuple):
-    """What tells mechanisms apart, and how far that depends on the simulations drawn."""
+    """A classifier of mechanisms, and its dependence on the simulations drawn."""
 
     standard: Standard  # how features are made comparable
     whole: Discriminant  # learned from all simulations
@@ -179,7 +179,7 @@ class Classifier(NamedTuple):
 
     @property
     def left_out_by_halves(self) -> Floats:
-        """Probabilities (2, n, k) for each simulation by each half, from all others."""
+        """Leave-one-out probabilities (2, n, k) of the simulations, by each half."""
         own, scores = halve(len(self.whole.scores)), self.whole.scores
         found = np.stack([half.probabilities(scores) for half in self.halves])
         for its, half, rows in zip(found, self.halves, own, strict=True):
@@ -188,14 +188,14 @@ class Classifier(NamedTuple):
 
 
 def halve(count: int) -> tuple[slice, slice]:
-    """Return which of some simulations belong to each half."""
+    """Return a mask of the simulations that belong to each half."""
     return slice(0, count, 2), slice(1, count, 2)
 
 
 def learn_or_read(
     simulations: Simulations, path: Path | None = None, progress: Progress = silent
 ) -> Classifier:
-    """Learn to tell mechanisms apart, or read from a file what was learned."""
+    """Learn to distinguish mechanisms, or read the stored classifier from a file."""
     features, labels = simulations.features, simulations.labels
     stored = read(path, features)
     if stored is not None:
@@ -214,7 +214,7 @@ def learn_or_read(
 
 
 def write(path: Path | None, found: Classifier) -> None:
-    """Write what was learned."""
+    """Write a classifier."""
     arrays = as_arrays(standard=found.standard)
     for name, each in zip(SIMULATION_PARTS, (found.whole, *found.halves), strict=True):
         arrays |= as_arrays(**{name: each.membership}) | {f"{name}_slopes": each.slopes}

@@ -117,7 +117,7 @@ def mechanism(
 
 
 def key(rivals: Sequence[Mechanism]) -> str:
-    """Return a hash of all that decides what is simulated of some mechanisms."""
+    """Return a hash of everything that determines the simulations of some mechanisms."""
     keys = [plan.key for rival in rivals for plan in rival.plans]
     return sha256("".join(keys).encode()).hexdigest()[:16]
 
@@ -129,7 +129,7 @@ def compare(
     path: Path | None = None,
     progress: Progress = silent,
 ) -> Odds:
-    """Return the odds of what was observed; what simulations teach is kept beside a path."""
+    """Return the odds of mechanisms, given the observations; results are stored beside a path."""
     every, simulated = simulated, simulated.among(CLAIMED)
     observed = np.concatenate([each.features for each in seen])
     bend = np.concatenate([bend_features(each.conditions, rig.slider) for each in seen])
@@ -175,12 +175,12 @@ def compare(
 
 
 def beside(path: Path | None, name: str) -> Path | None:
-    """Return where something of this name is kept; None where nothing is."""
+    """Return the file of this name beside a path; None without a path."""
     return None if path is None else path.with_name(f"{path.name}-{name}.npz")
 
 
 def confusion(probabilities: Floats, by_halves: Floats, labels: NDArray[np.int64]) -> Floats:
-    """Return how often records of each label (rows) are called each, last: none of them.
+    """Return, for each label (row), the shares of its records by claimed label; last: no claim.
 
     >>> whole = np.array([[0.95, 0.05], [0.6, 0.4], [0.02, 0.98]])
     >>> confusion(whole, whole[None], np.array([0, 0, 1]))

@@ -1,4 +1,4 @@
-"""How like a record is to simulations of a mechanism: by all its features, and by its loading."""
+"""The likeness of a record to simulations of a mechanism: by features and by loading curve."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ UNLIKE, BENT = 0.8 * RARE, 0.2 * RARE
 
 
 class Likeness(NamedTuple):
-    """How like a record is to simulations of a mechanism.
+    """The likeness of a record to simulations of a mechanism.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Likeness(NamedTuple):
 
     @property
     def unlike(self) -> bool:
-        """Whether the record is not like the simulations, by its features or by its loading."""
+        """Whether the record is unlike the simulations, by its features or by its loading."""
         return self.farther < UNLIKE or self.larger < BENT
 
 
@@ -65,7 +65,7 @@ class Reference(NamedTuple):
     bends: Floats
 
     def likeness(self, record: Floats, bend: Floats) -> Likeness:
-        """Return how like a record with features (f,) and bend (s,) is to the simulations."""
+        """Return the likeness of a record with features (f,) and bend (s,) to the simulations."""
         (farther,) = self.typicality.farther(record[None])
         bends = self.bends[self.typicality.alike(record, CURVES)]
         apart, others = departures(bend, bends)
@@ -80,7 +80,7 @@ def learn_or_read(
     path: Path | None = None,
     progress: Progress = silent,
 ) -> tuple[Reference, ...]:
-    """Learn the reference of each mechanism, or read from a file what was learned.
+    """Learn the reference of each mechanism, or read the stored ones from a file.
 
     The `scores` (n, f) are their standardised features, the `bends` (n, s) their loading's
     departure from straight.
@@ -103,7 +103,7 @@ def learn(scores: Floats, parameters: Floats, progress: Progress = silent) -> Ty
 
 
 def write(path: Path | None, learned: Sequence[Typicality]) -> None:
-    """Write what was learned of each mechanism."""
+    """Write the reference of each mechanism."""
     arrays: dict[str, Floats] = {}
     for number, its in enumerate(learned):
         arrays |= its.arrays(str(number))
@@ -112,7 +112,7 @@ def write(path: Path | None, learned: Sequence[Typicality]) -> None:
 
 
 def read(path: Path | None, members: Sequence[Floats]) -> list[Typicality] | None:
-    """Return what was learned of simulations with these features; None without such a file."""
+    """Return the stored references of simulations with these features; None without such a file."""
     arrays = read_arrays(path) or {}
     found = []
     try:

@@ -44,7 +44,7 @@ CHANNEL = "force_across"  # without which the shape of the friction limit is not
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Odds(Report):
-    """The odds of mechanisms, and what they rest on.
+    """The odds of mechanisms, and the evidence for them.
 
     Parameters
     ----------
@@ -135,7 +135,7 @@ class Odds(Report):
         return self.likeness[self.names.index(STATIC)].larger < RARE
 
     def objections(self) -> list[str]:
-        """Return why no mechanism is claimed, as sentences; none if one is."""
+        """Return the reasons why no mechanism is claimed, as sentences; none if one is."""
         name, its = self.names[self.likeliest], self.likeness[self.likeliest]
         found = [self.disputed] * bool(self.disputed)
         if not its.unlike:
@@ -163,7 +163,7 @@ class Odds(Report):
         return [*found, self.doubt] if self.doubt else found
 
     def _improbable(self) -> Iterator[str]:
-        """Yield by which probability the most probable mechanism falls short of a claim."""
+        """Yield the reasons why the probability of the likeliest mechanism allows no claim."""
         name, probability = self.names[self.likeliest], float(self.probabilities[self.likeliest])
         halves = self.by_halves[:, self.likeliest]
         if probability < CLAIM:
@@ -184,7 +184,7 @@ class Odds(Report):
             )
 
     def tables(self) -> list[Section]:
-        """Return the odds, what they rest on, and how often such odds are right."""
+        """Return the odds, their evidence, and the frequency with which such odds are right."""
         numbered = [f"{number} {name}" for number, name in enumerate(self.names, 1)]
         rows = [
             (name, odds_text(p, its), percent(its.farther), percent(its.larger), str(count))
@@ -260,7 +260,7 @@ class Odds(Report):
         return found
 
     def _claim(self) -> str:
-        """Return which mechanism is claimed, with its probability, as a sentence."""
+        """Return the claimed mechanism with its probability, as a sentence."""
         probability = near_one(self.probabilities[self.likeliest])
         if self.decision == MISALIGNED_STATIC:  # of which no probability is known by itself
             return (
@@ -270,7 +270,7 @@ class Odds(Report):
         return f"Claimed: {self.decision} (probability {probability})."
 
     def _at_rest(self, rest: Rest) -> str:
-        """Return how far the mass rests in the simulations of rotation, as a sentence."""
+        """Return the share at rest in the simulations of rotation, as a sentence."""
         low, middle, high = map(percent, rest)
         scatter = f" (in 80 % of the simulations {low} to {high})" if low != high else ""
         said = (
@@ -315,7 +315,7 @@ class Odds(Report):
 
 
 def surely(probabilities: Floats, by_halves: Floats) -> NDArray[np.bool_]:
-    """Return of which records (n,) the most probable mechanism is probable enough for a claim.
+    """Return a mask of the records (n,) whose most probable mechanism may be claimed.
 
     Given probabilities (n, k), and those by halves of the simulations (2, n, k).
 
@@ -329,12 +329,12 @@ def surely(probabilities: Floats, by_halves: Floats) -> NDArray[np.bool_]:
 
 
 def odds_text(probability: float, likeness: Likeness) -> str:
-    """Return the probability of a mechanism; of one that the record is unlike, only that."""
+    """Return the probability of a mechanism as text; "unlike" if the record is unlike it."""
     return "unlike" if likeness.unlike else near_one(probability)
 
 
 def near_one(probability: float) -> str:
-    """Return a probability in words that never are a certainty.
+    """Return a probability in words, never as a certainty.
 
     >>> near_one(0.934), near_one(0.9991), near_one(2e-4)
     ('0.93', '> 0.99', '< 0.01')

@@ -1,4 +1,4 @@
-"""Whether the mass rests while the spring is loaded, where friction is said to rotate.
+"""Rest of the mass during loading, in simulations of a rotating friction vector.
 
 On a misaligned rig the friction force turns whether the mass creeps or not. Where the force across
 grows so slowly that it reaches the friction at rest only when the next slip is due, the mass is
@@ -61,7 +61,7 @@ class Rest(NamedTuple):
 
 
 def shares_at_rest(plan: Plan, scores: Floats) -> Floats:
-    """Return this share (m,) in simulations with scores (m, p) of their parameters.
+    """Return the share at rest (m,) in simulations with scores (m, p) of their parameters.
 
     The mean of several records; NaN where one of them has too few cycles.
     """

@@ -133,13 +133,13 @@ def with_peak(rig: Rig, level: Levels, conditions: Sequence[Conditions]) -> Iter
 
 
 def split(priors: Mapping[str, Prior]) -> tuple[dict[str, Prior], dict[str, Prior]]:
-    """Return the priors of the friction law, and those of all else."""
+    """Return the priors of the friction law, and the priors of all other parameters."""
     own = {path: prior for path, prior in priors.items() if path.startswith("friction.")}
     return own, {path: prior for path, prior in priors.items() if path not in own}
 
 
 def levels(rig: Rig) -> Levels:
-    """Return the coefficients that the description's law has, over its priors."""
+    """Return the ranges of the description's friction coefficients, over its priors."""
     random = np.random.default_rng(0)
     own, _ = split(rig.priors)
     restricted = is_restricted(rig.slider, own)
@@ -162,7 +162,7 @@ def levels(rig: Rig) -> Levels:
 
 
 def coefficients_of(slider: Slider, values: Mapping[str, float]) -> tuple[float, float]:
-    """Return the coefficient at rest and in rapid slip, with other values of the friction law."""
+    """Return the coefficients at rest and in rapid slip for other parameters of the law."""
     changed = slider
     for path, value in values.items():
         changed = change_unchecked(changed, path, value)
@@ -172,7 +172,7 @@ def coefficients_of(slider: Slider, values: Mapping[str, float]) -> tuple[float,
 
 
 def fastest(slider: Slider) -> float:
-    """Return the speed that the mass would have, if the spring let go of all it holds."""
+    """Return the largest speed of the mass after the spring releases the friction force F_0."""
     return slider.F_0 / sqrt(slider.k_x * slider.mass)
 
 
@@ -201,12 +201,12 @@ def priors_of(law: Any, slider: Slider, level: Levels) -> Iterator[tuple[str, Pr
 
 
 def logarithmic(shares: tuple[float, float], scale: float) -> Uniform:
-    """Return the prior of a value whose logarithm is uniform between shares of a scale."""
+    """Return a log-uniform prior between two multiples of a scale."""
     return Uniform(shares[0] * scale, shares[1] * scale, "log")
 
 
 def middle_of(law: Any, slider: Slider, priors: dict[str, Prior]) -> Any:
-    """Return a law in the middle of its priors; the reference speed is that of the drive."""
+    """Return a law at the medians of its priors; its reference speed is the drive's."""
     middles = {path.removeprefix("friction."): middle(prior) for path, prior in priors.items()}
     if "V_star" in law._fields:
         middles["V_star"] = slider.drive_speed

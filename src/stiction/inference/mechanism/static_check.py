@@ -1,4 +1,4 @@
-"""Rate and state or LuGre beside static friction on the misaligned rig.
+"""The odds of rate and state or LuGre against static friction on the misaligned rig.
 
 A misaligned mass that its static friction holds while the spring is loaded, and that breaks away,
 is none of the mechanisms that are claimed, and lies amid the records of those whose contacts yield
@@ -22,7 +22,7 @@ ELASTIC = RATE_AND_STATE, LUGRE  # contacts yield before they slip
 
 
 class StaticCheck(NamedTuple):
-    """What tells mechanisms from static friction on the misaligned rig."""
+    """Discriminants of each mechanism from static friction on the misaligned rig."""
 
     names: tuple[str, ...]  # of the mechanisms that it tells apart
     classifier: Classifier | None  # None if one of them only has been simulated
@@ -31,7 +31,7 @@ class StaticCheck(NamedTuple):
     def of(
         cls, simulations: Simulations, path: Path | None = None, progress: Progress = silent
     ) -> Self:
-        """Learn from simulations of all mechanisms, or read from a file what was learned."""
+        """Learn from simulations of all mechanisms, or read the stored discriminants."""
         some = simulations.among((*ELASTIC, MISALIGNED_STATIC))
         if len(some.names) < 2 or MISALIGNED_STATIC not in some.names:
             return cls((), None)

@@ -1,1 +1,1 @@
-"""What to measure next: the further test that tells most about a parameter of a rig."""
+"""The next test: the further test that narrows a parameter of a rig most."""

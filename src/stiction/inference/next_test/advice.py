@@ -1,4 +1,4 @@
-"""Which further test to make: how far each narrows what is known, in sentences and tables."""
+"""Advice on the next test: the expected width of each parameter, in sentences and tables."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Advice(Report):
-    """What further tests are expected to tell about the parameters of a rig.
+    """The expected gain of further tests in the parameters of a rig.
 
     Parameters
     ----------
@@ -68,12 +68,12 @@ class Advice(Report):
 
     @property
     def ranked(self) -> list[Expected]:
-        """The further tests, the one that tells most of the parameter first."""
+        """The further tests, the one that narrows the parameter most first."""
         return sorted(self.tests[1:], key=lambda test: test.ratio[self.index])
 
     @property
     def best(self) -> Expected | None:
-        """The test to make, of those that clearly tell more than the present one.
+        """The recommended test: the best of those that are clearly better than the present one.
 
         It is the one that tells most, or a simpler one that may tell as much.
         """
@@ -107,7 +107,7 @@ class Advice(Report):
         )
 
     def tables(self) -> list[Section]:
-        """Return what is found as sentences and tables."""
+        """Return the findings as sentences and tables."""
         unit = unit_of(self.plan, self.of)
         rows = [row(test, self.index, unit) for test in (self.present, *self.ranked)]
         headings = ("test", f"typical error of {self.of}", "over present", "95 %", "usable")
@@ -128,7 +128,7 @@ class Advice(Report):
         ]
 
     def sentences(self) -> list[str]:
-        """Return what to do, and what it rests on."""
+        """Return the recommendation, and the grounds for it."""
         i, best, first = self.index, self.best, self.ranked[0]
         unit = unit_of(self.plan, self.of)
         before = in_words(float(self.present.error[i]), unit, 2)

@@ -1,4 +1,4 @@
-"""st.design(rig): which further test tells most about a parameter of a rig."""
+"""st.design(rig): find the further test that narrows a parameter of a rig most."""
 
 from __future__ import annotations
 
@@ -151,7 +151,7 @@ def design(
 def answer(
     question: Question, place: Path | None, seed: int, progress: Callable[[float], None] | None
 ) -> Advice:
-    """Simulate the tests, in the library `place` if there is one, and learn what each tells."""
+    """Simulate the tests, in the library `place` if there is one, and learn from each."""
     known, name, wanted, given = question
     slider, seen = known.slider, None if given is None else observe(given, known.slider)
     now = usual_conditions(slider) if seen is None else seen.conditions
@@ -212,7 +212,7 @@ def learn_or_read(
     trial: Plan, tests: Sequence[Further], scores: Floats, features: Floats, path: Path | None,
     progress: Progress,
 ) -> list[Expected]:  # fmt: skip
-    """Learn what each test leaves open, or read it from a file."""
+    """Learn the remaining error after each test, or read it from a file."""
     found = read(path, [test.name for test in tests])
     if found is None:
         found = [*expectations(trial, tests, scores, features, progress)]
@@ -223,7 +223,7 @@ def learn_or_read(
 def expectations(
     trial: Plan, tests: Sequence[Further], scores: Floats, features: Floats, progress: Progress
 ) -> Iterator[Expected]:
-    """Yield what each test leaves open, the present one first."""
+    """Yield the remaining error after each test, the present one first."""
     width = features.shape[1] // len(trial.conditions)
     columns = features_from(tests[0].channels, trial.conditions[0], trial.slider)
     complete = have_cycles(features[:, :width][:, columns])
@@ -247,7 +247,7 @@ def expectations(
 def errors_of(
     trial: Plan, tests: Sequence[Further], truth: Floats, rows: Floats, fewest: int
 ) -> Iterator[list[Floats]]:
-    """Yield left-out errors (n, p) of the present test, of parts of each test, and of itself.
+    """Yield leave-one-out errors (n, p): of the present test, of parts of each test, of the test.
 
     Of rigs with these parameters (n, p) and features (n, f); none is learned from fewer rigs than
     `fewest`.
@@ -279,7 +279,7 @@ def doubts(
     wanted: Wanted,
     path: Path | None,
 ) -> str:
-    """Return that the record is unlike simulations of the present test, or may be, or ''.
+    """Return the doubt that the record is unlike simulations of the present test, or ''.
 
     `scores` (n, p) and `features` (n, f) are those of all simulations; what is learned is kept
     beside `path`.
@@ -302,9 +302,9 @@ def doubts(
 def assumptions(
     recorded: Sequence[str], present: Conditions, wanted: Wanted, averaged: int = 1
 ) -> list[str]:
-    """Return what neither a record's channels nor the user said, as sentences.
+    """Return, as sentences, the values that neither the record nor the user states.
 
-    Of means of `averaged` samples.
+    The noise is that of means of `averaged` samples.
     """
     noise = present.noise
     means = f" of means of {averaged} samples" if averaged > 1 else ""

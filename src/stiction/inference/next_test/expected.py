@@ -1,4 +1,4 @@
-"""What a further test leaves open: how far off estimates are of rigs that were not learned from.
+"""The remaining error after a further test, on rigs that were left out of the learning.
 
 Simulated rigs are measured in each test. A regression over all others says where the parameters of
 a left-out one lie. The error below which 68 % of the rigs stay is a standard deviation of the
@@ -36,7 +36,7 @@ NUMBERS = ("width", "error", "ratio", "low", "high")
 
 
 class Expected(NamedTuple):
-    """What a test leaves open of each parameter, (p,) each.
+    """The remaining error of each parameter after a test, (p,) each.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Expected(NamedTuple):
 
 
 def estimates(features: Floats, truth: Floats, fewest: int | None = None) -> Floats:
-    """Return estimates of parameters (n, p), each from all other rigs, as normal scores.
+    """Return leave-one-out estimates of parameters (n, p), as normal scores.
 
     NaN for rigs without features (n, f), and for all where fewer than `fewest` have some.
     """
@@ -77,9 +77,9 @@ def estimates(features: Floats, truth: Floats, fewest: int | None = None) -> Flo
 
 
 def left_out_errors(alone: Sequence[Floats], truth: Floats, fewest: int | None = None) -> Floats:
-    """Return the errors (n, p) of what the estimates (n, p) from one or several records say.
+    """Return leave-one-out errors (n, p) of a regression on the estimates of some records.
 
-    A regression joins those of several. So few simulations do for many features.
+    The regression over estimates, instead of all features, needs few simulations.
     """
     joint = alone[0] if len(alone) == 1 else estimates(np.hstack(alone), truth, fewest)
     return truth - joint
@@ -89,13 +89,13 @@ def expectation(
     trial: Plan, test: str, truth: Floats, errors: Sequence[Floats], *, added: int = 0,
     by_group: Floats | None = None,
 ) -> Expected:  # fmt: skip
-    """Return what a test leaves open.
+    """Return the remaining error after a test.
 
-    Of parameters `truth` (n, p), as normal scores, with left-out `errors` (n, p) of the present
-    test, of tests of which this one is more, and of itself. A rig that shows too few cycles in it
-    is known by the present one alone; and where a regression learns less from more features, by
-    what a part of the test tells. The test adds so many channels and records to the present one;
-    groups of the rigs find ratios `by_group` (g, p) by themselves.
+    `truth` (n, p) are the parameters as normal scores, `errors` the leave-one-out errors (n, p) of
+    the present test, of parts of this test, and of the test itself. A rig with too few cycles in it
+    has the error of the present test. If a regression learns less from more features, the error of
+    a part of the test counts. `added` is the number of channels and records that the test adds;
+    `by_group` (g, p) are the ratios of groups of rigs.
     """
     each = fill_in(errors)
     sizes = np.stack([np.abs(in_si(trial, truth, its)) for its in each])
@@ -110,7 +110,7 @@ def expectation(
 
 
 def fill_in(errors: Sequence[Floats]) -> Floats:
-    """Return errors (m, n, p) of tests; the last one's are the first one's where it has none."""
+    """Return errors (m, n, p) of tests; NaN of the last test are replaced from the first."""
     usable = have_cycles(errors[-1])[:, None]
     return np.stack([*errors[:-1], np.where(usable, errors[-1], errors[0])])
 
@@ -122,7 +122,7 @@ def ratio_of(trial: Plan, truth: Floats, errors: Sequence[Floats]) -> Floats:
 
 
 def bounds_with_learning(ratio: Floats, bounds: Floats, by_group: Floats) -> Floats:
-    """Return bounds (2, p) of ratios, wider by what learning adds.
+    """Return bounds (2, p) of ratios, wider by the uncertainty of the learning.
 
     Given the bounds that the rigs judged by leave, and the ratios (g, p) of groups, of which the
     mean has a standard error, in the logarithm. Both vary independently, at most.
@@ -144,12 +144,12 @@ def in_si(trial: Plan, truth: Floats, errors: Floats) -> Floats:
 
 
 def typical(sizes: Floats, axis: int = 0) -> Floats:
-    """Return the size that 68 % of some are at most."""
+    """Return the typical size: 68 % of the sizes are at most as large."""
     return np.asarray(np.quantile(sizes, TYPICAL, axis=axis, method="inverted_cdf"))
 
 
 def resample(sizes: Floats, drawn: Indices) -> Floats:
-    """Return the typical sizes (m, p) of those of drawn rigs (m, n), of sizes (n, p).
+    """Return the typical size (m, p) in each of m resamples of n rigs.
 
     >>> sizes = np.array([[1.0], [2.0], [3.0], [9.0]])
     >>> resample(sizes, np.array([[0, 1, 2, 3], [3, 3, 3, 3]]))[:, 0], typical(sizes)
@@ -161,13 +161,13 @@ def resample(sizes: Floats, drawn: Indices) -> Floats:
 
 
 def write(path: Path | None, found: Sequence[Expected]) -> None:
-    """Write what tests leave open."""
+    """Write the remaining errors after tests."""
     columns = {name: np.array([getattr(each, name) for each in found]) for name in Expected._fields}
     write_arrays(path, **columns)
 
 
 def read(path: Path | None, names: Sequence[str]) -> list[Expected] | None:
-    """Return what tests of these names leave open; None where that is not stored."""
+    """Return the stored remaining errors after tests of these names; None without them."""
     arrays = read_arrays(path) or {}
     if not arrays.keys() >= {*Expected._fields} or arrays["test"].tolist() != [*names]:
         return None

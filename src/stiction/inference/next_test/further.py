@@ -1,4 +1,4 @@
-"""Tests that could be made of a rig: the present one, and what may be added to it."""
+"""Possible tests of a rig: the present one, and possible additions to it."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Wanted(Described):
 
 
 class Further(NamedTuple):
-    """The present test, and what is added to it.
+    """The present test, and its addition.
 
     Parameters
     ----------
@@ -75,7 +75,7 @@ class Further(NamedTuple):
 
 
 def usual_conditions(slider: Slider) -> Conditions:
-    """Return the conditions of a test of which no record exists yet, but for its cycles."""
+    """Return the conditions of a test without a record yet, except its cycles."""
     motion = slider.motion
     velocity = motion.rate(0.0)[0] if isinstance(motion, ConstantVelocity) else 0.0
     return Conditions(velocity, slider.normal_load, 0.0, 0.0, CYCLES, 0.0, {})
@@ -84,9 +84,9 @@ def usual_conditions(slider: Slider) -> Conditions:
 def with_noise(
     conditions: Conditions, slider: Slider, wanted: Wanted, averaged: int = 1
 ) -> Conditions:
-    """Return conditions in which every channel has a noise: what is given, known, or usual.
+    """Return conditions in which every channel has a noise: given, known, or usual.
 
-    That given is of a sample, of which the conditions are those of means of `averaged`.
+    The given noise is that of a sample; the conditions are those of means of `averaged` samples.
     """
     known, root = conditions.noise, averaged**0.5
     level = {n: None if noise is None else noise / root for n, noise in wanted.noises.items()}
@@ -102,7 +102,7 @@ def with_noise(
 
 
 def with_cycle(conditions: Conditions, slider: Slider) -> Conditions | None:
-    """Return conditions with the cycle's length, found by simulation; None without stick-slip."""
+    """Return conditions with the cycle length, found by simulation; None without stick-slip."""
     rig = conditions.slider_of(slider)
     guess = rig.loading_time
     wanted = 2 * LEAST_CYCLES  # the first slips may be too small for cycles, and the last is cut
@@ -123,7 +123,7 @@ def with_cycle(conditions: Conditions, slider: Slider) -> Conditions | None:
 def further_tests(
     present: Conditions, channels: tuple[str, ...], wanted: Wanted
 ) -> Iterator[Further]:
-    """Yield what may be added: channels, the same test again, and tests under other conditions."""
+    """Yield possible additions: channels, the same test again, and tests under other conditions."""
     absent = [name for name in USED if name not in channels]
     for name in absent:
         yield Further(CHANNEL_NAMES[name], (*channels, name))

@@ -1,4 +1,4 @@
-"""What is asked of a design: a rig, a parameter of it, and tests; or every fault of these."""
+"""The question of a design: a rig, a parameter of it, and tests; or every fault of them."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SEVERAL = ("channels", "angles", "velocities", "loads")  # arguments that may be
 
 
 class Question(NamedTuple):
-    """What is asked of a design."""
+    """The question of a design."""
 
     rig: Rig  # with its priors
     of: str  # the path of the parameter of interest
@@ -42,7 +42,7 @@ def ask(
     trust: bool = False,
     **given: Any,
 ) -> Question:
-    """Return what is asked, or every fault of rig, record and arguments beside those before.
+    """Return the question, or every fault of rig, record and arguments, and earlier faults.
 
     `changes` and `trust` are for the file of a rig, as of `Rig.from_toml`.
     """
@@ -66,7 +66,7 @@ def ask(
 
 
 def several(given: Any) -> tuple[Any, ...]:
-    """Return values as a tuple, one alone as well.
+    """Return values as a tuple; a single value becomes a tuple of one.
 
     >>> several("3 deg"), several(["1 deg", "3 deg"])
     (('3 deg',), ('1 deg', '3 deg'))
@@ -102,7 +102,7 @@ def check_arguments(
 
 
 def refuse_certain(name: str, trial: Plan) -> None:
-    """Refuse a parameter of the load cell that is not estimated, as nobody said it is uncertain."""
+    """Refuse a parameter of the load cell whose uncertainty is not stated."""
     if name not in trial.priors:
         message = "is taken as certain; state its uncertainty in the file beside the record, under "
         raise DescriptionError.of(name, f"{message}[sensors.force], or name another parameter")

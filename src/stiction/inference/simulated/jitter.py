@@ -39,7 +39,7 @@ MOST_STEPS = 2_000_000
 
 
 class Jitter(NamedTuple):
-    """How friction differs from cycle to cycle.
+    """The variation of friction from cycle to cycle.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class Jitter(NamedTuple):
 
 
 class SampledMotion(NamedTuple):
-    """A motion at `time` (n,), s: its samples (n, 4 + internal states), and where its troughs are.
+    """A motion at `time` (n,), s: its samples (n, 4 + internal states), and its troughs' indices.
 
     A sample is elongation x and y (m), slip velocity x and y (m/s), and the internal states.
     """
@@ -71,7 +71,7 @@ class SampledMotion(NamedTuple):
 
 
 def laws(law: Any, jitter: Jitter, random: np.random.Generator) -> Iterator[Any]:
-    """Yield the friction law of each cycle, its coefficients drawn about those of `law`."""
+    """Yield the friction law of each cycle, with coefficients drawn around those of `law`."""
     if isinstance(law, Anisotropic):
         yield from (law._replace(law=inner) for inner in laws(law.law, jitter, random))
         return
@@ -105,7 +105,7 @@ def move(
     cycles: int | None = None,
     noise: float = 0.0,
 ) -> SampledMotion:
-    """Simulate a slider at equally spaced times, each cycle with friction of its own.
+    """Simulate a slider at equally spaced times, with its own friction in each cycle.
 
     Parameters
     ----------
@@ -169,7 +169,7 @@ def move(
 def simulate_part(
     slider: Slider, initial: Initial, duration: float, times: Floats
 ) -> Floats | None:
-    """Return the samples at these times; None where the run does not come to its end."""
+    """Return the samples at these times; None if the run ends early."""
     settings = Settings.model_construct(
         duration=duration, sample_rate=None, rtol=RTOL,
         regularisation=None, smoothing="root", multiscale="auto",
@@ -179,7 +179,7 @@ def simulate_part(
 
 
 def first_loading(slider: Slider) -> float:
-    """Return how long the spring loads before a mass that begins at rest may slip, s.
+    """Return the time for which a mass at rest cannot slip while the spring is loaded first, s.
 
     It is as long as many cycles where a slip takes little of the force.
     """

@@ -50,7 +50,7 @@ def build(
 
 
 def have_cycles(rows: Floats) -> NDArray[np.bool_]:
-    """Return which rows of features (n, f) are those of records with cycles."""
+    """Return a mask of the rows of features (n, f) of records with cycles."""
     return np.asarray(np.isfinite(rows).all(axis=1))
 
 
@@ -75,7 +75,7 @@ def simulate_all(
     ready, lock = dict.fromkeys(missing, 0), Lock()
 
     def report(block: int, rows: int) -> None:
-        """Tell how much is simulated, also while the first blocks are: they take long."""
+        """Report the number of simulations, also during the first blocks, which take long."""
         with lock:
             ready[block] = rows
             progress(sum(ready.values()) / (BLOCK * len(missing)))
@@ -89,11 +89,11 @@ def simulate_all(
 
 
 def tell_nobody(block: int, rows: int) -> None:
-    """Tell nobody how many rows of a block are ready: another process has no way to."""
+    """Report nothing, for a block in another process, which cannot report its rows."""
 
 
 class Simulate(NamedTuple):
-    """The work of simulating a block, which another process does without a report of its rows."""
+    """The simulation of blocks, which another process does without a report of its rows."""
 
     plan: Plan
     folder: Path | None
@@ -101,7 +101,7 @@ class Simulate(NamedTuple):
     report: Callable[[int, int], None] = tell_nobody
 
     def block(self, block: int, _: Callable[[], bool]) -> tuple[int, tuple[Floats, Floats]]:
-        """Simulate a block, keep it in the folder, and return its number, scores and features."""
+        """Simulate a block, store it in the folder, and return its number, scores and features."""
         rows = []
         for i in range(block * BLOCK, (block + 1) * BLOCK):
             rows.append(simulate(self.plan, i, self.seed))
@@ -132,7 +132,7 @@ def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
 def refuse_too_few(
     what: str, usable: int, simulated: int, fewest: int, which: str = "", check: str = "the priors"
 ) -> None:
-    """Refuse to learn from too few simulations with cycles; say how many would do.
+    """Refuse to learn from too few simulations with cycles; state the number needed.
 
     `which` tells what is asked of the cycles, `check` what decides about them. Where most of
     them are usable, but all would be too few, only their number is at fault; where fewer than a
@@ -154,7 +154,7 @@ def refuse_too_few(
 
 
 def library_folder(library: str | Path | None) -> Path | None:
-    """Return the folder of libraries, made and ready to be written to; None where none is named.
+    """Return the folder of libraries, created and writable; None if none is named.
 
     That in the user's cache need not be: nothing is stored then.
 
@@ -170,7 +170,7 @@ def library_folder(library: str | Path | None) -> Path | None:
 
 
 def read_block(folder: Path, block: int) -> tuple[Floats, Floats] | None:
-    """Return a stored block; None where there is none, so that it is simulated again."""
+    """Return a stored block; None if it must be simulated again."""
     stored = read_arrays(folder / f"{block:05d}.npz")
     if stored is None or not stored.keys() >= {"scores", "features"}:
         return None

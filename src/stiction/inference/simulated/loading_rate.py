@@ -1,4 +1,4 @@
-"""How fast a load cell sees its spring loaded, by the parameters of a plan."""
+"""The loading rate that a load cell measures, as a function of a plan's parameters."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ def loading_rate(slider: Slider) -> float:
 
 
 def logarithms_of_rate(plan: Plan, scores: Floats) -> Floats:
-    """Return the logarithm of that rate, times the cell's gain, over that in the middle, (n,).
+    """Return logarithms of the measured loading rate over that at the priors' medians, (n,).
 
-    Of the rigs with these normal scores (n, p) of their parameters.
+    The rigs have these normal scores (n, p) of their parameters; the cell's gain counts.
     """
     total = np.zeros(len(scores))
     for column, (name, prior) in zip(scores.T, plan.priors.items(), strict=True):
@@ -37,7 +37,7 @@ def logarithms_of_rate(plan: Plan, scores: Floats) -> Floats:
 
 
 def _course(slider: Slider, name: str, prior: Prior) -> Floats:
-    """Return the logarithm of the rate over that of a slider, at `SCORES` of one parameter."""
+    """Return the logarithm of the rate over a slider's rate, at `SCORES` of one parameter."""
     values = prior.quantile(ndtr(SCORES))
     if name == "gain":
         return np.asarray(np.log(np.maximum(values, TINY)))

@@ -1,4 +1,4 @@
-"""What a library simulates: a rig, the priors of its parameters, and conditions of records."""
+"""The plan of a library: a rig, the priors of its parameters, and conditions of records."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FORMAT = 11  # of stored simulations and of what is learned from them
 
 
 class Plan(NamedTuple):
-    """What a library simulates.
+    """The plan of a library's simulations.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ class Plan(NamedTuple):
 
     @property
     def key(self) -> str:
-        """A hash of all that decides what is simulated."""
+        """A hash of everything that determines the simulations."""
         parts = self.slider, self.priors, self.conditions, self.basis
         text = json.dumps([FORMAT, *map(repr, parts), *["restricted"] * self.restricted])
         return sha256(text.encode()).hexdigest()[:16]
@@ -79,7 +79,7 @@ class Plan(NamedTuple):
         )
 
     def takes(self, scores: Floats) -> bool:
-        """Return whether the description takes the parameters with these normal scores, (p,)."""
+        """Return whether the description allows the parameters with these normal scores, (p,)."""
         return not self.restricted or is_allowed(self.slider, self.parameters(scores))
 
 

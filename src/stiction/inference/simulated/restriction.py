@@ -1,4 +1,4 @@
-"""Combinations of values that a description refuses, though each lies within its own prior.
+"""Combinations of values that a description refuses, though each is allowed by its own prior.
 
 A static coefficient, say, must not be below the kinetic one. Where priors overlap so, parameters
 are drawn from the joint prior under this condition: a draw that is refused is drawn again.
@@ -24,7 +24,7 @@ FRICTION = "friction."  # prefix of the parameters whose values may contradict e
 
 
 def is_allowed(slider: Slider, values: Mapping[str, float]) -> bool:
-    """Return whether the description takes these values of the friction law together, in SI.
+    """Return whether the description allows these values of the friction law together, in SI.
 
     >>> import stiction as st
     >>> rig = st.presets.nakano_popov_2020()
@@ -47,14 +47,14 @@ def is_restricted(slider: Slider, priors: Mapping[str, Prior]) -> bool:
 def is_allowed_somewhere(
     slider: Slider, values: Mapping[str, float], others: Mapping[str, Prior]
 ) -> bool:
-    """Return whether the description takes these values at some ends of the priors of others."""
+    """Return whether the description allows these values at some ends of the priors of others."""
     if values.keys() != of_friction(values).keys():
         return False
     return any(is_allowed(slider, {**corner, **values}) for corner in corners(others))
 
 
 def corners(priors: Mapping[str, Prior]) -> Iterator[dict[str, float]]:
-    """Yield the parameters of the friction law at all combinations of their priors' ends."""
+    """Yield the friction law's parameters at all combinations of their priors' ends."""
     own = of_friction(priors)
     ends = [prior.quantile(ENDS).tolist() for prior in own.values()]
     for values in product(*ends):
@@ -62,5 +62,5 @@ def corners(priors: Mapping[str, Prior]) -> Iterator[dict[str, float]]:
 
 
 def of_friction(table: Mapping[str, T]) -> dict[str, T]:
-    """Return the items whose path is that of a parameter of the friction law."""
+    """Return the items of the friction law's parameters."""
     return {path: its for path, its in table.items() if path.startswith(FRICTION)}

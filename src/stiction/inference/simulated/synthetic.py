@@ -28,7 +28,7 @@ NOT_OF_THE_SLIDER = {"jitter", "drift", "alternation", "gain", "zero", "zero_dri
 
 
 class Synthetic(NamedTuple):
-    """A synthetic record: channels of samples a step apart, and the cycles that are used.
+    """A synthetic record: channels of samples a step apart, and the used cycles.
 
     `motion` is what its sensors measure, and `slider` the rig that moves so.
     """
@@ -118,7 +118,7 @@ def measure(
 def restore(
     values: Floats, white: Floats, step: float, block: int, cell: RingingCell | None
 ) -> Floats:
-    """Return values, a step (s) apart, with noise; restored where the cell rings.
+    """Return values, a step (s) apart, with noise; restored if the load cell rings.
 
     Means of blocks have as much noise as those of the white one.
     """
@@ -129,7 +129,7 @@ def restore(
 
 
 def refine(values: Floats, times: int) -> Floats:
-    """Return so many times as many values, on the lines between them.
+    """Return `times` as many values, interpolated linearly.
 
     >>> refine(np.array([0.0, 2.0, 4.0]), 2)
     array([0., 1., 2., 3., 4., 4.])
@@ -141,6 +141,6 @@ def refine(values: Floats, times: int) -> Floats:
 
 
 def start_time(motion: SampledMotion, force: Floats, conditions: Conditions) -> float:
-    """Return when a record with the cycles that are used would have begun, s."""
+    """Return the start of a record with the used cycles, s."""
     used = slip_cycles(force).before[-conditions.cycles :]
     return (float(motion.time[used[0]]) if len(used) else 0.0) - conditions.lead
