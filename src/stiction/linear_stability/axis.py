@@ -53,7 +53,7 @@ class Axis(NamedTuple):
 
 
 def steadily_driven(slider: Slider, *paths: str) -> Slider:
-    """Return the slider with the one velocity that the program of its drive keeps to, if so.
+    """Return the slider with a steady drive, if its drive's program has one velocity only.
 
     Then ``drive.velocity`` is that velocity. A program of which a parameter is varied stays.
     """
@@ -103,7 +103,7 @@ def axis(slider: Slider, path: str, between: Sequence[Quantity] | None = None) -
 
 
 def default(slider: Slider, path: str) -> tuple[float | str, float | str]:
-    """Return the default range of a parameter; of phi, all misalignments of its sign."""
+    """Return the default range of a parameter; for phi, all misalignments of its sign."""
     if path == "phi" and slider.turn:
         ends = (-0.5 * pi, slider.turn) if slider.misalignment < 0.0 else (slider.turn, 0.5 * pi)
         return angle_text(ends[0]), angle_text(ends[1])

@@ -1,4 +1,4 @@
-"""Roots of the characteristic polynomial, of any sizes: its coefficients are exact integers."""
+"""Roots of the characteristic polynomial, whose coefficients are exact integers."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ STEADY = 1e-12  # relative change of a root in the last round
 
 
 def roots_of(matrix: Floats) -> Complex:
-    """Return the eigenvalues of a matrix, each to some twelve digits of its own if it is simple.
+    """Return the eigenvalues of a matrix, simple ones to some twelve digits each.
 
     However large the others are: nothing cancels in exact coefficients. Aberth's method finds all
     roots at once, from the sizes that the Newton polygon of the coefficients gives them.
@@ -42,7 +42,7 @@ def roots_of(matrix: Floats) -> Complex:
 
 
 def aberth(sizes: Floats, signs: Floats, roots: Complex) -> Complex:
-    """Return the relative corrections of all roots; log2 of coefficients, beside their signs.
+    """Return the relative corrections of all roots, from log2 of the coefficients and their signs.
 
     Each polynomial is scaled by its largest term, so that none overflows.
     """
@@ -58,7 +58,7 @@ def aberth(sizes: Floats, signs: Floats, roots: Complex) -> Complex:
 
 
 def characteristic(matrix: Floats) -> tuple[list[int], int]:
-    """Return integers c_k and e, the matrix's characteristic polynomial being sum c_k (2^e x)^k.
+    """Return integers c_k and e: the characteristic polynomial is sum c_k (2^e x)^k.
 
     By the method of Faddeev and LeVerrier, in which every division is exact.
     """
@@ -76,7 +76,7 @@ def characteristic(matrix: Floats) -> tuple[list[int], int]:
 
 
 def first_guess(sizes: Floats) -> Complex:
-    """Return numbers of about the sizes of a polynomial's roots.
+    """Return numbers of about the magnitudes of a polynomial's roots.
 
     Between corners j < k of the Newton polygon, the upper hull of log2 |c_k| over k, there are
     k - j roots of the size |c_j/c_k|^(1/(k - j)).

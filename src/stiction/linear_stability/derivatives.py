@@ -1,4 +1,4 @@
-"""Derivatives of friction and of a law's internal states by slip and state."""
+"""Derivatives of friction and of a law's internal states by slip velocity and state."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
 
 
 def quickly_with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
-    """Return what `with_state` does, from few places where the law is smooth."""
+    """Return the response as `with_state` does, from fewer evaluations where the law is smooth."""
     response, at = answer_of(slider), np.concatenate([slip, state])
     value = np.array(response(at.tolist()), dtype=np.float64)
     steps = [
@@ -119,9 +119,9 @@ def answer_of(slider: Slider) -> Callable[[list[float]], Sequence[float]]:
 
 
 def steps_of(at: Floats) -> Iterator[tuple[float, float]]:
-    """Yield the widest and the narrowest step by which to differentiate, for slip and states.
+    """Yield the widest and the narrowest step for the derivative by each slip velocity and state.
 
-    Those of a state are from about one, or the state's own size if larger, down to far below it;
+    A state's steps are from about one, or the state's own size if larger, down to far below it;
     the rounding error of a logarithm, ln 1, does not count as a size.
     """
     speed = hypot(*at[:2])
@@ -133,7 +133,7 @@ def steps_of(at: Floats) -> Iterator[tuple[float, float]]:
 def smooth_derivative(
     function: Callable[[list[float]], Sequence[float] | Floats], at: Floats, i: int, h: float
 ) -> tuple[Floats, Floats] | None:
-    """Return a `derivative` and its error but for rounding; None where `h` is too coarse.
+    """Return a `derivative` and its truncation error; None if the step `h` is too coarse.
 
     From six values `h` apart, to order six in the step. That of order four, from the inner four of
     them, differs by far more than the error.
@@ -198,7 +198,7 @@ def derivative(
 
 
 def noise(function: Callable[[float], Any], at: float, scale: float) -> Any:
-    """Return the rounding error of a smooth function near a place.
+    """Return the rounding error of a smooth function near a point.
 
     Second differences over steps far below the function's scale contain nothing else.
     """

@@ -76,7 +76,7 @@ def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
 
 
 def grade(matrix: Floats) -> tuple[Floats, Floats, Indices]:
-    """Return a balanced matrix, its large rows first, and the scale and the order of its unknowns.
+    """Return a balanced matrix with its large rows first, and the scale and order of its unknowns.
 
     Of such a matrix the QR algorithm mostly finds small eigenvalues to their own digits (Stewart,
     Numer. Math. 90 (2001), 349).
@@ -117,7 +117,7 @@ def exact_modes(matrix: Floats) -> tuple[Complex, Complex, Complex]:
 
 
 def null_vector(matrix: Floats, value: complex) -> Complex:
-    """Return the vector of an eigenvalue that is known, by inverse iteration."""
+    """Return the eigenvector of a known eigenvalue, by inverse iteration."""
     shifted = matrix - value * (1.0 + 4.0 * EPSILON) * np.eye(len(matrix))
     vector = np.ones(len(matrix), dtype=np.complex128)
     for _ in range(2):
@@ -173,7 +173,7 @@ def newton(
 
 
 def solve(matrices: Complex, right: Complex) -> Complex:
-    """Solve linear equations; by least squares where one of the matrices is singular."""
+    """Solve linear equations; by least squares if one of the matrices is singular."""
     try:
         found: Any = np.linalg.solve(matrices, right)
     except np.linalg.LinAlgError:
@@ -183,7 +183,7 @@ def solve(matrices: Complex, right: Complex) -> Complex:
 
 
 def leading_eigenvalue(matrix: Floats) -> complex:
-    """Return the eigenvalue with the largest real part, refined if others hide it by rounding."""
+    """Return the eigenvalue with the largest real part, refined if rounding may hide it."""
     values = np.linalg.eigvals(matrix)
     leading, largest = complex(values[np.argmax(values.real)]), float(np.abs(values).max())
     if abs(leading) > CLEAR * largest and abs(leading.real) > ROUNDED * largest:
@@ -217,7 +217,7 @@ def refined_growth(matrix: Floats, error: Floats) -> tuple[float, float]:
 
 
 def largest_growth(rates: Floats, uncertain: Floats) -> tuple[float, float]:
-    """Return the largest of some growth rates (1/s), and a bound of its error, from theirs."""
+    """Return the largest of some growth rates (1/s), and an error bound from their errors."""
     first = int(np.argmax(rates))
     growth = float(rates[first])
     return growth, float(max(uncertain[first], (rates + uncertain).max() - growth))

@@ -1,4 +1,4 @@
-"""Examination of steady sliding: its modes over a parameter, and critical parameters."""
+"""Examination of steady sliding: its modes over a parameter, and critical parameter values."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ Ends = Sequence[Quantity]
 
 @dataclass(frozen=True, repr=False)
 class Stability(Report):
-    """Steady sliding, its modes, and the parameters at which they begin to grow.
+    """Steady sliding, its modes, and the parameter values at which they begin to grow.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def stability(
     over: str | Sequence[str] = OVER,
     between: Ends | Sequence[Ends | None] | None = None,
 ) -> Stability:
-    """Examine whether a slider slides steadily, and at which parameters this changes.
+    """Examine whether a slider slides steadily, and at which parameter values this changes.
 
     Steady sliding is linearised: each mode of a small disturbance grows or decays.
 
@@ -191,7 +191,7 @@ def modes_section(linear: Linearisation) -> Section:
 
 
 def beside_critical_stiffness(slider: Slider) -> list[str]:
-    """Return how stiff the spring along x is beside the critical stiffness of rate and state.
+    """Return the stiffness along x relative to the critical one of rate and state.
 
     All else is as it is, the misalignment too: `stiction.theory.critical_stiffness` has none.
     """
@@ -307,7 +307,7 @@ def modes_over(
 
 
 def match_eigenvalues(before: Sequence[Complex], now: Complex) -> Complex:
-    """Order eigenvalues like the linear extrapolation of those before."""
+    """Order eigenvalues by the linear extrapolation of the preceding ones."""
     from scipy.optimize import linear_sum_assignment
 
     if not before:

@@ -262,18 +262,18 @@ def growth_at(slider: Slider, path: str, value: float) -> float:
 
 
 def leading_mode(slider: Slider) -> complex:
-    """Return the eigenvalue (1/s) of the mode that grows fastest."""
+    """Return the eigenvalue (1/s) of the fastest-growing mode."""
     return leading_eigenvalue(quick_matrix(slider)[0])
 
 
 def disturbance(slider: Slider) -> tuple[Floats, Floats]:
-    """Return matrix and errors of `Linearisation` at little cost; NaN for errors that cost more."""
+    """Return matrix and errors as `Linearisation` has them, at less cost; costly errors are NaN."""
     matrix, response = quick_matrix(slider)
     return matrix, errors_of(slider, response.error)
 
 
 def quick_matrix(slider: Slider) -> tuple[Floats, Response]:
-    """Return the matrix of `disturbance`, and the response of friction that it is made from."""
+    """Return the matrix of `disturbance`, and the response of friction that it is built from."""
     slip = drive_velocity(slider)
     response = quick_response(slider, slip)
     matrix = system(slider, response.slopes)
@@ -283,7 +283,7 @@ def quick_matrix(slider: Slider) -> tuple[Floats, Response]:
 
 
 def system(slider: Slider, slopes: Floats) -> Floats:
-    """Return the matrix of a disturbance u, u', z, from the slopes of friction and states."""
+    """Return the system matrix of a disturbance u, u', z, given the slopes of friction."""
     n = len(slopes) - 2
     (p, r), (_, q) = mobility_tensor(slider).tolist()
     matrix = np.zeros((4 + n, 4 + n))
@@ -298,7 +298,7 @@ def system(slider: Slider, slopes: Floats) -> Floats:
 
 
 def errors_of(slider: Slider, error: Floats) -> Floats:
-    """Return the errors of the entries of `system`, from those of the slopes."""
+    """Return the error of each entry of the system matrix, given the errors of the slopes."""
     found = np.zeros((2 + len(error), 2 + len(error)))
     found[2:, 2:] = error
     found[2:4] = np.abs(mobility_tensor(slider)) @ found[2:4]
@@ -322,7 +322,7 @@ def drive_velocity(slider: Slider) -> Floats:
 
 
 def _varying(part: object) -> str:
-    """Return the keys by which a drive or load varies."""
+    """Return the keys that make a drive or load vary."""
     names = ("program", "along", "across", "modulation")
     return " and ".join(name for name in names if getattr(part, name, None))
 
@@ -338,7 +338,7 @@ def steady_friction(slider: Slider, slip: Floats) -> tuple[Floats, Response]:
 
 
 def quick_response(slider: Slider, slip: Floats) -> Response:
-    """Return the response of `steady_friction` at little cost; NaN for errors that cost more."""
+    """Return the response as `steady_friction` does, at less cost; costly errors are NaN."""
     if not has_state(slider.law):
         value, slopes = set_valued(slider, slip)
         return Response(value, slopes, np.full((2, 2), np.nan))
@@ -349,7 +349,7 @@ def quick_response(slider: Slider, slip: Floats) -> Response:
 
 
 def settled_state(slider: Slider, slip: Floats) -> Floats:
-    """Return the internal states that do not change at a slip velocity."""
+    """Return the internal states in equilibrium at a slip velocity."""
     from scipy.optimize import root
 
     law: Any = slider.law
@@ -364,7 +364,7 @@ def settled_state(slider: Slider, slip: Floats) -> Floats:
 
 
 def refuse_unsettled(value: Floats, slopes: Floats, slip: Floats) -> None:
-    """Refuse states of which another Newton step would change friction.
+    """Refuse internal states if a further Newton step would change friction.
 
     The root finder's own verdict is not trusted.
     """

@@ -78,7 +78,7 @@ class Critical(NamedTuple):
 
     @property
     def stretches(self) -> list[tuple[float, float, bool]]:
-        """Both ends of each stretch of the range, and whether sliding is stable in between."""
+        """Both ends of each interval of the range, and whether sliding is stable inside."""
         borders = [self.between[0], *map(float, self.values), self.between[1]]
         return list(zip(borders[:-1], borders[1:], self.stable, strict=True))
 
@@ -160,14 +160,14 @@ def signed_growth(slider: Slider) -> float:
 
 
 def leading_frequency(slider: Slider) -> float:
-    """Return the frequency (Hz) of the mode that grows fastest."""
+    """Return the frequency (Hz) of the fastest-growing mode."""
     return abs(leading_mode(slider).imag) / (2.0 * pi)
 
 
 def sign_changes(
     function: Callable[[float], float], points: int
 ) -> tuple[list[float], tuple[bool, ...]]:
-    """Return the sign changes of a function on 0 to 1, and whether it is negative in between.
+    """Return the zeros of a function on 0 to 1 with a change of sign, and where it is negative.
 
     Over a stretch where the function is zero, it changes sign once or not at all. A function that
     is zero everywhere never changes sign, and does not count as negative.
@@ -198,7 +198,7 @@ def dip(
     after: float,
     known: dict[float, float],
 ) -> dict[float, float]:
-    """Return the extremum near `at`, if the function is nearest to zero there.
+    """Return the extremum near `at` if the function is nearest to zero there.
 
     It reveals two changes of sign between neighbouring points.
     """
