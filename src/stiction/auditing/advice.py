@@ -1,4 +1,4 @@
-"""Remedies for an apparatus: changes of it, each tried in a simulation."""
+"""Remedies for an apparatus: changes of its parameters, each tried in a simulation."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Remedy(NamedTuple):
 
     @property
     def works(self) -> bool:
-        """Whether the simulation from rest reaches steady sliding, and keeps to it."""
+        """Whether the simulation from rest reaches steady sliding and remains there."""
         return holds(self.tried)
 
     @property
@@ -87,7 +87,7 @@ class Remedy(NamedTuple):
 
 
 def holds(tried: SimulatedTest | None) -> bool:
-    """Return whether a simulation from rest reaches steady sliding, and keeps to it."""
+    """Return whether a simulation from rest reaches steady sliding and remains there."""
     if tried is None or not tried.run.status.ok:
         return False
     return tried.comes_to == SLIDES and tried.growth < 0.0
@@ -160,7 +160,7 @@ def further(slider: Slider, path: str) -> Iterator[float]:
 
 
 def few_digits(value: float, off: float, unit: str) -> float:
-    """Return a value in the fewest digits, at least two, by which it is no more than `off` wrong.
+    """Return a value rounded to the fewest digits, at least two, with an error of at most `off`.
 
     >>> few_digits(229.338, 30.0, "m/s"), few_digits(229.338, 0.1, "m/s")
     (230.0, 229.3)
@@ -186,17 +186,17 @@ def change_factor(slider: Slider, path: str, now: float, then: float) -> float:
 
 
 def critical_damping(slider: Slider) -> float:
-    """Return the damping at which the mass on the soft spring no longer swings, N s/m."""
+    """Return the critical damping of the mass on the soft spring, N s/m."""
     return 2.0 * sqrt(slider.k_x * slider.masses[0])
 
 
 def is_compliance(path: str) -> bool:
-    """Return whether a path is that of a spring's compliance."""
+    """Return whether a path names a spring's compliance."""
     return path.rpartition(".")[2] in COMPLIANCES
 
 
 def lever(path: str) -> str:
-    """Return which of the levers a path is."""
+    """Return the lever to which a path belongs."""
     return "k_x" if path.startswith("springs.") else path
 
 
@@ -213,13 +213,13 @@ def limits(slider: Slider, path: str) -> tuple[float | str, float | str] | None:
 
 
 def inside(found: Critical, value: float) -> float:
-    """Return a stable value in few digits, which keep most of its distance to unstable ones."""
+    """Return a stable value in few digits that keeps most of its distance to unstable values."""
     distance = np.min(np.abs(found.values - value), initial=inf)
     return few_digits(value, OF_MARGIN * float(distance), found.unit)
 
 
 def nearest(found: Critical, now: float, beyond: float) -> float:
-    """Return a value `beyond` the critical one that is nearest to the present value.
+    """Return the value nearest to the present one that lies `beyond` a critical value.
 
     It lies in the stable stretch, by the share `beyond` of the critical value, but not past the
     middle of the stretch. It is NaN if sliding is stable nowhere.

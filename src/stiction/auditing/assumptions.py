@@ -48,7 +48,7 @@ def suppositions(slider: Slider, p: Prediction) -> list[str]:
 
 
 def creep_suppositions(slider: Slider, p: Prediction) -> list[str]:
-    """Return the assumptions that only the creep before a slip violates, with its numbers."""
+    """Return the assumptions of Eqs. (7) and (10) on the creep alone that it violates."""
     if has_state(slider.law) or not _creeps(p):
         return []
     covered = slider.drive_speed / (2.0 * pi * p.f_x)
@@ -61,7 +61,7 @@ def creep_suppositions(slider: Slider, p: Prediction) -> list[str]:
 
 
 def _of_load_cell(s: Slider) -> Iterator[str]:
-    """Yield that the load cell reads another component of the force than k_x u_x."""
+    """Yield the assumption that the load cell measures k_x u_x, if it measures other forces."""
     cell = cell_axis(s)
     if abs(cell.y) > ASKEW:
         yield (
@@ -127,7 +127,7 @@ def _of_friction(s: Slider, p: Prediction) -> Iterator[str]:
 
 
 def _of_creep_end(s: Slider, p: Prediction) -> Iterator[str]:
-    """Yield that friction weakens too steeply for a creep that lasts until zeta = 1."""
+    """Yield the assumption of creep until zeta = 1, if friction weakens too steeply for it."""
     phi, V = abs(s.misalignment), s.drive_speed
     theta, l_x = weakening_angle(s, p), s.F_0 / s.k_x
     until = creep_distance(V, phi, l_x, float(theory.creep_time(theta, V, phi, l_x)))
@@ -140,7 +140,7 @@ def _of_creep_end(s: Slider, p: Prediction) -> Iterator[str]:
 
 
 def _of_sliding(s: Slider, p: Prediction) -> Iterator[str]:
-    """Yield that friction weakens too steeply for what Eq. (10) lets slide."""
+    """Yield the assumption of sliding by Eq. (10), if friction weakens too steeply for it."""
     phi = abs(s.misalignment)
     theta = weakening_angle(s, p) if phi > 0.0 else 0.0
     if phi < p.phi_c:
@@ -156,7 +156,7 @@ def _of_sliding(s: Slider, p: Prediction) -> Iterator[str]:
 
 
 def weakening_angle(s: Slider, p: Prediction) -> float:
-    """Return the angle of friction (rad) at which its weakening turns creep into slip.
+    """Return the angle of friction (rad) at which weakening turns creep into slip.
 
     Eq. (10) takes friction as F_0. Where a law weakens with speed, creep becomes unstable, (E4) of
     docs/explanation/estimates.md, or the mass no longer swings back, (E5). It is theta_c, or phi if

@@ -1,4 +1,4 @@
-"""Springs in series: which is the softest, what its replacement changes, and whose mass matters."""
+"""Springs in series: the softest one, the effect of replacing it, and the masses that matter."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ class Part(NamedTuple):
 
 
 class Replacement(NamedTuple):
-    """A part replaced by a stiffer one, and the simulation of that."""
+    """A part replaced by a stiffer one, and the simulation with it."""
 
     spring: Spring  # the part as it is
     factor: float  # of its stiffnesses; infinite for a rigid part
@@ -52,7 +52,7 @@ class Chain(NamedTuple):
 
 
 def examine(slider: Slider, work: int, progress: Progress = silent) -> Chain:
-    """Return the springs in series of a slider, and each replaced; `work` limits simulations."""
+    """Return a slider's springs in series and their replacements; `work` limits simulations."""
     return Chain(parts(slider), tuple(replace_each(slider, work, progress)))
 
 
@@ -100,7 +100,7 @@ def yield_of_mass(mass: float, omega: float, beyond: Floats, e: Floats) -> float
 
 
 def softest_path(slider: Slider) -> str:
-    """Return the path of the stiffness, or the compliance, that yields most along x."""
+    """Return the path of the stiffness, or the compliance, that contributes most along x."""
     if not slider.springs:
         return "k_x"
     along_x = [share for share, _ in shares(slider)]
@@ -113,7 +113,7 @@ def softest_path(slider: Slider) -> str:
 
 
 def replace_each(slider: Slider, work: int, progress: Progress = silent) -> Iterator[Replacement]:
-    """Yield each part replaced by one twice as stiff, then by a rigid one, tried from rest."""
+    """Yield the replacement of each part by one twice as stiff, then by a rigid one."""
     count = len(slider.springs) * len(FACTORS)
     for number in range(count):
         place, which = divmod(number, len(FACTORS))
@@ -127,7 +127,7 @@ def replace_each(slider: Slider, work: int, progress: Progress = silent) -> Iter
 def replace_one(
     slider: Slider, place: int, factor: float, work: int, progress: Progress
 ) -> Replacement:
-    """Return a slider with one part `factor` times as stiff, simulated from rest."""
+    """Return the replacement of one part by one `factor` times as stiff, with its simulation."""
     spring = slider.springs[place]
     stiff = scale_stiffness(spring, factor)
     try:

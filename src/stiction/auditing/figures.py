@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 
 
 def test(found: Audit) -> Figure | None:
-    """Draw the simulated test as a load cell records it."""
+    """Draw the simulated force, as a load cell records it."""
     return figure_of(found.plot)
 
 
@@ -85,7 +85,7 @@ def _change(found: Audit, each: Remedy | Pair) -> str:
 
 
 def record(found: Audit) -> Figure | None:
-    """Draw a measured record beside simulations; None where there is none that was fitted."""
+    """Draw a measured record beside simulations; None if none was fitted."""
     seen = found.measured
     return figure_of(plot_predictive, seen) if seen and seen.predictive else None
 
@@ -97,7 +97,7 @@ def mechanism(found: Audit) -> Figure | None:
 
 
 def of_fit(plot: Callable[[Fit], Any]) -> Callable[[Audit], Figure | None]:
-    """Return the function that draws the fit of a measured record, None without one."""
+    """Return the function that draws the fit of a measured record; None without a fit."""
 
     def draw(found: Audit) -> Figure | None:
         fit = found.measured and found.measured.fit
@@ -110,7 +110,7 @@ posterior, corner, ranks = of_fit(plot_posterior), of_fit(plot_corner), of_fit(p
 
 
 def tolerance(found: Audit) -> Figure | None:
-    """Draw the tolerance budget over the misalignment; None where that is certain."""
+    """Draw the tolerance budget over the misalignment; None if the misalignment is certain."""
     shown = found.budget is not None and not found.budget.certain
     return figure_of(plot_tolerance, found.budget) if shown else None
 

@@ -1,4 +1,4 @@
-"""A measured record beside simulations of its rig: verdict, grounds, what would change it."""
+"""A measured record beside simulations of its rig: verdict, grounds, and tests to change it."""
 
 from __future__ import annotations
 
@@ -108,12 +108,12 @@ class RecordComparison:
 
     @cached_property
     def warnings(self) -> tuple[str, ...]:
-        """What an analysis of the record beside its description warns of; a fit sees none of it."""
+        """The analysis's warnings on the record beside its description; a fit ignores them."""
         return analyse(self.stated or self.record).warnings
 
     @property
     def absent(self) -> list[str]:
-        """The channels that a fit would use and the record does not have."""
+        """The channels that a fit would use and the record lacks."""
         return [name for name in USED if getattr(self.record, name) is None]
 
 
@@ -125,7 +125,7 @@ def compare(
     library: str | Path | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> RecordComparison:
-    """Fit a rig to a record and simulate the record again with what was found.
+    """Fit a rig to a record, and simulate the record again with the fitted parameters.
 
     Raises
     ------
@@ -158,7 +158,7 @@ def compare(
 
 
 def with_description(record: Record, rig: Rig) -> Record:
-    """Return a record that states what its description is sure of, where it states nothing itself.
+    """Return a record completed by the certain values of its description.
 
     Its force may contradict that: a stiffness, a mass, a load or a unit that is wrong. Of a cell at
     an angle the stiffness is not stated where the spring across loads it as well: that does so
@@ -179,7 +179,7 @@ def with_description(record: Record, rig: Rig) -> Record:
 
 
 def turn(slider: Slider, record: Record) -> Slider:
-    """Return the slider as it stood for a record, which may state that the rig was turned."""
+    """Return the slider at the misalignment of a record, whose rig may have been turned."""
     return slider.model_copy(update={"phi": slider.phi + (record.turned or 0.0)})
 
 
@@ -192,14 +192,14 @@ def _at_ends(rig: Rig) -> Iterator[Slider]:
 
 
 def _is_same(value: float | None, other: float | None, apart: float) -> bool:
-    """Return whether two values are known, and differ relatively by no more than `apart`."""
+    """Return whether two values are known, and differ by at most the share `apart`."""
     if value is None or other is None:
         return False
     return abs(value - other) <= apart * abs(other)
 
 
 def withdraw(found: RecordComparison) -> RecordComparison:
-    """Withdraw a claim of rotation where the rig as described does not explain the record.
+    """Withdraw a claim of rotation if the rig as described does not explain the record.
 
     Both compare the record with simulations of a rig whose friction rotates, by measures and
     limits of their own.
@@ -229,7 +229,7 @@ def sections(found: RecordComparison) -> list[Section]:
 
 
 def say_once(parts: Sequence[Section], shared: Sequence[str]) -> list[Section]:
-    """Return sections in which shared sentences stand only where they are said first.
+    """Return sections in which a shared sentence remains only at its first place.
 
     >>> parts = [Section("A", ["No. A pause."]), Section("B", ["Why? A pause."])]
     >>> [part.sentences for part in say_once(parts, ["A pause."])]
@@ -249,7 +249,7 @@ def say_once(parts: Sequence[Section], shared: Sequence[str]) -> list[Section]:
 
 
 def rotates(found: RecordComparison) -> bool:
-    """Return whether the fit, which assumes that friction rotates, means something."""
+    """Return whether the values of the fit, which assumes a rotating friction vector, are valid."""
     return found.like and (found.odds is None or found.odds.decision in (*TURNING, UNDECIDED))
 
 
@@ -278,7 +278,7 @@ def verdict(found: RecordComparison) -> str:
 
 
 def explanation(found: RecordComparison) -> str:
-    """Return how the rig explains the record, a clause."""
+    """Return the rig's explanation of the record, as a clause."""
     phi = angle(found)
     if phi is None:
         return (
@@ -302,7 +302,7 @@ def explanation(found: RecordComparison) -> str:
 
 
 def alternatives(odds: Odds | None) -> str:
-    """Return what the comparison with other mechanisms adds to an explanation, a clause."""
+    """Return the result of the comparison with other mechanisms, as a clause."""
     if odds is not None and odds.decision in TURNING:
         others = (its for name, its in zip(odds.names, odds.likeness, strict=True)
                   if name != ROTATION)  # fmt: skip
@@ -319,7 +319,7 @@ def alternatives(odds: Odds | None) -> str:
 
 
 def angle(found: RecordComparison) -> Estimate | None:
-    """Return the estimate of the misalignment; None where it was not fitted."""
+    """Return the estimate of the misalignment; None if it was not fitted."""
     known = [] if found.fit is None else [x for x in found.fit.estimates if x.name == "phi"]
     return known[0] if known else None
 
@@ -330,7 +330,7 @@ def describe(x: Estimate) -> str:
 
 
 def grounds(found: RecordComparison, fit: Fit) -> list[str]:
-    """Return what the verdict rests on."""
+    """Return the grounds of the verdict."""
     conditions = fit.plan.conditions[0]
     channels = " and ".join(NAMES.get(name, name) for name in conditions.noise)
     lines = [
@@ -348,7 +348,7 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
 
 
 def contradictions(found: Predictive | None) -> Iterator[str]:
-    """Yield how much faster or slower a force rises than any simulated one, and slips last.
+    """Yield the contradictions in the rate of loading and in the duration of slips, if any.
 
     The simulations have the fitted values, which come as near to the record as the priors allow:
     of a stiffness or mass that is stated as certain and is wrong, they hide a part, at least so
@@ -375,14 +375,14 @@ def contradictions(found: Predictive | None) -> Iterator[str]:
 
 
 def _beyond(value: float, simulated: Floats) -> float | None:
-    """Return a value over the median of simulated ones, where it lies well beyond all of them."""
+    """Return a value over the median of simulated ones, if it lies well outside their range."""
     ratio = value / float(np.median(simulated))
     inside = simulated.min() <= value <= simulated.max()
     return None if inside or abs(ratio - 1.0) < APART else ratio
 
 
 def _length(found: RecordComparison, conditions: Conditions) -> float:
-    """Return the mean length of the cycles in a record, s; that simulated is rounded."""
+    """Return the mean length of a record's cycles, s; the simulated length is rounded."""
     if found.seen is None:
         return conditions.cycle
     its = found.seen.cycles
@@ -390,7 +390,7 @@ def _length(found: RecordComparison, conditions: Conditions) -> float:
 
 
 def is_unusual_rotation(odds: Odds) -> bool:
-    """Return whether rotation is the most probable, yet has few loading curves like the record's.
+    """Return whether rotation is likeliest, but its loading curves rarely resemble the record's.
 
     An explanation and a claim compare that curve with different simulations (`BOTH_HOLD`).
     """
@@ -399,7 +399,7 @@ def is_unusual_rotation(odds: Odds) -> bool:
 
 
 def curve(found: Predictive | None) -> str:
-    """Return how the loading curve agrees with simulations."""
+    """Return the agreement of the loading curve with simulations."""
     if found is None:
         return "With the fitted values hardly any simulated record has cycles of stick and slip."
     low, high = (in_words(x, "N/s") for x in interval_95(found.simulated.rate))
@@ -420,7 +420,7 @@ def curve(found: Predictive | None) -> str:
 
 
 def changes(found: RecordComparison, fit: Fit) -> list[str]:
-    """Return what would change the verdict."""
+    """Return the further tests or statements that could change the verdict."""
     lines = []
     if not found.like:
         lines.append(

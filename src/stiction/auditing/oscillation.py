@@ -28,7 +28,7 @@ DEAD = 0.1  # of the first swings: if ten are smaller, the oscillation has died 
 
 
 class CreepSwings(NamedTuple):
-    """Successive swings across the drive: medians of them.
+    """Medians of successive swings across the drive.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class CreepSwings(NamedTuple):
 
 
 class TransverseSwings(NamedTuple):
-    """The transverse oscillation during creep, as a simulated test shows it.
+    """The transverse oscillation during creep in a simulated test.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class TransverseSwings(NamedTuple):
 
     @property
     def swings(self) -> list[CreepSwings]:
-        """All of them."""
+        """All of its swings."""
         return [*filter(None, [self.first, self.largest]), *self.later, *self.last]
 
     @property
@@ -119,7 +119,7 @@ def theoretical_oscillation(slider: Slider) -> tuple[float, float]:
 
 
 def _creeps(seen: SimulatedTest) -> Iterator[tuple[float, float, float]]:
-    """Yield begin of each creep, when its last swings begin at the latest, and its end, s."""
+    """Yield the start of each creep, the latest start of its last swings, and its end, s."""
     rests, loadings = seen.run.stick_intervals, seen.table
     window = WINDOW / seen.run.slider.natural_frequency_y
     starts, ends = (loadings[name][:LOADINGS].tolist() for name in ("start", "peak_time"))
@@ -133,7 +133,7 @@ def _creeps(seen: SimulatedTest) -> Iterator[tuple[float, float, float]]:
 
 
 def _again(seen: SimulatedTest, begin: float, end: float) -> tuple[Floats, Floats, Floats]:
-    """Return time (s), u_y (m) and the sticks of a part of a test, simulated from a sample on."""
+    """Return time (s), u_y (m) and the sticks of a part of a test that is simulated again."""
     run, time = seen.run, seen.run.samples["time"]
     at = min(int(np.searchsorted(time, begin)), len(time) - 2)
     start, rate = run.state(float(time[at])), FINE_SAMPLES * run.slider.natural_frequency_y
@@ -145,7 +145,7 @@ def _again(seen: SimulatedTest, begin: float, end: float) -> tuple[Floats, Float
 def _swings(
     seen: SimulatedTest, time: Floats, u_y: Floats, sticks: Floats, part: slice
 ) -> CreepSwings | None:
-    """Return some of the swings, each from a turning point to the next but one."""
+    """Return some of the swings, each over two half-swings between turning points."""
     turns = extrema(u_y)[1:-1]
     at, legs = time[turns], np.abs(np.diff(u_y[turns]))
     heights = 0.5 * (legs[1:] + legs[:-1])
@@ -159,7 +159,7 @@ def _swings(
 
 
 def _of_whole(seen: SimulatedTest, begin: float, end: float) -> tuple[CreepSwings | None, float]:
-    """Return the largest swings of the first creep, and when swings have died out, s after `begin`.
+    """Return the largest swings of the first creep, and their time of decay, s after `begin`.
 
     None and NaN if the test is sampled too coarsely to tell, NaN if they last.
     """

@@ -61,7 +61,7 @@ class Pair(NamedTuple):
 
     @property
     def works(self) -> bool:
-        """Whether the simulation from rest reaches steady sliding, and keeps to it."""
+        """Whether the simulation from rest reaches steady sliding and remains there."""
         return holds(self.tried)
 
     @property
@@ -105,7 +105,7 @@ def _advise(slider: Slider, path: str, work: int, progress: Progress) -> Pair:
 
 
 def nearest_pairs(slider: Slider, path: str) -> Iterator[tuple[Change, Change]]:
-    """Yield pairs of misalignment and partner that slide steadily, as all their neighbours do.
+    """Yield pairs of misalignment and partner at which all neighbours slide steadily, too.
 
     Each has the least turn for its partner, which changes ever more.
     """

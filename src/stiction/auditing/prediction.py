@@ -134,7 +134,7 @@ def predict(slider: Slider) -> Prediction:
 
 
 def first_stick_duration(slider: Slider, F_static: float) -> float:
-    """Return how long the mass rests from unloaded springs on (s), dampers and grain included.
+    """Return the duration of the first stick from unloaded springs, s, with dampers and grain.
 
     While it rests springs and dampers carry |K v t + C v|, v the drive's velocity, until this is
     the static friction. Along and across a grain each component counts in its own coefficient.
@@ -156,7 +156,7 @@ def first_stick_duration(slider: Slider, F_static: float) -> float:
 
 
 def _at_once(slider: Slider, F_static: float) -> tuple[float, float, float, float]:
-    """Return `_forces` of a mass that slips at the end of the first stick.
+    """Return `_forces` for a mass that slips at the end of the first stick.
 
     Both springs load together, until they carry the static friction; then the mass swings on both,
     along their force. That it does again and again about a mean that lies along the drive, as all
@@ -176,7 +176,7 @@ def _at_once(slider: Slider, F_static: float) -> tuple[float, float, float, floa
 
 
 def swing_of_slip(slider: Slider) -> tuple[float, float, float]:
-    """Return stiffness (N/m) and mass (kg) of the swing of a slip, and its share on the load cell.
+    """Return stiffness (N/m) and mass (kg) of a slip's swing, and the share on the load cell.
 
     It is along the force where the first stick ends in a slip, else along the soft spring.
     """
@@ -186,7 +186,7 @@ def swing_of_slip(slider: Slider) -> tuple[float, float, float]:
 
 
 def _on_cell(slider: Slider, direction: Iterable[float]) -> float:
-    """Return the share of a force in this direction (x, y) that the load cell measures."""
+    """Return the share of a force in a direction (x, y) that the load cell measures."""
     x, y = direction
     cell = cell_axis(slider)
     return abs(cell.x * x + cell.y * y)
@@ -195,7 +195,7 @@ def _on_cell(slider: Slider, direction: Iterable[float]) -> float:
 def _forces(
     slider: Slider, F_static: float, turn: float, fast: bool
 ) -> tuple[float, float, float, float]:
-    """Return peak and mean of the force, its fall in a slip, N, and the period, s.
+    """Return peak and mean of the force, its fall in a slip (N), and the period (s).
 
     The last two are NaN without a slip. `turn` is the force angle at slip, rad; `fast`, whether
     slow motion turns fast before friction points along the drive.
@@ -213,7 +213,7 @@ def _forces(
 
 
 def _steadily(slider: Slider) -> tuple[float, float, float, float]:
-    """Return `_forces` of a mass that comes to slide steadily, where friction lies along the drive.
+    """Return `_forces` for a mass that reaches steady sliding, with friction along the drive.
 
     Friction does not fall below the spring's force.
     """
@@ -233,7 +233,7 @@ def critical_misalignment(slider: Slider, V: float) -> float:
 
 
 def creep_distance(V: float, phi: float, l_x: float, t: float) -> float:
-    """Return the distance (m) that the mass has moved along X by Eq. (7) at time `t`.
+    """Return the displacement (m) of the mass along X at time `t`, by Eq. (7).
 
     X = V t - u_x cos(phi) - u_y sin(phi), Eq. (6), with u_y constant from the first stick on.
     """
@@ -264,7 +264,7 @@ def stick_slip(slider: Slider, peak: float, stiffness: float, mass: float) -> tu
 def stick_slip_period(
     slider: Slider, drop: float, stiffness: float, mass: float, rate: float
 ) -> float:
-    """Return the time from slip to slip (s) if the force falls by `drop` (N) in each; NaN if not.
+    """Return the time between slips (s) in which the force falls by `drop` (N); NaN without.
 
     By (E3) of docs/explanation/estimates.md; at rest the force rises at `rate` (N/s).
     """

@@ -112,7 +112,7 @@ class Audit(Report):
     pairs: tuple[Pair, ...] = ()
 
     def __eq__(self, other: object) -> bool:
-        """Compare what was predicted and simulated; NaN equals NaN."""
+        """Compare predictions and simulations; NaN equals NaN."""
         return same_fields(self, other)
 
     def __repr__(self) -> str:
@@ -122,20 +122,20 @@ class Audit(Report):
 
     @property
     def bistable(self) -> bool:
-        """Whether it oscillates from rest, but continues to slide once sliding."""
+        """Whether the mass oscillates from rest, but continues to slide once it slides."""
         rest, sliding = self.observation.comes_to, self.sliding_on.comes_to
         return rest == OSCILLATES and sliding == SLIDES and self.sliding.stable
 
     @cached_property
     def oscillation(self) -> TransverseSwings:
-        """The transverse oscillation of the test from rest, parts of which are simulated again."""
+        """The transverse oscillation of the test from rest, simulated again with fine samples."""
         return oscillation_of(self.observation)
 
     @property
     def remedies(self) -> list[Remedy | Pair]:
-        """All changes of one and of two parameters, those that work first, the mildest at the head.
+        """All changes of one and of two parameters, working ones first, the mildest first.
 
-        Milder is what changes by a smaller factor, see `stiction.auditing.advice.change_factor`.
+        A milder change has a smaller factor, see `stiction.auditing.advice.change_factor`.
         """
         every: list[Remedy | Pair] = [*self.advices, *self.pairs]
         return sorted(every, key=lambda each: (not each.works, each.factor))
@@ -150,7 +150,7 @@ class Audit(Report):
         return all(each.run.status.ok for each in runs)
 
     def to_toml(self) -> str:
-        """Return the description of the apparatus, with what is uncertain in it."""
+        """Return the description of the apparatus, with its uncertain values."""
         return Rig(self.slider, dict(self.priors)).to_toml()
 
     @np.errstate(under="ignore")  # as by public functions: its words analyse parts of runs
@@ -253,7 +253,7 @@ def audit(
 
 
 def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) -> Audit:
-    """Return the audit of a rig, whose record was compared with it before."""
+    """Return the audit of a rig, given the comparison with its record."""
     system = steadily_driven(rig.slider)
     report = partial(part, progress, count=PARTS_OF_WORK + (MORE if rig.priors else 0))
     sliding, prediction = steady_sliding(system), predict(system)
@@ -301,7 +301,7 @@ def sections(found: Audit) -> list[Section]:
 
 
 def _of_record(measured: RecordComparison | None) -> list[Section]:
-    """Return the sections on a measured record, none without one."""
+    """Return the sections on a measured record; none without one."""
     if measured is None:
         return []
     from stiction.auditing.measured import sections as sections_of

@@ -59,10 +59,10 @@ class Shares(NamedTuple):
 
 @dataclass(frozen=True)
 class SimulatedTest:
-    """A simulated test: the run, its record, and the analysis of the record where it is asked for.
+    """A simulated test: the run, its record, and the record's analysis on request.
 
-    Of most changes that are tried only the final state is wanted: the analysis of a record takes as
-    long as its simulation.
+    Most trials of a change need the final state alone, and the analysis of a record takes as long
+    as its simulation.
     """
 
     run: Trajectory
@@ -75,12 +75,12 @@ class SimulatedTest:
 
     @cached_property
     def swings(self) -> Swings:
-        """The swings of the force, which nothing disturbs, as drive and load are steady."""
+        """The swings of the force; drive and load are steady, so that nothing disturbs them."""
         return own_swings(self.record)
 
     @cached_property
     def table(self) -> CycleTable:
-        """The cycles; none of a motion that dies out."""
+        """The cycles; none if the motion dies out."""
         lasting = self.swings.lasting
         return lasting.part(slice(0)) if self.comes_to == SLIDES else lasting
 
@@ -91,7 +91,7 @@ class SimulatedTest:
 
     @cached_property
     def regime(self) -> Regime:
-        """The kind of motion; how long the mass is slower than the drive is what `shares` tell."""
+        """The kind of motion, with the share of time at rest or in creep from `shares`."""
         seen = regime_of(self.record, self.swings)
         if not seen.loads:
             return seen
@@ -113,7 +113,7 @@ class SimulatedTest:
 
     @cached_property
     def settled(self) -> float:
-        """When the speed comes to stay within 2 % of the drive's, s, which is steady sliding.
+        """The time after which the speed stays within 2 % of the drive's, s: steady sliding.
 
         NaN where that takes longer than the test.
         """
@@ -124,18 +124,18 @@ class SimulatedTest:
 
     @property
     def travel(self) -> float:
-        """How far the drive goes until steady sliding is reached, m; NaN if it is not."""
+        """The drive's travel until steady sliding, m; NaN if it is not reached."""
         return self.run.slider.drive_speed * self.settled
 
     @cached_property
     def slip_time(self) -> float:
-        """When the first slip begins, s; NaN if there is none."""
+        """The start of the first slip, s; NaN if there is none."""
         slip = first_slip_time(self.run)
         return slip if slip < self.record.time[-1] else nan
 
     @property
     def motion(self) -> str:
-        """The name of the final motion, as far as the load cell sees it."""
+        """The name of the final motion, as the load cell shows it."""
         calm = self.regime.kind in (SETTLING, STEADY)
         if self.comes_to == SLIDES:
             return self.regime.kind if calm else SETTLING
@@ -214,7 +214,7 @@ def simulate_coarsely(
     progress: Progress = silent,
     multiscale: Literal["auto"] | None = None,
 ) -> SimulatedTest:
-    """Simulate a friction test from rest, sampled for its slow motion only."""
+    """Simulate a friction test from rest, sampled for its slow motion alone."""
     return simulate_test(
         slider,
         prediction,
@@ -241,7 +241,7 @@ def from_sliding(
 
 
 def final_state(run: Trajectory, growth: float = nan) -> str:
-    """Return the final state of a run, from the deviation from the drive's speed at the end.
+    """Return the final state of a run, by the deviation from the drive's speed at the end.
 
     The last quarters of the run count. A mass at rest deviates by the full speed; larger deviations
     in the slips of a mass that comes to rest are cut to that. What dies out as a small disturbance
@@ -267,12 +267,12 @@ def final_state(run: Trajectory, growth: float = nan) -> str:
 
 
 def coarse_rate(prediction: Prediction) -> float:
-    """Return a sample rate (Hz) for the slow motion only, not the transverse one."""
+    """Return a sample rate (Hz) for the slow motion alone."""
     return COARSE * prediction.f_x
 
 
 def relative_speed(run: Trajectory) -> Floats:
-    """Return the speed of the mass along the drive over that of the drive, (n,)."""
+    """Return the ratio of the mass's speed along the drive to the drive's, (n,)."""
     return np.asarray(run.samples["V_X"] / run.slider.motion.rate(0.0)[0])
 
 
@@ -290,12 +290,12 @@ def shares(run: Trajectory, force: Floats, cycles: CycleTable) -> Shares:
 
 
 def end_of_loading(force: Floats) -> int:
-    """Return the sample at which the loading ends: the force comes close to its largest value."""
+    """Return the sample at the end of loading, where the force nears its largest value."""
     return int(np.argmax(force >= ALMOST * force.max()))
 
 
 def creep_before_slip(seen: SimulatedTest) -> float:
-    """Return the distance moved until the first slip, m; NaN if there is none.
+    """Return the displacement until the first slip, m; NaN if there is none.
 
     The mass is as fast as the drive when it slips, and may cover more between two samples than it
     has crept before: what lies between the samples about the slip is simulated again. By the cubic

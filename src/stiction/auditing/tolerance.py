@@ -1,4 +1,4 @@
-"""Tests of a rig over the ranges of its uncertain parameters, and how well to align it."""
+"""Tests of a rig over the ranges of its uncertain parameters, and the alignment it needs."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ ROWS = (  # label and unit of each reading
 
 
 class Reading(NamedTuple):
-    """What a test from rest reads: coefficients, and creep and transverse oscillation in m.
+    """The readings of a test from rest: coefficients, and creep and transverse oscillation in m.
 
     The oscillation is its bound V sin(phi)/omega_y, which the paper derives; the others come from
     the simulated record. NaN where the test shows none.
@@ -61,7 +61,7 @@ class Reading(NamedTuple):
 
 
 class Alignment(NamedTuple):
-    """How well to align: beyond `angle` (rad), the error of the static coefficient is `allowed`.
+    """The needed alignment: beyond `angle` (rad), the error of mu_static exceeds `allowed`.
 
     NaN if that is not reached up to `until` (rad), or is exceeded at the smallest angle that was
     tried, where the error is `least`. Single tests scatter about their mean, with the phase of the
@@ -79,7 +79,7 @@ class Alignment(NamedTuple):
 
 @dataclass(frozen=True)
 class Budget:
-    """What uncertain parameters of a rig, its misalignment above all, do to a test.
+    """The effect of a rig's uncertain parameters on a test, above all of its misalignment.
 
     Parameters
     ----------
@@ -113,12 +113,12 @@ class Budget:
 
     @property
     def certain(self) -> bool:
-        """Whether the misalignment is certain, and only other parameters are not."""
+        """Whether the misalignment is certain, while other parameters are not."""
         return len(self.ends) == 1
 
     @property
     def counts(self) -> list[int]:
-        """How many of the tests have each reading, (4,)."""
+        """The number of tests with each reading, (4,)."""
         return [int(each) for each in np.isfinite(self.drawn).sum(axis=0)]
 
     @property
@@ -138,13 +138,13 @@ class Budget:
 
 
 def read(slider: Slider) -> Reading:
-    """Return what a test from rest reads; NaN if it cannot be simulated to its end."""
+    """Return the readings of a test from rest; NaN if it cannot be simulated to its end."""
     prediction = predict(slider)
     return reading(prediction, partial(simulate_coarsely, slider, prediction, MOST_STEPS))
 
 
 def reading(prediction: Prediction, simulate: Callable[[], SimulatedTest]) -> Reading:
-    """Return what a test reads that is predicted, and is to be simulated."""
+    """Return the readings of a test, from its prediction and its simulation."""
     unknown = Reading(nan, nan, nan, prediction.amplitude)
     try:
         seen = simulate()
@@ -179,7 +179,7 @@ def budget(rig: Rig, progress: Progress) -> Budget:
 
 
 def draw_values(rig: Rig) -> dict[str, Floats]:
-    """Return values (n,) of each uncertain parameter that the description takes together.
+    """Return values (n,) of each uncertain parameter that the description allows together.
 
     They are the first of Sobol's sequence.
     """
@@ -225,7 +225,7 @@ def read_one(rigs: list[Slider], number: int, _: Callable[[], bool]) -> tuple[in
 
 
 def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
-    """Return the misalignment at which the static coefficient is wrong by the allowed error.
+    """Return the misalignment at which the static coefficient has the allowed error.
 
     The error is relative to `aligned`, the coefficient that the rig reads without misalignment.
     Tests over a wide range show where it is exceeded on average, and further ones there, how it
@@ -262,7 +262,7 @@ def alignment(slider: Slider, aligned: float, farthest: float) -> Alignment:
 
 
 def crossing(angles: Floats, errors: Floats) -> float:
-    """Return the angle at which scattered errors pass the allowed one on average.
+    """Return the angle at which the mean of scattered errors passes the allowed error.
 
     Between two angles it is interpolated.
     """
@@ -275,7 +275,7 @@ def crossing(angles: Floats, errors: Floats) -> float:
 
 
 def growing_mean(angles: Floats, errors: Floats) -> Floats:
-    """Return the mean of scattered errors, which is taken to grow with the angle in whichever way.
+    """Return the isotonic mean of scattered errors, which never decreases with the angle.
 
     It is their isotonic regression (Barlow et al., Statistical Inference under Order Restrictions,
     1972), over the logarithm of the angle: of tests that lie closer, each weighs less.
@@ -321,7 +321,7 @@ def section(found: Budget) -> Section:
 
 
 def _misalignment(found: Budget) -> str:
-    """Return the misalignment, and how uncertain it is, in a sentence."""
+    """Return the misalignment and its uncertainty, as a sentence."""
     ends = [in_words(end, "rad") for end in found.ends]
     if found.certain:
         return f"The misalignment is {ends[0]} throughout, as stated without an uncertainty."
@@ -330,7 +330,7 @@ def _misalignment(found: Budget) -> str:
 
 
 def limit(found: Alignment) -> str:
-    """Return how well to align, in a sentence."""
+    """Return the needed alignment, as a sentence."""
     share = percent(found.allowed)
     if not isnan(found.angle):
         angle, first = round_down(degrees(found.angle)), round_down(degrees(found.first))
@@ -356,7 +356,7 @@ def limit(found: Alignment) -> str:
 
 
 def _interval(found: Budget, at: int, unit: str) -> str:
-    """Return the interval of a reading in words, and how many tests have it where not all do."""
+    """Return the interval of a reading in words, with the number of tests if some lack it."""
     count, total = found.counts[at], len(found.drawn)
     low, high = (in_words(end, unit) for end in found.intervals[:, at])
     said = low if count < 2 else f"{low} to {high}"
@@ -364,7 +364,7 @@ def _interval(found: Budget, at: int, unit: str) -> str:
 
 
 def round_down(value: float) -> float:
-    """Return a positive value, its third digit and all after it cut off.
+    """Return a positive value, truncated to two digits.
 
     The largest force scatters with the phase of the transverse oscillation when the slip begins:
     more digits would differ with the smallest change of the rig.

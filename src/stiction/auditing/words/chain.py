@@ -41,7 +41,7 @@ def chain_sections(found: Audit) -> list[Section]:
 
 
 def softest(chain: Chain) -> list[str]:
-    """Return the softest part along x, which is mostly the drive's way, and along y."""
+    """Return the softest part along x, which is mostly the drive's direction, and along y."""
     x = max(chain.parts, key=lambda part: part.along_x)
     y = max(chain.parts, key=lambda part: part.along_y)
     of_x, of_y = percent(x.along_x), percent(y.along_y)
@@ -57,7 +57,7 @@ def softest(chain: Chain) -> list[str]:
 
 
 def axes(slider: Slider) -> list[str]:
-    """Return where the axes of the whole lie, if parts have axes of their own."""
+    """Return the directions of the whole's axes, if parts have axes of their own."""
     if not slider.turn:
         return []
     return [
@@ -68,7 +68,7 @@ def axes(slider: Slider) -> list[str]:
 
 
 def masses(chain: Chain) -> list[str]:
-    """Return whether the masses of parts, which the model leaves out, matter."""
+    """Return a sentence for each part's mass, which the model leaves out."""
     return [_mass(part, number) for number, part in enumerate(chain.parts) if part.spring.mass]
 
 
@@ -92,7 +92,7 @@ def _mass(part: Part, number: int) -> str:
 
 
 def outcomes(seen: SimulatedTest, chain: Chain) -> list[str]:
-    """Return what the replacements change of a test from rest, in sentences."""
+    """Return the effects of the replacements on a test from rest, in sentences."""
     now = final_motion(seen)
     by = "Stiffness, A, ζ and f_y are by theory, friction and motion simulated from rest."
     other = [(each, final_motion(each.tried)) for each in chain.replacements if each.tried]

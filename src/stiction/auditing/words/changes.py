@@ -113,7 +113,7 @@ def settings(found: Audit, each: Remedy | Pair) -> list[str]:
 
 
 def value_of(found: Audit, path: str, value: float, unit: str) -> str:
-    """Return a value of a parameter in words; that of a damper as a damping ratio, too."""
+    """Return a parameter's value in words; a damper's with its damping ratio."""
     said = in_words(value, unit)
     if path != "c_x":
         return said
@@ -148,7 +148,7 @@ def _symbol(found: Audit, path: str) -> str:
 
 
 def _result(found: Audit, seen: SimulatedTest, works: bool) -> tuple[str, str, str]:
-    """Return when and where the simulation with a change settles, and what it comes to."""
+    """Return time, travel and final motion of the simulation with a change."""
     if works:
         return (*settling(seen), final_motion(seen))
     if not seen.run.status.ok:

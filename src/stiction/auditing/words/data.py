@@ -25,7 +25,7 @@ MEANS = {"drop": "N", "period": "s"}  # over the cycles of a test
 
 
 def data(found: Audit) -> dict[str, Any]:
-    """Return the numbers of an audit with their units; null for unknown ones."""
+    """Return the numbers of an audit with their units; null if unknown."""
     sliding, phi = found.sliding, found.misalignment
     return {
         "motion": found.observation.motion,
@@ -46,7 +46,7 @@ def data(found: Audit) -> dict[str, Any]:
 
 
 def with_unit(value: float, unit: str) -> dict[str, Any]:
-    """Return a number, None where it is not known, with its unit."""
+    """Return a number with its unit; None if it is unknown."""
     return {"value": number(value), "unit": unit}
 
 

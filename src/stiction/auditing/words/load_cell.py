@@ -1,4 +1,4 @@
-"""What the load cell reads of friction, and why that is another number."""
+"""The load cell's reading of friction, and the reasons why it differs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ SAME = 1e-3  # of friction: larger ones in a swing are one value, and the last i
 
 
 class FrictionBeside(NamedTuple):
-    """The friction force beside the part of it that a load cell measures."""
+    """The friction force beside the component that a load cell measures."""
 
     coefficient: float  # friction over the normal load
     share: float  # the part along the axis of the load cell, over friction: the cosine of the angle
@@ -38,12 +38,12 @@ class FrictionBeside(NamedTuple):
 
     @property
     def read(self) -> float:
-        """The coefficient that the load cell reads of it."""
+        """The friction coefficient as the load cell reads it."""
         return self.coefficient * self.share
 
 
 def friction_at(seen: SimulatedTest, at: int) -> FrictionBeside:
-    """Return the friction of a sample of a run beside the part that its load cell measures."""
+    """Return the friction at a sample of a run beside the component on its load cell."""
     samples, slider = seen.run.samples, seen.run.slider
     cell, theta = cell_axis(slider), np.radians(samples["theta"][at])
     x, y = cell.way * np.cos(theta), cell.way * np.sin(theta)
@@ -74,7 +74,7 @@ def largest_force(seen: SimulatedTest) -> tuple[FrictionBeside, int, int]:
 
 
 def load_cell(found: Audit) -> list[str]:
-    """Return what the load cell reads of friction, in sentences."""
+    """Return the load cell's reading of friction, in sentences."""
     seen = found.observation
     if not len(seen.record) or not np.nanmax(seen.run.samples["friction"]) > 0.0:
         return ["There is no friction to read."]
@@ -84,7 +84,7 @@ def load_cell(found: Audit) -> list[str]:
 
 
 def _readings(seen: SimulatedTest) -> str:
-    """Return what the apparent coefficients are."""
+    """Return the definitions of the apparent coefficients."""
     count = len(seen.table)
     if not count:
         return (
@@ -100,7 +100,7 @@ def _readings(seen: SimulatedTest) -> str:
 
 
 def _largest(seen: SimulatedTest) -> list[str]:
-    """Return how the largest force differs from friction, and why."""
+    """Return the difference between the largest force and friction, with its reason."""
     friction, before, at = largest_force(seen)
     read, true = peak(seen), friction.coefficient
     if not (read > 0.0 and true > 0.0):  # a test that ended before it began
@@ -135,7 +135,7 @@ def _largest(seen: SimulatedTest) -> list[str]:
 
 
 def _part(seen: SimulatedTest, friction: FrictionBeside) -> str:
-    """Return the direction of friction, and the part of it that the load cell measures."""
+    """Return the direction of friction, and the component that the load cell measures."""
     share = f", {_number(friction.share)} of friction" if friction.share > LITTLE else ""
     on_x = seen.run.slider.cell_angle is None
     rest = "the spring across carries the rest" if on_x else "the springs carry the rest across it"
@@ -146,13 +146,13 @@ def _part(seen: SimulatedTest, friction: FrictionBeside) -> str:
 
 
 def _slides(seen: SimulatedTest, first: int, last: int) -> bool:
-    """Return whether the mass is as fast as the drive from one sample to another."""
+    """Return whether the mass moves at the drive's speed between two samples."""
     speed = relative_speed(seen.run)[first : last + 1]
     return seen.comes_to == SLIDES and bool(np.abs(speed - 1.0).max() < CALM)
 
 
 def _sliding(seen: SimulatedTest) -> list[str]:
-    """Return what the load cell reads of steady sliding, where that is not its friction."""
+    """Return the load cell's reading of steady sliding, if it differs from friction."""
     friction = friction_at(seen, len(seen.record) - 1)
     if seen.comes_to != SLIDES or abs(friction.share - 1.0) <= RIGHT:
         return []

@@ -79,7 +79,7 @@ def numbers(found: Audit) -> Table:
 
 
 def _growth(found: Audit) -> list[tuple[str, float, str, str, bool]]:
-    """Return the row of the time in which small disturbances of steady sliding grow or decay."""
+    """Return the row of the growth or decay time of small disturbances of steady sliding."""
     if found.sliding.verdict not in (STABLE, UNSTABLE):
         return []
     way = "decay" if found.sliding.stable else "growth"

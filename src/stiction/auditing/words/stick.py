@@ -1,4 +1,4 @@
-"""How much of the apparent stick is creep."""
+"""The share of creep in the apparent stick."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 
 
 def answer(found: Audit) -> str:
-    """Return whether it is static friction, or the apparatus: the first sentence of the verdict."""
+    """Return the first sentence of the verdict: static friction, or the apparatus."""
     seen = found.observation
     if seen.blind:
         return "The load cell shows nothing that could be taken for stick."
@@ -51,7 +51,7 @@ def answer(found: Audit) -> str:
 
 
 def stick(found: Audit) -> list[str]:
-    """Return how much of the apparent stick is creep, in numbers."""
+    """Return the share of creep in the apparent stick, in numbers."""
     seen, s = found.observation, found.slider
     if seen.blind or (not len(seen.table) and _following(seen) > 0.5):
         rises = "The load cell shows a rising force while friction turns."
@@ -82,17 +82,17 @@ def stick(found: Audit) -> list[str]:
 
 
 def _hastens(seen: SimulatedTest, inertia: float) -> bool:
-    """Return whether the mass is slow for long because it gains or loses speed."""
+    """Return whether the mass is slow for long while it accelerates or decelerates."""
     return inertia > 0.5 * seen.shares.creep
 
 
 def _whole(seen: SimulatedTest) -> str:
-    """Return the time that shares are of, in words."""
+    """Return the reference time of the shares, in words."""
     return "of each cycle" if len(seen.table) else "of the loading"
 
 
 def _why(found: Audit, inertia: float) -> tuple[str, str]:
-    """Return why the mass is slower than the drive for a while, and the details.
+    """Return why the mass is slower than the drive for a while, with details.
 
     Both are empty where that is too short.
     """
@@ -140,7 +140,7 @@ def _why(found: Audit, inertia: float) -> tuple[str, str]:
 
 
 def _rests_for_moments(seen: SimulatedTest) -> str:
-    """Return that rests are moments between small slips, a sentence; nothing where they last.
+    """Return the sentence that rests are moments between small slips; '' if they last.
 
     The mass follows the drive across by such slips, and friction turns as in creep without rest.
     """
@@ -167,7 +167,7 @@ def _rests_for_moments(seen: SimulatedTest) -> str:
 
 
 def _rests_while_loaded(seen: SimulatedTest) -> tuple[Indices, Floats]:
-    """Return the loading in which each rest ends, by its number, and how long it lasts, s."""
+    """Return the number of the loading in which each rest ends, and its duration, s."""
     begin, end, rests = seen.table["start"], seen.table["peak_time"], seen.run.stick_intervals
     of = np.searchsorted(begin, rests[:, 1], side="right") - 1
     inside = (of >= 0) & (rests[:, 1] <= end[of])
@@ -175,7 +175,7 @@ def _rests_while_loaded(seen: SimulatedTest) -> tuple[Indices, Floats]:
 
 
 def _long_rest(seen: SimulatedTest) -> float:
-    """Return the longest rest of the loadings on average, s; zero where that is negligible."""
+    """Return the mean of the longest rests of the loadings, s; zero if it is negligible."""
     loadings = seen.table
     if not len(loadings):
         return 0.0
@@ -186,19 +186,19 @@ def _long_rest(seen: SimulatedTest) -> float:
 
 
 def _following(seen: SimulatedTest) -> float:
-    """Return the share of the loading in which the mass is as fast as the drive."""
+    """Return the share of the loading in which the mass moves at the drive's speed."""
     speed = relative_speed(seen.run)[: end_of_loading(seen.record.force) + 1]
     return float((np.abs(speed - 1.0) < CALM).mean())
 
 
 def _moved_while_loaded(seen: SimulatedTest) -> float:
-    """Return the distance that the mass moves until the force is close to its largest value, m."""
+    """Return the mass's displacement until the force is close to its largest value, m."""
     X = seen.run.samples["X"]
     return abs(float(X[end_of_loading(seen.record.force)] - X[0]))
 
 
 def _faster(seen: SimulatedTest) -> str:
-    """Return how long, or by how much, the mass is faster than the drive."""
+    """Return the duration or the excess of speeds above the drive's."""
     if seen.shares.slip:
         return f"For {percent(seen.shares.slip)} it is faster than the drive."
     fastest = float(np.nanmax(relative_speed(seen.run)))
@@ -209,7 +209,7 @@ def _faster(seen: SimulatedTest) -> str:
 
 
 def _share_of_inertia(found: Audit) -> float:
-    """Return the share of a cycle in which the mass gains or loses the drive's speed.
+    """Return the share of a cycle in which the mass accelerates or decelerates.
 
     By (E7) of docs/explanation/estimates.md.
     """

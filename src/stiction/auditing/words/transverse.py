@@ -48,7 +48,7 @@ def transverse(found: Audit) -> tuple[list[str], Table | None]:
 
 
 def _without_creep(found: Audit) -> str:
-    """Return why no transverse oscillation goes on during creep; nothing if one does."""
+    """Return why no transverse oscillation lasts during creep; '' if one does."""
     p, seen = found.prediction, found.observation
     rate = advice(p.sample_rate, "Hz")
     natural = f"The transverse natural frequency is {in_words(p.f_y, 'Hz')}."
@@ -96,7 +96,7 @@ def _without_creep(found: Audit) -> str:
 
 
 def _during_creep(found: Audit, shown: TransverseSwings) -> Iterator[str]:
-    """Yield the oscillation during creep: what becomes of it, and what shows it."""
+    """Yield the sentences on the oscillation during creep: its fate, and its sampling."""
     seen = found.observation
     becomes = _what_becomes(shown)
     yield f"During creep the mass oscillates across the drive in the simulated test{becomes}"
@@ -123,7 +123,7 @@ def _during_creep(found: Audit, shown: TransverseSwings) -> Iterator[str]:
 
 
 def _what_becomes(shown: TransverseSwings) -> str:
-    """Return what becomes of the swings before slip or steady sliding, as the end of a sentence."""
+    """Return the fate of the swings before slip or steady sliding, to end a sentence."""
     first = shown.first.amplitude if shown.first else nan
     last = max((each.amplitude for each in shown.last), default=0.0)
     most = shown.largest.amplitude if shown.largest else last
@@ -137,7 +137,7 @@ def _what_becomes(shown: TransverseSwings) -> str:
 
 
 def _beside_theory(found: Audit, shown: TransverseSwings) -> Table:
-    """Return the simulated swings at both ends of creep beside those of linear theory."""
+    """Return the simulated swings at both ends of creep beside linear theory's."""
     p, k_y = found.prediction, found.slider.k_y
     natural, _ = theoretical_oscillation(found.slider)
     end = "steady sliding" if found.observation.comes_to == SLIDES else "a slip"
@@ -165,7 +165,7 @@ def _beside_theory(found: Audit, shown: TransverseSwings) -> Table:
 
 
 def _range(values: list[float], unit: str) -> str:
-    """Return the range of values in words, or one where they agree to three digits."""
+    """Return the range of values in words; a single value if they agree to three digits."""
     low, high = min(values), max(values)
     if in_words(low, unit, DIGITS) == in_words(high, unit, DIGITS):
         return in_words(low, unit, DIGITS)

@@ -41,7 +41,7 @@ SEEN = {  # kinds of motion, in a sentence
 
 
 def verdict(found: Audit) -> list[str]:
-    """Return whether it is static friction, the motion, and its margin to another one."""
+    """Return the verdict: static friction or not, the motion, its stability and its margin."""
     early = [each for each in (found.observation, found.sliding_on) if not each.run.status.ok]
     doubts = implausible(found.slider.law)
     if early:
@@ -106,23 +106,23 @@ def final_motion(seen: SimulatedTest) -> str:
 
 
 def motion_and_travel(seen: SimulatedTest) -> str:
-    """Return the final motion of a test and, of steady sliding, when and where it is reached."""
+    """Return the final motion of a test; for steady sliding, with its time and travel."""
     motion = final_motion(seen)
     return f"{motion}, reached {time_and_travel(seen)}" if seen.comes_to == SLIDES else motion
 
 
 def time_and_travel(seen: SimulatedTest) -> str:
-    """Return when steady sliding is reached, and how far the drive goes until then, in words."""
+    """Return the time and the drive's travel until steady sliding, in words."""
     return f"after {settling(seen)[0]}, {travel(seen)}"
 
 
 def travel(seen: SimulatedTest) -> str:
-    """Return how far the drive goes until steady sliding is reached, in words."""
+    """Return the drive's travel until steady sliding, in words."""
     return f"on {settling(seen)[1]} of travel"
 
 
 def settling(seen: SimulatedTest) -> tuple[str, str]:
-    """Return when steady sliding is reached, and how far the drive goes until then."""
+    """Return the time and the drive's travel until steady sliding."""
     whole = float(seen.run.samples["time"][-1])
     if isfinite(seen.travel):
         return in_words(seen.settled, "s", ROUGHLY), in_words(seen.travel, "m", ROUGHLY)
@@ -132,7 +132,7 @@ def settling(seen: SimulatedTest) -> tuple[str, str]:
 
 
 def short_rest(seen: SimulatedTest) -> str:
-    """Return how long a mass sticks that slides for most of its cycle of stick-slip, or ''."""
+    """Return the duration of the sticks, if the mass slides for most of each cycle; or ''."""
     named = seen.motion == seen.regime.kind and not seen.regime.loads
     return f", {seen.regime.rests}" if named and seen.regime.rests else ""
 
@@ -160,7 +160,7 @@ def describe_motion(seen: SimulatedTest) -> str:
 
 
 def mean_in_words(values: np.ndarray, unit: str) -> str:
-    """Return a mean over cycles, with its standard error where they differ."""
+    """Return a mean over cycles, with its standard error if they differ."""
     mean, error, _ = statistics(values)
     say = with_error if error > SHOWN_ERROR * mean else to_error
     return say(mean, error, unit)
@@ -226,7 +226,7 @@ def margin(found: Audit) -> str:
 
 
 def where(found: Critical, stable: bool, origin: float = 0.0) -> str:
-    """Return where sliding is stable, or where it is not, with every end inside the range."""
+    """Return the ranges in which sliding is stable, or unstable, without the ends of the search."""
     said = []
     for low, high, kind in found.stretches:
         if kind != stable:
