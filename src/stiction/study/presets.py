@@ -29,7 +29,7 @@ MEASURES = ("regime", "mean_force", "peak_force", "amplitude")
 
 
 def yaw_angle() -> Study:
-    """Return the plane phi x V: misalignment stabilises, up to a speed that depends on it.
+    """Return the plane phi x V: misalignment stabilises up to a drive velocity that depends on it.
 
     phi is the yaw angle of Kado, Tadokoro & Nakano, cited as [22] and [23] by Nakano & Popov.
     """
@@ -99,7 +99,7 @@ def preset(name: str) -> Study:
 
 
 def study(slider: Slider, axes: dict[str, Axis]) -> Study:
-    """Return a study that keeps the measures of the maps; an axis sets the durations."""
+    """Return a study with the measures of the maps; an axis sets the durations."""
     base = Description(slider, Initial(), Settings(duration="5 s"))
     return Study(base=base, axes=axes)
 

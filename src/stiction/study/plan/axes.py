@@ -35,10 +35,10 @@ Spacing = Literal["linear", "log"]
 
 
 class Positional(Described):
-    """Base of axes, which take their fields by position or by name."""
+    """Base of axes, whose fields are given by position or by name."""
 
     def __init_subclass__(cls, *, kw_only: bool = True) -> None:
-        """Take what a type checker must be told: that the fields of a class have places."""
+        """Inform type checkers that a class takes its fields by position."""
 
     def __init__(self, *given: Any, **values: Any) -> None:
         """Read the fields."""

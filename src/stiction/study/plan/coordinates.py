@@ -47,7 +47,7 @@ def unit(base: Description, path: str) -> str:
 
 
 def stated_unit(tables: Mapping[str, Any], path: str) -> str | None:
-    """Return the unit as `unit` does, of tables that need not be valid; None if they do not tell.
+    """Return the unit as `unit` does, of tables that may be invalid; None if it is unknown.
 
     >>> stated_unit({"slider": {"mass": "a pound"}}, "k_x, k_y"), stated_unit({}, "colour")
     ('N/m', None)
@@ -77,12 +77,12 @@ def number(value: Any, unit: str) -> float:
 
 
 def ascending(known: Mapping[str, Coordinate], dim: str) -> Indices:
-    """Return the order in which the values along a dimension ascend: those of `path_along` it."""
+    """Return the order in which the values along a dimension ascend."""
     return np.argsort(known[path_along(known, dim)].values, kind="stable")
 
 
 def path_along(known: Mapping[str, Coordinate], dim: str) -> str:
-    """Return the parameter after which a dimension is named, or else the first along it."""
+    """Return the parameter that gives a dimension its name, or else the first along it."""
     return dim if dim in known else next(path for path in known if known[path].dim == dim)
 
 
@@ -100,7 +100,7 @@ def values_at(
 def nearest(
     known: Mapping[str, Coordinate], dims: Sequence[str], wanted: Mapping[str, Any]
 ) -> tuple[dict[str, int], list[Fault]]:
-    """Return the places along some dimensions that are nearest to wanted values, and the faults."""
+    """Return the indices along some dimensions nearest to wanted values, and the faults."""
     at, found = dict[str, int](), list[Fault]()
     for name, value in wanted.items():
         dim = canonical_path(name)
@@ -123,7 +123,7 @@ def _without_values(dim: str, dims: Sequence[str], known: Mapping[str, Coordinat
 
 
 def beyond(known: Coordinate, wanted: float) -> Iterator[str]:
-    """Say if a value lies beyond those of a study, by more than half of their distance there."""
+    """Yield a message if a value lies more than half a step outside a study's values."""
     values = np.unique(known.values)
     gaps = np.diff(values)
     if len(gaps) and not -gaps[0] <= 2.0 * (wanted - values[0]) <= 2.0 * np.ptp(values) + gaps[-1]:
@@ -132,7 +132,7 @@ def beyond(known: Coordinate, wanted: float) -> Iterator[str]:
 
 
 def vary(base: Description, changes: Mapping[str, tuple[float, str]]) -> Description:
-    """Return a description with other values of some parameters, all of it validated.
+    """Return a description with other values of some parameters, validated as a whole.
 
     Parameters
     ----------
@@ -183,9 +183,9 @@ def values(axis: Axis, its: str, place: int, seed: int) -> Floats:
 
 
 def decimals(values: Floats, off: Floats) -> Floats:
-    """Return values that are at most so far off, as the decimals of few digits that they may be.
+    """Return values rounded to decimals of few digits, if they are as close as `off`.
 
-    Who asks a store for its value at 0.45 means that number, not the one below.
+    A user who asks a store for its value at 0.45 means that number, not the one below.
 
     >>> decimals(np.array([0.45 - 1e-16, 1.0 / 3.0]), np.array([4e-16, 4e-16]))
     array([0.45      , 0.33333333])
@@ -198,7 +198,7 @@ def decimals(values: Floats, off: Floats) -> Floats:
 def coordinate_faults(
     unit_at: Callable[[str], str | None], axes: Mapping[str, Axis], seed: int
 ) -> Iterator[Fault]:
-    """Yield the faults of each axis by itself, and of those along one dimension, below its path.
+    """Yield the faults of each axis, and the contradictions between axes of one dimension.
 
     `unit_at` is `unit` or `stated_unit` of the base; values in a unit that is not known are passed
     over.
@@ -252,7 +252,7 @@ def _unreadable(path: str, axis: Axis, its: str) -> Iterator[Fault]:
 
 
 def zip_faults(axes: Mapping[str, Axis]) -> Iterator[Fault]:
-    """Yield each axis whose length differs from the first axis along its dimension."""
+    """Yield a fault for each axis that is not as long as the first along its dimension."""
     first: dict[str, tuple[str, int]] = {}
     for path, axis in axes.items():
         known, count = first.setdefault(axis.along or path, (path, axis.count))

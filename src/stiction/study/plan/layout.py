@@ -92,7 +92,7 @@ def places(region: Region) -> Iterator[Index]:
 
 
 def size_of(region: Region) -> Index:
-    """Return the number of runs in a region along each dimension."""
+    """Return the number of a region's runs along each dimension."""
     return tuple(part.stop - part.start for part in region)
 
 
@@ -102,7 +102,7 @@ def runs_of(region: Region) -> int:
 
 
 def axis_faults(axes: Mapping[str, Axis]) -> Iterator[Fault]:
-    """Yield each axis whose values do not fit into memory."""
+    """Yield a fault for each axis whose values do not fit into memory."""
     for place, (path, axis) in enumerate(axes.items()):
         # a Sobol sequence is computed with all coordinates up to this one
         columns = COPIES + (2 * (place + 1) if isinstance(axis, Sobol) else 0)
@@ -111,7 +111,7 @@ def axis_faults(axes: Mapping[str, Axis]) -> Iterator[Fault]:
 
 
 def run_faults(layout: Layout, numbers: int, traces: int, samples: int) -> Iterator[Fault]:
-    """Yield what exceeds the memory: the status of all runs, or the blocks being written."""
+    """Yield a fault if the status of all runs, or the unwritten blocks, do not fit into memory."""
     if short := shortage(float(A_RUN) * layout.runs):
         shape = " x ".join(map(str, layout.shape))
         yield Fault("axes", f"{shape} runs: to count them {short}; take fewer values of an axis")

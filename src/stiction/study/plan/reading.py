@@ -31,7 +31,7 @@ def is_description(value: Any) -> Any:
 
 
 def axes_of(value: Any, info: ValidationInfo) -> dict[str, Axis]:
-    """Return axes by their paths; report all of their faults, also with the base, at once."""
+    """Return axes by their paths; report all faults at once, also those with the base."""
     if not isinstance(value, Mapping) or not value:
         raise ValueError("give at least one axis: the path of a parameter, and its values")
     axes, found = read_axes(value)
@@ -43,7 +43,7 @@ def axes_of(value: Any, info: ValidationInfo) -> dict[str, Axis]:
 
 
 def read_axes(value: Any) -> tuple[dict[str, Axis], list[Fault]]:
-    """Return the axes without a fault of their own, by their paths, and the faults of others."""
+    """Return the valid axes by their paths, and the faults of the others."""
     axes, found = dict[str, Axis](), list[Fault]()
     for path, each in value.items() if isinstance(value, Mapping) else ():
         try:
@@ -54,7 +54,7 @@ def read_axes(value: Any) -> tuple[dict[str, Axis], list[Fault]]:
 
 
 def unknown_axes(tables: Mapping[str, Any], value: Any) -> Iterator[Fault]:
-    """Yield a fault for each axis of a parameter that these tables cannot have."""
+    """Yield a fault for each axis whose parameter these tables cannot have."""
     for path in value if isinstance(value, Mapping) else ():
         for name in map(str.strip, str(path).split(",")):
             if not _is_known(tables, name):
@@ -70,7 +70,7 @@ def items_of(value: Any, what: str, known: Collection[str]) -> list[Any]:
 
 
 def measures_of(value: Any) -> tuple[str | OwnMeasure, ...]:
-    """Return distinct measures: names, with old ones replaced, and measures of the user's own."""
+    """Return distinct measures: names, with old ones replaced, and the user's functions."""
     found, faults = list[str | OwnMeasure](), list[str]()
     for each in items_of(value, "measure", MEASURES):
         try:
@@ -94,7 +94,7 @@ def _measure(each: Any) -> str | OwnMeasure:
 
 
 def _clashes(own: Iterable[OwnMeasure]) -> Iterator[str]:
-    """Yield a fault for each name of a user's measure that is taken."""
+    """Yield a fault for each user's measure whose name is taken."""
     for name, count in Counter(each.name for each in own).items():
         if count > 1:
             yield f"{count} measures are called {name}; rename all but one"
@@ -103,7 +103,7 @@ def _clashes(own: Iterable[OwnMeasure]) -> Iterator[str]:
 
 
 def references_of(value: Any) -> Any:
-    """Return measures of a file's list, those of the user's own without their functions."""
+    """Return the measures of a file's list, the user's own without their functions."""
     if not isinstance(value, Sequence) or isinstance(value, str):
         return value
     return [_reference(each) for each in value]
@@ -120,7 +120,7 @@ def _reference(each: Any) -> Any:
 
 
 def with_functions(measures: Any, find: FindMeasure) -> Any:
-    """Return measures of a file's list, with the functions that may be run."""
+    """Return the measures of a file's list, with the functions that may be run."""
     faults, found = Faults(), []
     for each in measures:
         with faults.of_part():
@@ -139,7 +139,7 @@ def traces_of(value: Any) -> tuple[str, ...]:
 
 
 def varied_faults(tables: Mapping[str, Any], changes: Iterable[str]) -> Iterator[Fault]:
-    """Yield a fault for each change of a parameter along an axis, whose values would replace it."""
+    """Yield a fault for each change of a parameter that an axis varies, and would replace."""
     axes = tables.get("axes")
     axes = axes if isinstance(axes, Mapping) else {}
     varied = {

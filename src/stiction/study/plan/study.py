@@ -109,7 +109,7 @@ class Study(Described):
         return self
 
     def _taken_names(self) -> list[Fault]:
-        """Return the measures of the user's own that are called like an axis."""
+        """Return a fault for each user's measure that has the name of an axis."""
         names = {*self.axes, *(axis.along for axis in self.axes.values())}
         own = [each.name for each in self.measures if isinstance(each, OwnMeasure)]
         said = "is the name of an axis, too; give your function another name"
@@ -260,7 +260,7 @@ class Study(Described):
         find_measure: FindMeasure | None = None,
         known: Sequence[Fault] = (),
     ) -> Self:
-        """Read a study from nested tables, as in the TOML file; `known` faults are told too.
+        """Read a study from nested tables, as in the TOML file; `known` faults are reported too.
 
         First come the study's own tables, as code of the user's is not run beside a fault, then the
         base, and then the axes with it.
@@ -285,7 +285,7 @@ class Study(Described):
 
     @classmethod
     def _own_table(cls, own: Any, axes: Any) -> tuple[dict[str, Any], Sequence[Fault]]:
-        """Return the known keys of the table [study], and the faults that it and the axes have."""
+        """Return the known keys of the table [study], and the faults of it and of the axes."""
         if not isinstance(own, Mapping):
             return {}, [Fault("study", f"must be a table [study], is {echo(own)}")]
         places = {"axes": "[axes.phi]", "base": "[slider], [friction], [drive] and [run]"}
@@ -347,13 +347,13 @@ class Study(Described):
 
 
 def _faults_of_axes(unit_at: Callable[[str], str | None], axes: Any) -> list[Fault]:
-    """Return the faults of those axes that are readable."""
+    """Return the faults of the readable axes."""
     found = coordinate_faults(unit_at, read_axes(axes)[0], seed=0)
     return [Fault(f"axes.{fault.path}", fault.message) for fault in found]
 
 
 def _without_function(study: Study) -> list[OwnMeasure]:
-    """Return the measures that may not be run."""
+    """Return the measures without a function that may be run."""
     own = (each for each in study.measures if isinstance(each, OwnMeasure))
     return [each for each in own if each.function is None]
 
@@ -372,7 +372,7 @@ def _in_file(fault: Fault) -> Fault:
 
 
 def study_of(source: Study | str | Path) -> Study:
-    """Return a study as it is, or read it from a file; its measures may be run.
+    """Return a study, the given one or that of a file, all of whose measures may be run.
 
     Raises
     ------

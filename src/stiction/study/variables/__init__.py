@@ -1,1 +1,1 @@
-"""Variables that a study keeps of each run: measures and traces."""
+"""Variables that a study stores of each run: measures and traces."""

@@ -60,11 +60,11 @@ class SwingShapes(NamedTuple):
 
     @property
     def start(self) -> Floats:
-        """Time of the trough before each, s."""
+        """Time of the trough before each swing, s."""
         return np.asarray(self.end - np.cumsum(self.period[::-1])[::-1])
 
     def die_out(self, until: float) -> bool:
-        """Return whether they die out until a time (s): a transient, not cycles."""
+        """Return whether the swings die out until a time (s): a transient, not cycles."""
         return dies_out(self.drop, self.period, until - self.end)
 
     def some(self, which: slice) -> SwingShapes:
@@ -74,7 +74,7 @@ class SwingShapes(NamedTuple):
 
 
 class Circumstances(NamedTuple):
-    """What else the kind of a run's motion depends on.
+    """Further conditions on which the kind of a run's motion depends.
 
     Parameters
     ----------
@@ -117,7 +117,7 @@ def kind_of(
     fast: FastOscillation,
     shares: Shares,
 ) -> str:
-    """Return the kind of motion from features, swings and cycles, and the final fast oscillation.
+    """Return the kind of motion, from features, swings, cycles and the final fast oscillation.
 
     `complete` are all complete swings, of which `cycles_among` finds the cycles.
     """

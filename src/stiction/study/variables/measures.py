@@ -1,4 +1,4 @@
-"""What a study can keep of each run, one line each: numbers with units, and time series."""
+"""Measures and traces that a study can store of each run, one line each."""
 
 from __future__ import annotations
 

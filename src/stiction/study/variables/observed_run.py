@@ -126,7 +126,7 @@ class ObservedRun:
 
     @cached_property
     def resolved(self) -> bool:
-        """Whether the samples show the motion: where there are too few, each follows from the last.
+        """Whether the samples resolve the motion: each sample follows from the one before.
 
         Samples farther apart than a period show a slower motion, which is not there; the force then
         changes by other amounts than its rates tell.
@@ -243,7 +243,7 @@ class ObservedRun:
     def _slip_near(
         self, time: Floats, elongation: Floats, rate: Floats, at: int
     ) -> tuple[float, float]:
-        """Return the time (s) of the longest spring, near a sample, and the way until then (m)."""
+        """Return the time (s) of the longest spring near a sample, and the travel by then (m)."""
         begin, longest = summit(time, elongation, rate, at, self.way)
         travel = self.description.slider.motion.travel(0.0, np.array([begin]))[0][0]
         return float(begin), float(self.way * (travel - longest) - self.positions[0])
@@ -266,7 +266,7 @@ class ObservedRun:
 
     @cached_property
     def until(self) -> float:
-        """When drive or load change after the last swing, or in it, s; else the end."""
+        """The first change of drive or load in or after the last swing, s; else the end."""
         if not len(self.swings.period):
             return self.end
         last = float(self.swings.start[-1])
@@ -309,14 +309,14 @@ class ObservedRun:
         return kind_of(*motion, given, self.fast_oscillation, shares)
 
     def rests(self, cycles: SwingShapes) -> Floats:
-        """Return for which share of each cycle the mass rests or creeps, in one piece."""
+        """Return the share of each cycle in which the mass rests or creeps, in one piece."""
         V = abs(self.nominal)
         slip = self.slip_speed
         peak = cycles.start + cycles.rise_share * cycles.period
         return still_shares(self.time, slip / V if V else slip, cycles.start, peak, cycles.period)
 
     def sticks(self, cycles: SwingShapes) -> Floats:
-        """Return for which share of each cycle the mass sticks."""
+        """Return the share of each cycle in which the mass sticks."""
         peak = cycles.start + cycles.rise_share * cycles.period
         return stick_shares(self.solution.sticks, cycles.start, peak, cycles.period)
 
@@ -324,7 +324,7 @@ class ObservedRun:
 def observe_run(
     description: Description, report: Callable[[float], None] | None, room: Room = np.empty
 ) -> ObservedRun:
-    """Run a description, sampled as measures need it: at least as often as it says."""
+    """Run a description, sampled as densely as measures need, at least as it states."""
     start, duration = description.initial.time, description.run.duration
     slow, fast = description.slider.natural_frequencies
     along = PER_COUPLED_PERIOD * coupled_frequency(description.slider)
@@ -343,16 +343,16 @@ def observe_run(
 
 
 def residual_changes(time: Floats, values: Floats, rates: Floats) -> Floats:
-    """Return the changes between successive samples, (n - 1,), less the mean of their rates."""
+    """Return the changes between samples, (n - 1,), less the integrals of their rates."""
     return np.asarray(np.diff(values) - 0.5 * np.diff(time) * (rates[1:] + rates[:-1]))
 
 
 def coupled_frequency(slider: Slider) -> float:
-    """Return the frequency (Hz) of the mass if friction lets it move only along the drive."""
+    """Return the frequency (Hz) of a mass that friction confines to the drive's direction."""
     stiffness, mass = stiffness_and_mass_along(slider, slider.direction)
     return sqrt(stiffness / mass) / (2.0 * pi)
 
 
 def seconds_of(description: Description) -> float:
-    """Estimate the computing time of a run (s) from that of the paper's per fast period."""
+    """Estimate the computing time of a run (s) from the paper's run, per fast period."""
     return 1e-4 + 0.5e-6 * description.slider.natural_frequencies[1] * description.run.duration

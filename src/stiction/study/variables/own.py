@@ -39,12 +39,12 @@ _GIVEN: dict[tuple[str, str], Callable[..., Any]] = {}  # to studies of this pro
 
 
 class MeasureError(StictionError):
-    """What a user's measure raised in a run, and where."""
+    """An error that a user's measure raised in a run, and its place."""
 
 
 @dataclass(frozen=True)
 class OwnMeasure:
-    """A number that a function of the user's returns for a run.
+    """A number that a user's function returns for a run.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ class OwnMeasure:
     function: Callable[[Trajectory], Any] | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Keep in mind that the function may be run in this process."""
+        """Note that the function may be run in this process."""
         if self.function is not None and self.source is not None:
             _GIVEN[self.reference, self.source] = self.function
 
@@ -86,7 +86,7 @@ class OwnMeasure:
         return said.partition("\n")[0].rstrip(".")
 
     def table(self) -> dict[str, str | None]:
-        """Return the measure as a table, from which a finder makes it again."""
+        """Return the measure as a table, from which a finder restores it."""
         return {"function": self.reference, "source": self.source}
 
     def value(self, run: ObservedRun) -> float:
@@ -110,7 +110,7 @@ class OwnMeasure:
 
 
 def number(value: Any, name: str) -> float:
-    """Return what a measure returned as a number.
+    """Return a measure's value as a number.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def number(value: Any, name: str) -> float:
 
 
 def raised_in(function: Any, error: BaseException) -> str:
-    """Return what a user's function raised, and the last line of its file that led there."""
+    """Return the error that a user's function raised, with the last line of its file."""
     file = inspect.unwrap(function).__code__.co_filename
     lines = [each.lineno for each in extract_tb(error.__traceback__) if each.filename == file]
     place = f"{Path(file.strip('<>')).name}, line {lines[-1]}: " if lines else ""
@@ -134,7 +134,7 @@ def raised_in(function: Any, error: BaseException) -> str:
 
 
 def refusal(reference: str) -> DescriptionError:
-    """Return the error for a measure of a store that may not be run."""
+    """Return the error for a stored measure that may not be run."""
     return MEASURE.fault(
         f"{echo(reference)} is a user's measure, and the code stored with it is not run without "
         f"permission: if you trust the source, allow it: {TRUST}; or sweep the study's own file"
@@ -142,7 +142,7 @@ def refusal(reference: str) -> DescriptionError:
 
 
 def measures_in_folder(folder: Path, trust: bool = False) -> FindMeasure:
-    """Return a finder for measures of a study's file: it runs a file that lies in `folder`.
+    """Return a finder for measures of a study's file, which runs files in `folder` only.
 
     With `trust` the file may lie anywhere.
     """
@@ -158,7 +158,7 @@ def measures_in_folder(folder: Path, trust: bool = False) -> FindMeasure:
 
 
 def measures_of_results(trust: bool = False) -> FindMeasure:
-    """Return a finder for measures of a store: it runs nothing unless `trust` is given.
+    """Return a finder for measures of a store, which runs code only with `trust`.
 
     But for functions that the user has given to a study in this process: a store may name any
     function that is loaded. A measure that may not be run has no function: what it returned can
@@ -179,7 +179,7 @@ def measures_of_results(trust: bool = False) -> FindMeasure:
 
 
 def _measure_in(found: Any, reference: str, names: dict[str, Any]) -> OwnMeasure:
-    """Return the measure of a file, or say that the file has none of this name."""
+    """Return the measure of a file, or raise an error if the file has none of this name."""
     if not isinstance(found, FunctionType):
         own = [key for key, value in names.items() if isinstance(value, FunctionType)]
         name = reference.rpartition(":")[2]
@@ -192,7 +192,7 @@ def _measure_in(found: Any, reference: str, names: dict[str, Any]) -> OwnMeasure
 
 
 def own_measure(function: Any) -> OwnMeasure:
-    """Return the measure that a function is.
+    """Return the measure of a function.
 
     Raises
     ------
@@ -227,7 +227,7 @@ def own_measure(function: Any) -> OwnMeasure:
 
 
 def unit_of(function: Any) -> str:
-    """Return the unit in the annotation of what a function returns; '' for none.
+    """Return the unit in the annotation of a function's result; '' without one.
 
     Raises
     ------

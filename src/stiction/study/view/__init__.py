@@ -1,1 +1,1 @@
-"""Views of a study: cuts, maps, and a summary of how its runs ended."""
+"""Views of a study: cuts, maps, and a summary of its runs."""

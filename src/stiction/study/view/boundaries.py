@@ -88,7 +88,7 @@ def interpolate(values: Floats, places: Floats) -> Floats:
 
 
 def damping_ratio(slider: Slider) -> float:
-    """Return zeta of Eq. (10) at theta = phi; NaN without a steady drive, or misalignment."""
+    """Return zeta of Eq. (10) at theta = phi; NaN without a steady drive or a misalignment."""
     motion, phi = slider.motion, abs(slider.misalignment)
     if not isinstance(motion, ConstantVelocity) or motion.velocity == 0.0 or sin(phi) == 0.0:
         return nan

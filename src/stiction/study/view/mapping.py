@@ -190,7 +190,7 @@ def are_points(view: View) -> bool:
 
 
 def cut(view: View) -> str:
-    """Return the values at which a study is cut, for a title: the nearest ones that it has."""
+    """Return the values at which a study is cut, for a title: the study's nearest ones."""
     known = values_at(view.study.coordinates, view.at)
     values = (f"{parameter_symbol(name)} = {in_words(*its)}" for name, its in known.items())
     return f"at {', '.join(values)}"
@@ -208,7 +208,7 @@ def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
 
 
 def in_order(view: View) -> View:
-    """Return a view whose runs lie in the order of their values, in which a study need not be."""
+    """Return a view with its runs in ascending order of their values."""
     known = view.study.coordinates
     order = {dim: ascending(known, str(dim)) for dim in view.data["status"].dims}
     return view._replace(data=view.data.isel(order))
@@ -241,7 +241,7 @@ def _maps(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
 
 
 def write_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:
-    """Write a legend above the panels, in at most so many columns, not wider than the figure."""
+    """Write a legend above the panels, in at most `columns` columns, within the figure's width."""
     for count in range(columns, 0, -1):
         legend = figure.legend(handles=handles, loc="outside upper center", ncols=count)
         if count == 1 or legend.get_window_extent().width <= figure.bbox.width:
@@ -250,7 +250,7 @@ def write_legend(figure: Figure, handles: Sequence[Any], columns: int) -> None:
 
 
 def measure_in_unit(data: xr.Dataset, name: str) -> tuple[np.ndarray, str]:
-    """Return a measure in a unit that suits its largest value, and its name with that unit."""
+    """Return a measure in a unit that suits its largest value, and its name with the unit."""
     values = data[name].values
     known = np.abs(values[np.isfinite(values)])
     largest = known.max() if len(known) else 1.0

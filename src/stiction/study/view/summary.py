@@ -1,4 +1,4 @@
-"""Summary of how the runs of a study ended."""
+"""Summary of a study's runs: how many succeeded, and why others failed."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from stiction.text.sections import Section, as_html, as_text
 
 
 class Failure(NamedTuple):
-    """A failed run: its coordinates with units, how it ended, and why."""
+    """A failed run: its coordinates with units, its status, and the reason."""
 
     at: Mapping[str, tuple[float, str]]
     end: str
@@ -31,7 +31,7 @@ class Failure(NamedTuple):
 
 
 class Summary(NamedTuple):
-    """How the runs of a study ended.
+    """Numbers of a study's runs by their outcome, and the first failure.
 
     Parameters
     ----------

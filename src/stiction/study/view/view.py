@@ -55,7 +55,7 @@ def view_study(
     trust: bool = False,
     measures: Sequence[str] = (),
 ) -> View:
-    """Return a study with some of its dimensions cut, which has these measures."""
+    """Return a study with some of its dimensions cut, after a check that it has the measures."""
     with opening(path, "is damaged"):
         data = open_study(path)
         study = Study.from_json(data.attrs["description"], trust=trust)
@@ -115,7 +115,7 @@ def broken_changes(path: str | Path) -> list[str]:
 
 
 def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
-    """Return the measures to draw: those given, which `view_study` has found, or its first."""
+    """Return the measures to draw: the given ones, which `view_study` checked, or the first."""
     kept = kept_measures(view.data)
     measures = by_new_names(measures, FORMERLY, "measure")
     if not kept:
@@ -130,7 +130,7 @@ def choose_measures(view: View, measures: Sequence[str]) -> list[str]:
 
 
 def kept_measures(data: xr.Dataset) -> list[str]:
-    """Return the names of the measures that a study kept."""
+    """Return the names of the measures that a study stored."""
     runs = data["status"].dims  # traces have time as well
     return [
         str(name) for name, each in data.data_vars.items() if name not in RUNS and each.dims == runs
@@ -138,7 +138,7 @@ def kept_measures(data: xr.Dataset) -> list[str]:
 
 
 def strange_measures(data: xr.Dataset, measures: Sequence[str]) -> Iterator[Fault]:
-    """Yield a fault for each measure that a study does not have."""
+    """Yield a fault for each measure that a study lacks."""
     kept = kept_measures(data)
     for name in measures:
         if (now := FORMERLY.get(name, name)) in MEASURES and now not in kept:
