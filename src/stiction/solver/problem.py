@@ -292,7 +292,7 @@ def inward(rig: Aligned | General, force: Vector) -> Vector:
 
 @by_type
 def metric(rig: Aligned | General) -> tuple[float, float, float]:
-    """Return the tensor by which the slip speed follows from a slip in the solver's axes."""
+    """Return the tensor that gives the slip speed of a slip in the solver's axes."""
     return rig.metric()
 
 

@@ -99,7 +99,7 @@ class Equations(NamedTuple):
         return a
 
     def use(self, g: np.ndarray, other: np.ndarray) -> float:
-        """Return g.N^-1 other, by which g.N^-1 g = F^2 is the friction limit."""
+        """Return g.N^-1 other; g.N^-1 g = F^2 is the friction limit."""
         return float(g @ np.linalg.solve(self.surface, other))
 
     @property

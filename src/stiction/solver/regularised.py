@@ -36,7 +36,7 @@ class Smoothed(NamedTuple):
     delta: float
 
     def slip_factor(self, square: float) -> tuple[float, float]:
-        """Return h = 1/sqrt(q^2 + delta^2) and -h'/(q h), for q^2 = s.N s."""
+        """Return h(q) and -h'/(q h), where h turns a slip s into friction, for q^2."""
         h = 1.0 / sqrt(square + self.delta * self.delta)
         return h, h * h
 
@@ -75,7 +75,7 @@ SMOOTHED: dict[str, Any] = {"root": Smoothed, "arctan": SmoothedByArctan}
 
 @by_type
 def slip_factor(law: Smoothed, square: float) -> tuple[float, float]:
-    """Return h(q) and -h'/(q h), by which a slip s becomes friction, for q^2."""
+    """Return h(q) and -h'/(q h), where h turns a slip s into friction, for q^2."""
     return law.slip_factor(square)
 
 

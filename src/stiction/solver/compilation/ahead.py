@@ -1,4 +1,4 @@
-"""Compilation of what comes next in a second process, while this one compiles something else.
+"""Compilation of the next function in a second process, while this one compiles another.
 
 The code goes the usual way, over the cache on disk. Nothing depends on the second process: what it
 does not leave there is compiled here.
@@ -28,7 +28,7 @@ def is_compiled(function: Any, kinds: tuple[Any, ...]) -> bool:
 
 
 def compile_beside(function: Any, kinds: tuple[Any, ...]) -> Callable[[], object]:
-    """Begin to compile a `compiled` function for arguments of some types; return what waits for it.
+    """Begin to compile a `compiled` function for some types; return a function that waits.
 
     On a single core nothing is begun.
     """
@@ -56,7 +56,7 @@ def end() -> None:
 
 
 def main() -> None:
-    """Compile what is named on standard input."""
+    """Compile the functions named on standard input."""
     module, name, kinds = pickle.load(sys.stdin.buffer)
     with compiling():
         getattr(import_module(module), name).compile(kinds)

@@ -1,4 +1,4 @@
-"""What must not come between while code is compiled or loaded, or while it runs."""
+"""Delay of interrupts and of the search for garbage while code is compiled, loaded or run."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ class CallingLibrary(JITCodeLibrary):  # type: ignore[misc]
     """The code of a function that calls parts."""
 
     def add_linking_library(self, library: Any) -> None:
-        """Note what is called: a part, or a function of numba's own, which has to be complete."""
+        """Note a called library: a part, or a function of numba's own, which must be complete."""
         if isinstance(library, PartLibrary):
             self._linking_libraries.append(library)
         else:
@@ -28,14 +28,14 @@ class CallingLibrary(JITCodeLibrary):  # type: ignore[misc]
 
     @cached_property
     def called(self) -> dict[Any, None]:
-        """Return all that is called, and what that calls in turn, in a fixed order."""
+        """Return all called libraries, and those that they call in turn, in a fixed order."""
         found: dict[Any, None] = {}
         for each in dict.fromkeys(self._linking_libraries):
             found |= {each: None} | (each.called if isinstance(each, PartLibrary) else {})
         return found
 
     def merge(self) -> None:
-        """Merge all that is called, what calls before what it calls.
+        """Merge all called libraries, each caller before the libraries that it calls.
 
         LLVM leaves out what nothing calls so far.
         """
@@ -45,7 +45,7 @@ class CallingLibrary(JITCodeLibrary):  # type: ignore[misc]
 
 
 def _count_called(library: Any) -> int:
-    """Return how many others a part calls; a function of numba's own holds what it calls."""
+    """Return the number of libraries that a part calls; 0 for numba's own functions."""
     return len(library.called) if isinstance(library, PartLibrary) else 0
 
 
@@ -68,7 +68,7 @@ class PartLibrary(CallingLibrary):
         return self._final_module
 
     def finalize(self) -> None:
-        """Merge what is called, for a caller that is compiled in numba's own way."""
+        """Merge all called libraries, for a caller that is compiled in numba's own way."""
         self.merge()
         self._finalized = True
 
@@ -77,7 +77,7 @@ class EntryLibrary(CallingLibrary):
     """The code of a function that Python calls."""
 
     def finalize(self) -> None:
-        """Merge what is called, and end as any library."""
+        """Merge all called libraries, and finish as any library."""
         self.merge()
         super().finalize()
 

@@ -226,7 +226,7 @@ def _prune(root: Path) -> None:
 
 @cache
 def fingerprint() -> str:
-    """Return a hash of every source file that is compiled, and of what compiles it.
+    """Return a hash of every compiled source file, and of the compiler.
 
     An edit in any of them leads to a new folder, because one compiled function contains code of
     many files.

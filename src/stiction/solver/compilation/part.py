@@ -1,4 +1,4 @@
-"""How a part of the loop is compiled: as far as what calls it needs.
+"""Compilation of a part of the loop, as far as its callers need it.
 
 numba makes machine code of each function by itself, all that it calls included, and does so again
 for whatever calls it. A part is called by compiled code only: it is typed and lowered once, and
@@ -92,7 +92,7 @@ class PartCompiler(CompilerBase):  # type: ignore[misc]
 
 
 def compile_part(part: Any, signature: Any) -> Any:
-    """Compile a part for these types, if it is not yet, and return the key by which it is called.
+    """Compile a part for these types, unless it is compiled, and return its key for calls.
 
     numba's own `Dispatcher.compile`, which holds the compiler's lock already, without a cache and
     without timers, of which each would listen to all parts below.
@@ -107,7 +107,7 @@ def compile_part(part: Any, signature: Any) -> Any:
 
 
 class EntryCompiler(Compiler):  # type: ignore[misc]
-    """numba's compiler, for what calls parts."""
+    """numba's compiler, for functions that call parts."""
 
     def define_pipelines(self) -> list[Any]:
         """Return numba's passes, with the lowering of parts."""

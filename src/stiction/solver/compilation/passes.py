@@ -24,14 +24,14 @@ POWERS = {operator.pow, operator.ipow}  # numba has code of their own for consta
 
 
 class Current:
-    """A context of numba's that is up to date, since what calls the part is being compiled."""
+    """A context of numba's that is up to date, since a caller of the part is being compiled."""
 
     def __init__(self, context: Any) -> None:
         """Store numba's context."""
         self._context = context
 
     def __getattr__(self, name: str) -> Any:
-        """Return what numba's context has under this name."""
+        """Return the attribute of numba's context with this name."""
         return getattr(self._context, name)
 
     def refresh(self) -> None:
@@ -42,7 +42,7 @@ class Remembering(Current):
     """A typing context that types an operator of the same numbers once."""
 
     def __init__(self, context: Any, known: dict[Any, Any]) -> None:
-        """Store numba's context, and what is known so far."""
+        """Store numba's context, and the known signatures."""
         super().__init__(context)
         self._known = known
 
@@ -60,7 +60,7 @@ KNOWN: dict[Any, Any] = {}  # signatures of operators
 
 
 def is_of_numbers(function: Any, args: Any) -> bool:
-    """Return whether a call is that of an operator with numbers."""
+    """Return whether a call applies an operator to numbers."""
     return (
         isinstance(function, types.Function)
         and function.typing_key in OPERATORS
@@ -72,7 +72,7 @@ class PartLower(Lower):  # type: ignore[misc]
     """numba's lowering, which looks for operators of numbers once."""
 
     def lower_binop(self, resty: Any, expr: Any, op: Any) -> Any:
-        """Lower an operator; that of two numbers as its types were inferred."""
+        """Lower an operator; for two numbers, as its types were inferred."""
         context, builder, signature = self.context, self.builder, self.fndesc.calltypes[expr]
         function = context.typing_context.resolve_value_type(op)
         if op in POWERS or not is_of_numbers(function, signature.args):
@@ -113,19 +113,19 @@ class PartLower(Lower):  # type: ignore[misc]
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class EntryLowering(NativeLowering):  # type: ignore[misc]
-    """Lower what calls parts, as parts are lowered."""
+    """Lower functions that call parts, as parts are lowered."""
 
     _name = "entry_lowering"
 
     @property
     def lowering_class(self) -> Any:
-        """Return what lowers a part, or what calls it."""
+        """Return the class that lowers parts and their callers."""
         return PartLower
 
 
 @register_pass(mutates_CFG=True, analysis_only=False)
 class PartLowering(EntryLowering):
-    """Lower a part into a library of its own kind, and enter it among what can be called."""
+    """Lower a part into a library of its own kind, and register it for calls."""
 
     _name = "part_lowering"
 

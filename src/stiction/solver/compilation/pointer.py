@@ -68,7 +68,7 @@ def type_of(law: Any) -> Any:
 
 
 def prepare(kind: Any, entries: tuple[Any, ...], law: Any) -> Prepared:
-    """Return addresses for laws of a type, the size of their fields, and what writes these."""
+    """Return the addresses, the size of fields and their writing function for laws of a type."""
     codes = [
         int(address_of(_for_own(entry, kind), types.CPointer(kind), *entry.kinds))
         for entry in entries

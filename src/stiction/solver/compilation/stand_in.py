@@ -1,4 +1,4 @@
-"""What compiled code calls in the place of a Python function.
+"""Stand-ins: functions that compiled code calls in the place of Python functions.
 
 As `overload` and `register_jitable` of numba, but what is called is a part (see `part`); numba's
 own would be given wrappers that nothing calls.
@@ -21,14 +21,14 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 class PartTemplate:
-    """How numba makes what it calls: a part."""
+    """A template by which numba compiles a stand-in as a part."""
 
     def _get_jit_decorator(self) -> Callable[..., Callable[[Any], Any]]:
         return lambda **options: lambda function: make_part(function, **options)
 
 
 def stand_in(function: Any, **options: Any) -> Callable[[F], F]:
-    """Decorate what chooses, from the types of arguments, the function to be called instead."""
+    """Decorate a function that chooses, by the types of arguments, the one to call instead."""
 
     def register(choose: F) -> F:
         found = make_template(function, choose, options, strict=False, inline="never")

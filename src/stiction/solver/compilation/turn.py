@@ -1,4 +1,4 @@
-"""One process at a time compiles the same code; the others wait, and load what it leaves on disk.
+"""Turns of compilation: one process compiles a code, the others wait and load it from disk.
 
 The lock is a byte in a file of the cache's folder, which the system gives back when a process ends.
 Where a file cannot be locked, every process compiles for itself.

@@ -1,4 +1,4 @@
-"""Steps, and the return map where it pays: what `stiction.solver.integrate` runs by default.
+"""The default method of `stiction.solver.integrate`: steps, and the return map where it pays.
 
 Runs by `multiscale` cost more where little can be mapped: they take shorter steps, and solve cycles
 for patches in vain. So a map is tried only where many cycles are left, and only until it has cost
@@ -30,7 +30,7 @@ LOSS = 0.03
 
 
 class Leg(NamedTuple):
-    """A part of a run in steps, after which one looks at what they did.
+    """A part of a run in steps, after which the method decides on a map.
 
     turns : of the loop, its length; left : of these; start : the state at its start.
     """
@@ -41,7 +41,7 @@ class Leg(NamedTuple):
 
 
 class MapTrial(NamedTuple):
-    """A map that is tried.
+    """A map on trial.
 
     stake : steps that it may cost more than it saves; cycle : steps of a cycle without it; leg :
     turns of the leg before.
@@ -53,10 +53,10 @@ class MapTrial(NamedTuple):
 
 
 class Automatic(Multiscale):
-    """Like `Exact`, and like `Multiscale` from where many cycles are left, while it saves steps."""
+    """Like `Exact`, but like `Multiscale` while many cycles remain and it saves steps."""
 
     def __init__(self, slider: Slider, rtol: float) -> None:
-        """Take the slider and the tolerance."""
+        """Store the slider and the tolerance."""
         super().__init__(slider, rtol)
         self.at: Leg | MapTrial | None = None  # what the run is at
         self.lost = 0  # steps, by maps that did not pay
@@ -106,12 +106,12 @@ class Automatic(Multiscale):
 
 
 def next_leg(turns: int, now: State) -> Leg:
-    """Return the leg after one of so many turns."""
+    """Return the leg after a leg of so many turns."""
     return Leg(2 * turns, 2 * turns, now)
 
 
 def trial(leg: Leg, now: State, end: float, lost: int) -> MapTrial | None:
-    """Return the map that is tried after a leg (M58a), if it is, when `lost` steps are lost."""
+    """Return the map to try after a leg (M58a), or None; `lost` steps are lost so far."""
     lasted, cycles = now.motion.t - leg.start.motion.t, now.counts.sticks - leg.start.counts.sticks
     if cycles < CYCLES:
         return None

@@ -58,7 +58,7 @@ NODE_SHARE = 0.1  # tolerance of a node's steps over that of others; their noise
 
 @inlined
 def add_counts(a: Counts, b: Counts) -> Counts:
-    """Return the counts plus the steps of others, but not their stick intervals."""
+    """Return the counts plus the steps of other counts, without their stick intervals."""
     return Counts(
         a.steps + b.steps,
         a.rejected + b.rejected,
@@ -86,7 +86,7 @@ def solve_cycle(
     longest: float,
     most: int,
 ) -> tuple[bool, Cycle, float, State, int]:
-    """Solve the cycle from an angle, from time zero inside a stick on, in `most` turns at most.
+    """Solve the cycle from an angle, beginning at time zero inside a stick, in `most` turns.
 
     Returns whether it ends within `longest` (s), the cycle, the turn during the stick at its end,
     the final state, and the turns. The record keeps its steps.
@@ -113,7 +113,7 @@ def solve_cycle(
 
 @inlined
 def added_node(coefficients: np.ndarray, n: int, cycle: Cycle, swing: float) -> float:
-    """Add node `n` to the polynomials, and return their error there before (M57).
+    """Add node `n` to the polynomials; return their previous error at this node (M57).
 
     The error of the turn is relative to it and to the stick's turn: it may be zero if cycles
     repeat.
@@ -143,7 +143,7 @@ def chart(
     reach: float,
     longest: float,
 ) -> State:
-    """Add a patch over the angles from `theta` on, or an edge if some do not return.
+    """Add a patch over the angles from `theta` on, or an edge if a cycle does not return.
 
     The returned state includes the cost. A failed attempt leaves its first node to the next attempt
     from the same angle.
@@ -207,7 +207,7 @@ def resolve_motion(
     reach: float,
     longest: float,
 ) -> Counts:
-    """Solve more nodes until the motion inside the cycles of a patch is known too, or give up.
+    """Solve more nodes until a patch's motion inside the cycles is known too, or give up.
 
     Nothing but the samples depends on these nodes. Near an edge they are others than those of the
     patch (see `add_motion`).

@@ -25,7 +25,7 @@ def remember(known: Returns, theta: float, cycle: Cycle) -> None:
 
 @inlined
 def keep_steps(known: Returns, place: int) -> None:
-    """Keep the steps of the last cycle for its place, if there is room; all others go if not."""
+    """Store the steps of the last cycle at its place; without room, discard all others first."""
     rows, kept, spans = known.record.rows, known.inside.kept, known.inside.spans
     count = known.record.used[0]
     spans[place, 1] = 0
@@ -43,7 +43,7 @@ def keep_steps(known: Returns, place: int) -> None:
 
 @inlined
 def nearest(known: Returns, theta: float, longer: bool, than: float) -> tuple[int, int]:
-    """Return the rows of the two cycles that began nearest to an angle; below zero for none.
+    """Return the rows of the two cycles that began nearest to an angle; -1 for none.
 
     They are sought among the cycles that took longer than a time (s), or among the others.
     """
@@ -62,7 +62,7 @@ def nearest(known: Returns, theta: float, longer: bool, than: float) -> tuple[in
 
 @inlined
 def change(known: Returns, i: int, j: int, off: float) -> Cycle:
-    """Return the change of a cycle that begins `off` from row i, on a line to row j."""
+    """Return the change of a cycle that begins `off` from row i, on a line through row j."""
     a, b = known.past[i], known.past[j]
     per = off / (b[0] - a[0])
     return Cycle((b[1] - a[1]) * per, (b[2] - a[2]) * per, (b[3] - a[3]) * per)
@@ -70,7 +70,7 @@ def change(known: Returns, i: int, j: int, off: float) -> Cycle:
 
 @inlined
 def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
-    """Return whether the cycle in a row began at an angle, or a little before it.
+    """Return whether the cycle in a row began at an angle, or slightly before it.
 
     Slightly later is allowed too, if the stick before it would be shorter than the tolerance of
     landing times: its length grows with the square root of the distance to the edge, and was
@@ -85,9 +85,9 @@ def under_way(known: Returns, row: int, theta: float, last: Cycle) -> bool:
 
 @inlined
 def same_end(known: Returns, theta: float, last: Cycle) -> tuple[int, Cycle]:
-    """Return the cycle from an angle, if it ends like the two nearest long ones (M59).
+    """Return the cycle from an angle, if it ends where the two nearest long ones do (M59).
 
-    It comes with the row of the nearest, below zero if it does not.
+    Its row is that of the nearest one; it is -1 if the cycle ends elsewhere.
 
     One of the two must have begun earlier: then the edge, up to which cycles are short, has been
     passed. The nearest cycle is used, minus the turn since its start; a line through both would

@@ -72,7 +72,7 @@ ENDS = np.vander([-1.0, 1.0], PHASES, increasing=True) @ MONOMIALS  # from value
 def write_kept(
     problem: Problem, rows: np.ndarray, i: int, dt: float, samples: np.ndarray, k: int
 ) -> int:
-    """Write the sample `dt` after the start of the kept step `i`; return the next row."""
+    """Write the sample `dt` after the start of the stored step `i`; return the next row."""
     row, motion = rows[i], start_of(rows[i])
     dt = min(max(dt, 0.0), row[SIZE])
     if row[7] == LANDING:
@@ -85,7 +85,7 @@ def write_kept(
 
 @inlined
 def following_step(rows: np.ndarray, i: int, last: int, t: float) -> int:
-    """Return the kept step that contains a time, `i` or a later one."""
+    """Return the stored step that contains a time: step `i` or a later one."""
     while i < last and t > rows[i, 0] + rows[i, SIZE]:
         i += 1
     return i
@@ -111,9 +111,9 @@ FACTORIAL = float(np.prod(np.arange(1, PHASES + 1)))
 def bounds(
     problem: Problem, accuracy: Accuracy, inside: Inside, count: int, closing: float
 ) -> None:
-    """Set the errors that each column of a sample may have: of the springs' forces the patch's.
+    """Set the error bounds of a sample's columns; for the springs' forces, the patch's bound.
 
-    Of velocities and of friction it is that of remembered cycles, or that of the node's steps.
+    The bound of velocities and friction is that of remembered cycles, or that of the node's steps.
     """
     fastest = 0.0
     for m in range(count):
@@ -136,7 +136,7 @@ def phase_of(piece: int, pieces: int, y: float) -> float:
 def evaluate_record(
     problem: Problem, record: StepRecord, window: Window, inside: Inside, pieces: int
 ) -> None:
-    """Evaluate a slip at the points of all pieces, and behind these at their ends."""
+    """Evaluate a slip at the points of all pieces, then at their ends."""
     i, last = 0, record.used[0] - 1
     for p in range(pieces):
         for m in range(PHASES):
@@ -156,7 +156,7 @@ def evaluate_record(
 
 @inlined
 def error_of_phases(inside: Inside, pieces: int) -> float:
-    """Return the error of the pieces at their ends, over its bound: there it is largest."""
+    """Return the error of the pieces at their ends, where it is largest, over its bound."""
     worst = 0.0
     for p in range(pieces + 1):
         own, end = (p - 1, 1) if p > 0 else (0, 0)
@@ -177,7 +177,7 @@ def add_motion(
     window: Window,
     held: float,
 ) -> None:
-    """Add the motion of node `n`, with a stick of `held` (s) behind it, to the patch in the making.
+    """Add the motion of node `n`, after a stick of `held` (s), to the unfinished patch.
 
     Near an edge the time held goes with the root of the distance to it (M55), and so does the
     slip's duration, to which the phase is relative. In that root the motion is smooth. There it
@@ -198,7 +198,7 @@ def add_motion(
 
 @inlined
 def begin_again(known: Returns) -> None:
-    """Forget all nodes but the first of a patch that was not completed: the next is narrower."""
+    """Discard all nodes except the first of an unfinished patch, since the next is narrower."""
     inside = known.inside
     shape = inside.shapes[known.sizes[PATCHES_MADE]]
     shape[NODE_COUNT], shape[RESOLVED] = 0, 1 if shape[PIECE_COUNT] > 0 else 0
@@ -207,7 +207,7 @@ def begin_again(known: Returns) -> None:
 
 @inlined
 def begin_at_edge(known: Returns) -> None:
-    """Set the place of the edge for a patch that ends near one, for nodes in the root (M59b).
+    """Set the place of the edge for a patch that ends near one, with nodes in the root (M59b).
 
     It is where the square of the time held would vanish, beyond the end where that is smaller: of
     the patch's polynomial, or where that has no such place near by, of a line through both ends.
@@ -231,7 +231,7 @@ def begin_at_edge(known: Returns) -> None:
 
 @inlined
 def root_of_place(known: Returns, row: int, x: float) -> float:
-    """Return the root of the distance to the edge, from -1 to 1 over a patch, at a place in it."""
+    """Return the root of the distance to the edge, -1 to 1 over a patch, at a place in it."""
     place, side = known.inside.ends[row]
     far, near = sqrt(side * place + 1.0), sqrt(side * place - 1.0)
     root = sqrt(max(side * (place - x), 0.0))
@@ -240,7 +240,7 @@ def root_of_place(known: Returns, row: int, x: float) -> float:
 
 @inlined
 def place_of_root(known: Returns, row: int, z: float) -> float:
-    """Return the place in a patch that has a root of the distance to the edge."""
+    """Return the place in a patch for a root of the distance to the edge."""
     place, side = known.inside.ends[row]
     far, near = sqrt(side * place + 1.0), sqrt(side * place - 1.0)
     root = 0.5 * (far + near - side * z * (far - near))
@@ -255,7 +255,7 @@ def add_node(
     n: int,
     window: Window,
 ) -> None:
-    """Add the motion of node `n`, of the angle or of the time held.
+    """Add the motion of node `n`, in the angle or in the time held.
 
     The number of pieces is chosen at the first node, none if that is not resolved; if it does not
     resolve a later one, where friction turns faster towards the landing, it is twice as large from
@@ -308,7 +308,7 @@ def resolved_pieces(
 
 @inlined
 def added_motion(inside: Inside, n: int, pieces: int) -> float:
-    """Add the points of node `n` to the polynomials in the angle, and return their error before."""
+    """Add the points of node `n` to the polynomials in the angle; return their error before."""
     x, product, worst, first = POINTS[n], 1.0, 0.0, inside.spans[PAST, 1]
     for i in range(n):
         inside.basis[i] = product
@@ -327,14 +327,14 @@ def added_motion(inside: Inside, n: int, pieces: int) -> float:
 
 @inlined
 def in_progress(known: Returns) -> bool:
-    """Return whether more nodes may still tell the motion inside a patch."""
+    """Return whether more nodes may still resolve the motion inside a patch."""
     shape = known.inside.shapes[known.sizes[PATCHES_MADE]]
     return bool(shape[NODE_COUNT] == 0 and shape[RESOLVED] == 1)
 
 
 @inlined
 def begin_finer(known: Returns) -> bool:
-    """Begin the motion of a patch again if it had too few pieces; return whether it had."""
+    """Begin the motion of a patch again if it had too few pieces; return whether it did."""
     shape = known.inside.shapes[known.sizes[PATCHES_MADE]]
     if shape[PIECE_COUNT] == 0 or shape[NODE_COUNT] > 0 or shape[RESOLVED] == 1:
         return False
@@ -393,7 +393,7 @@ def at_angle(values: np.ndarray, nodes: int, x: float, block: np.ndarray) -> Non
 
 @inlined
 def cubic_of(block: np.ndarray, j: int, y: float, square: float) -> float:
-    """Return the part of a polynomial that four coefficients of a column make."""
+    """Return the partial polynomial from four coefficients of a column."""
     even = block[j] + block[j + 2 * SLIP_COLUMNS] * square
     odd = block[j + SLIP_COLUMNS] + block[j + 3 * SLIP_COLUMNS] * square
     return float(even + odd * y)

@@ -50,7 +50,7 @@ SHORTER = 0.25  # of the steps beside a map: so many more are taken, 1 - STEP_SH
 
 @inlined
 def reach(known: Returns, theta: float, turn: float) -> float:
-    """Return the range of angles from `theta` on for an attempt at a patch.
+    """Return the range of angles from `theta` on to try as a patch.
 
     It is at most half way to an edge, a quarter if the last attempt from here failed, and does not
     overlap another patch unless that is near.
@@ -72,7 +72,7 @@ def reach(known: Returns, theta: float, turn: float) -> float:
 
 @inlined
 def pays(known: Returns, stick: Stick, cycle: Cycle, over: float, t_end: float) -> bool:
-    """Return whether a patch over some angles pays, judged by the last cycle.
+    """Return whether a patch over some angles pays, by the cost of the last cycle.
 
     It must replace enough cycles, there must be room for it, few nodes may have been wasted, and
     the map may still cost some steps.
@@ -102,7 +102,7 @@ def with_sticks(counts: Counts, sticks: int, stuck: float) -> Counts:
 
 @inlined
 def known_cycle(known: Returns, theta: float, last: Cycle) -> tuple[bool, Cycle, int]:
-    """Return whether the cycle from an angle is known, the cycle, and the past one like it."""
+    """Return whether the cycle from an angle is known, the cycle, and the similar past one."""
     row, x = locate(known, theta)
     if row >= 0:
         return True, cycle_from(known, row, x), -1

@@ -27,10 +27,10 @@ _compiled_beside: dict[tuple[Any, ...], Callable[[], object]] = {}
 
 
 class Multiscale(Exact):
-    """Like `Exact`, but many cycles at once where the return map is smooth."""
+    """Like `Exact`, but with many cycles at once where the return map is smooth."""
 
     def __init__(self, slider: Slider, rtol: float) -> None:
-        """Take the slider and the tolerance."""
+        """Store the slider and the tolerance."""
         super().__init__(slider)
         self.rtol = rtol
         self.span = -inf, inf  # s; start and end of the run

@@ -25,7 +25,7 @@ SAME = 1e-3  # of a slip: landings closer than this are the same
 
 @inlined
 def stick_of(problem: Problem, motion: Motion) -> Stick:
-    """Return the stick that begins at a landing; its angle is NaN if it does not stick."""
+    """Return the stick that begins at a landing; its angle is NaN if the mass does not stick."""
     t, u_x, u_y = motion.t, motion.u_x, motion.u_y
     duration, _ = stick_duration(problem, t, u_x, u_y, inf)
     if not 0.0 < duration < inf:
@@ -90,7 +90,7 @@ def sample_cycle(
 
 @inlined
 def alike(known: Returns, place: int, theta: float) -> bool:
-    """Return whether the steps of a remembered cycle tell the motion of one from an angle.
+    """Return whether the steps of a remembered cycle represent those of one from an angle.
 
     The angle of the force at the take-off differs by the patches' error at most.
     """
@@ -112,7 +112,7 @@ def sample_remembered(
     samples: np.ndarray,
     k: int,
 ) -> int:
-    """Fill the samples of a stick and the slip until `landing` (s), by the steps of another.
+    """Fill the samples of a stick and the slip until `landing` (s), from another cycle's steps.
 
     The phase is the time since take-off over the slip's duration.
     """

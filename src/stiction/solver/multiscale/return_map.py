@@ -1,4 +1,4 @@
-"""The return map: from the end of a stick to the end of the next.
+"""The return map: from the end of one stick to the end of the next.
 
 While drive and load are steady, one angle determines the state at the end of a stick (see
 `section`), and thus all that follows until the end of the next stick (M53). Where this function is
@@ -43,7 +43,7 @@ RESOLVED = FIRST_PIECE  # while a patch is made
 
 
 class Cycle(NamedTuple):
-    """From the end of one stick to that of the next: turn of the angle, time, time held (s)."""
+    """From the end of one stick to the next: turn of the angle, time, time held (s)."""
 
     turn: float
     time: float
@@ -59,7 +59,7 @@ class Stick(NamedTuple):
 
 
 class Inside(NamedTuple):
-    """The motion inside cycles (see `inside`), and inside those that are remembered.
+    """The motion inside the cycles of patches (see `inside`) and inside remembered cycles.
 
     values : of pieces of patches, by node, and by phase and column of a sample; shapes : of each
     patch the number of pieces, that of nodes, its first piece, or while it is made whether it is

@@ -45,7 +45,7 @@ def elongation_held(problem: Problem, theta: float) -> tuple[float, float]:
 
 @inlined
 def lead(problem: Problem, theta: float) -> float:
-    """Return the largest time between a stick's start and its end at an angle; 0 if none.
+    """Return the longest time by which a stick's start precedes its end at an angle; 0 if none.
 
     It covers half of the chord of a in the ellipse (M54).
     """

@@ -1,4 +1,4 @@
-"""The loop in steps, as a map calls it: at the address of its machine code.
+"""The loop in steps as the map calls it: at the address of its machine code.
 
 So it is compiled once, for runs in steps and for the map; and both are the same to the last bit.
 """
@@ -71,7 +71,7 @@ def take_steps(
     sticks: np.ndarray,
     known: Returns,
 ) -> tuple[int, State, int, int]:
-    """Do as `stiction.solver.exact.loop.take_steps`; the map's record keeps the steps."""
+    """Do the work of `exact.loop.take_steps`; the map's record stores the steps."""
     others = state, t_end, accuracy, budget, times, samples, k, sticks, known.record
     code, now, k, turns = call(known.steps, problem, others)
     return code, state_from_plain(now), k, turns

@@ -37,7 +37,7 @@ def follow_patches(
     samples: np.ndarray,
     k: int,
 ) -> tuple[Stick, Cycle, int, float, int]:
-    """Follow the patches from a stick until they end, time `until` (s) is reached, or room ends.
+    """Follow the patches from a stick until they, the time `until` (s) or the room ends.
 
     They end as well where samples are wanted of a cycle whose motion is not known. This is a
     separate function so that the loop has all registers: long runs spend most time here.

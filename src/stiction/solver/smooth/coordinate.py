@@ -30,7 +30,7 @@ def series(x: float, ratios: tuple[float, float, float, float, float]) -> float:
 
 
 class SlipAndSlope(NamedTuple):
-    """Slip velocity (m/s) and its derivative by q (M65), of which yx is xy (m/s)."""
+    """Slip velocity (m/s) and its derivative by q (M65), which is symmetric (m/s)."""
 
     x: float
     y: float
@@ -41,7 +41,7 @@ class SlipAndSlope(NamedTuple):
 
 @inlined
 def slip_and_slope(eps: float, q_x: float, q_y: float) -> SlipAndSlope:
-    """Return the slip velocity and its derivative, which share an exponential."""
+    """Return the slip velocity and its derivative, from one exponential."""
     if eps == inf:
         return SlipAndSlope(q_x, q_y, 1.0, 0.0, 1.0)
     square = q_x * q_x + q_y * q_y
@@ -67,7 +67,7 @@ def slip_at(eps: float, q_x: float, q_y: float) -> tuple[float, float]:
 
 @inlined
 def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
-    """Return q at a slip velocity (m/s)."""
+    """Return q for a slip velocity (m/s)."""
     if eps == inf:
         return s_x, s_y
     s = abs(s_x) if s_y == 0.0 else hypot(s_x, s_y)  # the square may underflow
@@ -77,7 +77,7 @@ def coordinate(eps: float, s_x: float, s_y: float) -> tuple[float, float]:
 
 @inlined
 def damped_rise(q: float, rise: float, share: float) -> float:
-    """Return |q| after a damped update by `rise` > 0 (M69); `share` is that of inertia.
+    """Return |q| after a damped update by `rise` > 0 (M69), given the share of inertia.
 
     In Newton's equations inertia is exponential in q, and friction about linear in it. The plain
     update would be right if both were linear; this function solves

@@ -25,7 +25,7 @@ State = tuple[float, ...]
 
 
 class PointedSmoothLaw(NamedTuple):
-    """A law as the smooth solver takes it: compiled functions, and its fields.
+    """A law in the form that the smooth solver calls: compiled functions, and its fields.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class PointedSmoothLaw(NamedTuple):
 
 
 class Place(NamedTuple):
-    """Where a law is evaluated: slip (m/s), load (N), 1/mass, internal states; and the row."""
+    """The arguments of a law: slip (m/s), load (N), 1/mass, internal states; and the row."""
 
     slip: Vector
     load: float
@@ -64,7 +64,7 @@ class LawRows(NamedTuple):
 
 
 def point_to_smooth_law(law: Any) -> PointedSmoothLaw:
-    """Return a law as the smooth solver takes it."""
+    """Return a law in the form that the smooth solver calls."""
     plain = np.array([True, True, *(state.unit == "1" for state in states(law))])
     own = friction_and_changes_at if states(law) else friction_at
     code, grain_code, fields = code_and_fields(law, own, grain_at)
@@ -105,7 +105,7 @@ def friction_and_changes(
 
 @inlined
 def grain_of(law: PointedSmoothLaw, values: np.ndarray, i: int) -> float:
-    """Return the slip speed below which friction is proportional to it, at a row's states."""
+    """Return the slip speed below which friction is proportional to it, at the states of a row."""
     found: float = call_grain(law.grain_code, law.fields, (values, i))
     return found
 
@@ -122,7 +122,7 @@ call_grain: Any = caller(types.float64, *GRAIN)
 
 @entry_by_address(*FRICTION)
 def friction_at(law: Any, s_x: float, s_y: float, load: float, per_mass: float) -> Friction:
-    """Do as `friction_and_changes` for the law without states at a pointer."""
+    """Do the work of `friction_and_changes` for the law without states at a pointer."""
     f, g, xx, xy, yx, yy = friction_and_gradient(pointee(law), (s_x, s_y), load)
     m = per_mass
     return f * m, g * m, xx * m, xy * m, yx * m, yy * m
@@ -142,7 +142,7 @@ def friction_and_changes_at(
     jacobian: np.ndarray,
     size: np.ndarray,
 ) -> Friction:
-    """Do as `friction_and_changes` for the law with states at a pointer."""
+    """Do the work of `friction_and_changes` for the law with states at a pointer."""
     found: Any = pointee(law)
     at = Place((s_x, s_y), load, per_mass, states_in(found, values, i), i)
     rows = LawRows(values, changes, jacobian, size)
@@ -155,7 +155,7 @@ def friction_and_changes_at(
 
 @entry_by_address(*GRAIN)
 def grain_at(law: Any, values: np.ndarray, i: int) -> float:
-    """Do as `grain_of` for the law at a pointer."""
+    """Do the work of `grain_of` for the law at a pointer."""
     found: Any = pointee(law)
     return max(grain(found, states_in(found, values, i)), FINEST_GRAIN)
 
@@ -176,7 +176,7 @@ def write_gradient(law: Any, at: Place, rows: LawRows) -> None:
 
 
 def own_gradient(law: Any, at: Place, rows: LawRows) -> None:
-    """Do as `write_gradient` for a law that gives its derivatives."""
+    """Do the work of `write_gradient` for a law that provides its derivatives."""
     own = gradient(law, at.slip, at.load, at.z)
     for j in range(len(rows.size)):
         for k in range(len(rows.size)):
@@ -184,7 +184,7 @@ def own_gradient(law: Any, at: Place, rows: LawRows) -> None:
 
 
 def differences(law: Any, at: Place, rows: LawRows) -> None:
-    """Do as `write_gradient` for any other."""
+    """Do the work of `write_gradient` for other laws, by finite differences."""
     i, trial, changes = at.i, rows.values[TRIAL], rows.changes
     for k in range(len(rows.size)):  # not trial[:] = values[i]: see `smooth.loop.keep`
         trial[k] = rows.values[i, k]

@@ -1,4 +1,4 @@
-"""Elimination of internal states from linear equations, which leaves equations of the slip alone.
+"""Elimination of internal states from linear equations, leaving equations for the slip.
 
 The unknowns are slip x and y and the states z, each at three stages, so that the coefficients of
 one unknown in one equation are a block of 3 by 3 (M68). The states' own blocks need no pivots:
@@ -20,7 +20,7 @@ Equations = tuple[float, float, float, float, float, float]
 
 @inlined
 def block(w: Workspace, i: int, j: int) -> Matrix:
-    """Return a block of the equations."""
+    """Return one block of the equations."""
     m = w.blocks[i, j]
     return (m[0], m[1], m[2]), (m[3], m[4], m[5]), (m[6], m[7], m[8])
 
@@ -102,7 +102,7 @@ def enter(w: Workspace, k: int, x: Triple) -> None:
 
 @inlined
 def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Triple, Triple]:
-    """Return the residuals of slip x and y after eliminating those of the states (M67)."""
+    """Return the slip's residuals x and y after eliminating the states' residuals (M67)."""
     enter(w, X, x)
     enter(w, Y, y)
     for k in range(w.size.shape[0] - 1, 1, -1):
@@ -120,7 +120,7 @@ def residuals_without(h: float, x: Triple, y: Triple, w: Workspace) -> tuple[Tri
 
 @inlined
 def correct_states(x: Triple, y: Triple, w: Workspace) -> float:
-    """Correct the states at the stages for a correction of slip; return the largest correction.
+    """Correct the states at the stages for a correction of slip; return the largest change.
 
     It is relative to the states' sizes.
     """
@@ -171,7 +171,7 @@ def slip_without_states(
 
 @inlined
 def correct_states_inside(x: float, y: float, w: Workspace) -> float:
-    """Correct the states inside a step as `correct_states` does at the stages."""
+    """Correct the states inside a step, as `correct_states` does at the stages."""
     r, size = w.right, 0.0
     r[0, 0], r[1, 0] = x, y
     for k in range(2, w.size.shape[0]):

@@ -1,4 +1,4 @@
-"""The inside of a step: the collocation cubic, its error, and the error where friction is stiff.
+"""The collocation cubic inside a step: its error, also where friction is stiff.
 
 The cubic through the start and the stages misses the equations by a defect, which goes as
 pi(c) = (c - c_1)(c - c_2)(c - 1); so its error goes as the integral of pi. Where friction
@@ -62,10 +62,10 @@ class Within(NamedTuple):
 
 
 class Balanced(NamedTuple):
-    """The slip velocity (m/s) at which forces balance at a point of a step, and whether it is one.
+    """The slip velocity (m/s) that balances the forces at a point of a step, and its validity.
 
-    Then by how much slower it would be, had the mass slid further, and how much of it may be what
-    the rounding of forces makes.
+    `slower` is the decrease of this velocity if the mass had slid further, `rounding` a bound of
+    its part that is due to the rounding of forces.
     """
 
     found: bool
@@ -76,7 +76,7 @@ class Balanced(NamedTuple):
 
 @inlined
 def within(w: Workspace, c: float) -> Within:
-    """Return the polynomials at `c`; write those of the states."""
+    """Return the polynomials of slip at `c`; write those of the states."""
     v = w.values
     x0, x1, x2, x3 = v[START, 0], v[1, 0], v[2, 0], v[3, 0]
     y0, y1, y2, y3 = v[START, 1], v[1, 1], v[2, 1], v[3, 1]
@@ -95,7 +95,7 @@ def within(w: Workspace, c: float) -> Within:
 
 @inlined
 def less_error(w: Workspace, p: Within, c: float) -> Within:
-    """Return the polynomials at `c` less their estimated error; the distance slid is as it is."""
+    """Return the polynomials of slip at `c` less their estimated error; keep the distance slid."""
     e1, e2, e3, e4 = ERROR
     shape = c * (e1 + c * (e2 + c * (e3 + c * e4)))
     slope = e1 + c * (2.0 * e2 + c * (3.0 * e3 + c * 4.0 * e4))
@@ -193,7 +193,7 @@ def distance_error(w: Workspace) -> tuple[float, float]:
 def local_error(
     problem: Problem, start: SmoothOutset, h: float, w: Workspace, accuracy: Accuracy
 ) -> float:
-    """Return the relative error of the step's cubic, and write the error itself.
+    """Return the relative error of the step's cubic; write the error itself.
 
     It is relative to the slip, or to the motion about steady sliding if that is slower; slip that
     the rounding of forces makes is not an error (M70c). Where slip follows the springs, the cubic

@@ -58,7 +58,7 @@ COARSEST = 1e12  # of the slip speed that is resolved: a slip coordinate that is
 
 
 class Begun(NamedTuple):
-    """A step's start, its slip coordinate, friction and slip speed; then what `moving` returns."""
+    """The start of a step: slip coordinate, friction, slip speed, and the scales by `moving`."""
 
     start: SmoothOutset
     q_x: float
@@ -112,7 +112,7 @@ def motion_at_end(
 
 @inlined
 def steady(w: Workspace, left: float) -> bool:
-    """Return whether the states at a step's start are about those of steady sliding.
+    """Return whether the states at a step's start are nearly those of steady sliding.
 
     They would change by less than a hundredth of their scale until they forget, or until the end.
     """
@@ -134,7 +134,7 @@ def finite(motion: SmoothMotion, z: np.ndarray) -> bool:
 
 @inlined
 def keep(w: Workspace, z: np.ndarray, past: np.ndarray) -> None:
-    """Keep the states at the end of a step, and the values that predict the next.
+    """Store the states at the end of a step, and the values that predict the next.
 
     By number: an assignment of arrays takes 4 s to compile, for the words of its own errors.
     """
@@ -158,7 +158,7 @@ def take_steps(
     w: Workspace,
     inner: Workspace,
 ) -> tuple[int, Numbers, int, int]:
-    """Advance like `advance`, until the longest step is asked for; then `w` has the rates."""
+    """Advance like `advance`, until the longest step is needed; then `w` has the rates."""
     motion, z, memory, counts = state
     past = memory.past
     h, h_last, warm = min(memory.h, accuracy.longest), memory.h_last, memory.warm

@@ -94,7 +94,7 @@ class Smooth:
         return [u_x, u_y, s_x, s_y, *f, 0.0, *z]
 
     def rates(self, problem: Problem, state: SmoothState) -> Floats:
-        """Return the matrix of a small disturbance, which the loop wrote before it asked."""
+        """Return the matrix of a small disturbance, which the loop wrote before it paused."""
         return self.rooms[0].rates
 
     def point_law(self, problem: Problem) -> Problem:

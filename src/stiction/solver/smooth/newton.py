@@ -110,7 +110,7 @@ def stages_at(
 
 @inlined
 def block(m: Matrix, by: Triple, h: float, friction: Triple) -> Matrix:
-    """Return the block of one axis by one component of q (M68): inertia and springs, friction."""
+    """Return the block of one axis by one component of q (M68): inertia, springs and friction."""
     a, b, c = m
     x, y, z = by
     linear_part = (
@@ -168,7 +168,7 @@ class Corrected(NamedTuple):
 def correct(
     start: SmoothOutset, share: float, speed: float, q_x: float, q_y: float, d_x: float, d_y: float
 ) -> Corrected:
-    """Return q less a correction, damped by (M69) where it is logarithmic."""
+    """Return q less a correction, damped by (M69) where q is logarithmic."""
     q, d = sqrt(q_x * q_x + q_y * q_y), sqrt(d_x * d_x + d_y * d_y)
     q_x, q_y = q_x - d_x, q_y - d_y
     if start.eps == inf:
@@ -183,7 +183,7 @@ def correct(
 
 @inlined
 def larger(a: float, b: float) -> float:
-    """Return the larger of two numbers, or NaN if one is."""
+    """Return the larger of two numbers; NaN if one is NaN."""
     return a if not a <= b else b
 
 
@@ -197,7 +197,7 @@ def solve(
     w: Workspace,
     accuracy: Accuracy,
 ) -> tuple[bool, int]:
-    """Solve the collocation equations from a guess of q, and of the states in the stages' rows.
+    """Solve the collocation equations, starting from guesses of q and of the states in the rows.
 
     Returns
     -------

@@ -75,7 +75,7 @@ class Point(NamedTuple):
 
 
 class Stages(NamedTuple):
-    """The same at the three stages of a step."""
+    """Slip velocity (m/s) and friction over mass (m/s^2) at the three stages of a step."""
 
     s_x: Triple
     s_y: Triple
@@ -92,7 +92,7 @@ class Stages(NamedTuple):
 
 @inlined
 def pull(problem: Problem, start: SmoothOutset, dt: float) -> Pull:
-    """Return the forces `dt` after the step's start, as if there were no slip since."""
+    """Return the forces `dt` after the step's start for a mass without slip since then."""
     d_x, d_y = drive_travel(problem, start.t, dt)
     a_x, a_y = holding(problem, start.t + dt, start.u_x + d_x, start.u_y + d_y)
     return Pull(a_x, a_y, at(problem.load, start.t + dt))
@@ -208,7 +208,7 @@ def moving(
 
 @inlined
 def slowest(h: float, w: Workspace, speed: float) -> float:
-    """Return the slip speed (m/s) that counts in a step of `h`, at most `speed` (M70a).
+    """Return the scale of the slip's error (m/s) in a step of `h`, at most `speed` (M70a).
 
     By slipping as fast, over the step or as long as it remembers, a state changes by its scale.
     """
@@ -223,7 +223,7 @@ def slowest(h: float, w: Workspace, speed: float) -> float:
 
 @inlined
 def measure(problem: Problem, load: float, w: Workspace) -> None:
-    """Write the scales of the internal states' errors, from the row `START`.
+    """Write the error scales of the internal states, from the row `START`.
 
     A scale is the state itself plus the change of it that changes the friction coefficient by
     `NOTICED`; this change counts as 1 at most if the state has no unit.

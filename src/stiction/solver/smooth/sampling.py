@@ -98,7 +98,7 @@ def write(
     samples: np.ndarray,
     k: int,
 ) -> None:
-    """Write one row, but for the states."""
+    """Write one row except the states."""
     m, row, c = problem.system.mass, samples[k], cross_damping(problem.rig)
     row[0], row[1], row[2], row[3] = u_x, u_y, slip[0], slip[1]
     row[4], row[5], row[6] = friction[0] * m - c * slip[1], friction[1] * m - c * slip[0], 0.0

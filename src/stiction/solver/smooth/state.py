@@ -52,7 +52,7 @@ Numbers = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
 
 @called_from_both
 def with_numbers(state: SmoothState, numbers: Numbers) -> SmoothState:
-    """Return the state with the arrays that it has, and these of motion, memory and counts."""
+    """Return the state with the same arrays, and new motion, memory and counts."""
     motion, (h, h_last, ease, warm, limit), counts = numbers
     memory = SmoothMemory(h, h_last, ease, warm, state.memory.past, limit)
     return SmoothState(SmoothMotion(*motion), state.internal, memory, Counts(*counts))

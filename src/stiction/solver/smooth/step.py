@@ -72,10 +72,10 @@ def remember(w: Workspace, past: np.ndarray, eps: float) -> None:
 
 @inlined
 def resting(w: Workspace, q_x: float, q_y: float) -> bool:
-    """Return whether the slip at a step's start is one in which a smoothed law holds the mass.
+    """Return whether the slip at a step's start is so slow that a smoothed law holds the mass.
 
-    There the slip follows the force. What Newton's method leaves of its error is small beside the
-    drive's speed but not beside delta; continued over a longer step it is a guess out of reach.
+    There the slip follows the force. The remaining error of Newton's method is small beside the
+    drive's speed, but not beside delta; extrapolated over a longer step it is a useless guess.
     """
     slowest = HELD * w.size[0]
     return bool(w.size.shape[0] == 2 and q_x * q_x + q_y * q_y < slowest * slowest)
@@ -83,7 +83,7 @@ def resting(w: Workspace, q_x: float, q_y: float) -> bool:
 
 @inlined
 def turn_back(w: Workspace, accuracy: Accuracy) -> float:
-    """Return where in the step slip turns back through rest; 1 if it does not, at the end.
+    """Return the place in the step where slip turns back through rest; 1, its end, if nowhere.
 
     The rate of a state has a kink there, in |s|, and a step across it the error of a lower order.
     """

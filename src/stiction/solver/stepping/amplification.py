@@ -1,4 +1,4 @@
-"""What becomes of small disturbances of steady sliding, and the longest step that shows it.
+"""The growth of small disturbances of steady sliding, and the longest step that shows it.
 
 Stiffly accurate methods damp what a step is too long to resolve, a growing oscillation as well. A
 run that comes to steady sliding within rounding would rest there whatever its modes do. There the
@@ -161,7 +161,7 @@ def longest_step(rates: Floats, h: float, left: float) -> float:
 
 
 def slow_modes(rates: Floats, h: float) -> Complex:
-    """Return the eigenvalues (1/s) of a matrix of rates, but those far beyond 1/h.
+    """Return the eigenvalues (1/s) of a matrix of rates, except those far beyond 1/h.
 
     They are those of the inverse of 1 - h J, in which the slow modes are large: friction may be so
     stiff that in J itself they are below rounding.

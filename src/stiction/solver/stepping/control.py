@@ -1,4 +1,4 @@
-"""What both solvers ask of Newton's method, and how the error of a step sets the next one's size.
+"""Newton's end and failure in both solvers, and the next step's size from a step's error.
 
 Newton's method is Hairer & Wanner, Solving Ordinary Differential Equations II, section IV.8; the
 control of step sizes is Gustafsson's, ACM Trans. Math. Softw. 20 (1994), 496.
