@@ -1,4 +1,4 @@
-"""What a page may ask for, by name, and the answers: heads and arrays.
+"""The requests of a page, by name, and the answers: heads and arrays.
 
 An answer comes in parts, each better than the one before; ``check`` ends it when nobody waits for
 it any more. A new request is a function here and a line in `ANSWERS`.
@@ -57,7 +57,7 @@ def answer(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
 
 
 def start(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
-    """Yield what the page needs once: its form, its menus, and the system that it opens."""
+    """Yield the page's initial data: its form, its menus, and the system that it opens."""
     study = None if opened.study is None else study_map(opened)
     head = {
         "version": stiction.__version__,
@@ -89,7 +89,7 @@ def columns(request: Request) -> int:
 
 
 def run(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
-    """Yield the whole run, and the parameters in SI, by which the page sets its sliders."""
+    """Yield the whole run, and the parameters in SI, which set the page's sliders."""
     description = description_in(opened, request)
     for head, arrays in motion.run(description, columns(request), check):
         yield {**head, "values": description.to_dict()}, arrays
@@ -188,7 +188,7 @@ def pick(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
 
 
 def file(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
-    """Yield a file to keep."""
+    """Yield a file to download."""
     kind = str(request.get("kind"))
     if kind not in NAMES:
         raise StictionError(f"no export {echo(kind)}; known: {', '.join(NAMES)}")
@@ -197,7 +197,7 @@ def file(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
 
 
 def study_map(opened: Opened) -> Reply:
-    """Return the map of a study: the colour of each run as in its figure, and what colours mean."""
+    """Return the map of a study: the colour of each run as in its figure, and their meaning."""
     from stiction.plotting.shades import (
         COLORS,
         NO_RESULT,

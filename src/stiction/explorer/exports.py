@@ -1,4 +1,4 @@
-"""What a page takes away: the description, the lines of Python, the data, the figure."""
+"""Exports of a page: the description, the lines of Python, the data, the figure."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def export(description: Description, kind: str, check: Check) -> tuple[str, byte
 
 
 def content(name: str, write: Callable[[Path], list[Path]]) -> bytes:
-    """Return what is written to a file, or the archive of several."""
+    """Return the content of a file, or the archive of several."""
     with TemporaryDirectory() as folder:
         paths = write(Path(folder) / name)
         if len(paths) == 1:

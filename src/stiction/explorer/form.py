@@ -87,7 +87,7 @@ def first_line(kind: Any) -> str:
 
 
 def fields(table: Mapping[str, Any], owner: Any, level: str = "") -> list[Field]:
-    """Return the fields of a table; `level` is the unit of what its program is of."""
+    """Return the fields of a table; `level` is the unit of the quantity that its program varies."""
     hints = hints_of(owner)
     found = []
     for key, part in table["properties"].items():
@@ -140,7 +140,7 @@ def bounds(part: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def alternatives(part: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """Return a schema and all those that it may be instead."""
+    """Return a schema and all of its alternatives."""
     found = [part]
     for each in part.get("anyOf", ()):
         found += alternatives(each)

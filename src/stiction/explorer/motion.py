@@ -243,7 +243,7 @@ def as_track(table: ColumnTable) -> Arrays:
 
 
 def about(description: Description, solution: Solution, table: ColumnTable) -> dict[str, Any]:
-    """Return what is to be read beside the curves, and what the drawing needs to know."""
+    """Return the text beside the curves, and the data for drawing."""
     slider = description.slider
     status = STATUSES[solution.code]
     velocity = nominal_velocity(slider.motion)

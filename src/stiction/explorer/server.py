@@ -49,7 +49,7 @@ class Explorer:
     """The server, and the pages that it serves."""
 
     def __init__(self, opened: Opened, *, ends: bool = False) -> None:
-        """Take what is explored; `ends` says whether it ends with its last page."""
+        """Store the explored source; `ends` says whether the server ends with its last page."""
         self.token = token_urlsafe(18)
         self._opened, self._ends = opened, ends
         self._pages: set[ServerConnection] = set()

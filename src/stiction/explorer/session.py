@@ -35,10 +35,10 @@ class Superseded(Exception):
 
 
 class Lane:
-    """A line of requests of one kind, of which the newest is answered."""
+    """A queue of requests of one kind, in which only the newest is answered."""
 
     def __init__(self, opened: Opened, send: Send) -> None:
-        """Take what is explored, and where the answers go."""
+        """Store the explored source, and the receiver of the answers."""
         self._opened, self._send = opened, send
         self._waiting: Request | None = None
         self._current = -1
@@ -103,15 +103,15 @@ def following(replies: Iterator[Reply], check: Callable[[], None]) -> Reply | No
 
 
 class Session:
-    """What one page asks for."""
+    """The requests of one page."""
 
     def __init__(self, opened: Opened, send: Send) -> None:
-        """Take what is explored, and where the answers go."""
+        """Store the explored source, and the receiver of the answers."""
         self._opened, self._send = opened, send
         self._lanes: dict[tuple[str, int], Lane] = {}
 
     def receive(self, text: str | bytes) -> None:
-        """Take a request of the page: JSON with ``do``, ``id`` and what it needs.
+        """Receive a request of the page: JSON with ``do``, ``id`` and its arguments.
 
         Anything else is ignored: it is not from our page.
         """

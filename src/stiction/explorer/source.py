@@ -1,4 +1,4 @@
-"""What the explorer is opened with: a description, a result, a study, a measured record."""
+"""The sources of the explorer: a description, a result, a study, a measured record."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Opened:
-    """What a page starts with.
+    """The initial content of a page.
 
     Attributes
     ----------
@@ -54,7 +54,7 @@ class Opened:
     study: View | None = None
 
     def measured_during(self, run: tuple[float, float]) -> tuple[np.ndarray, str]:
-        """Return the times of the measured curves (s), and what to call the curves.
+        """Return the times of the measured curves (s), and the name of the curves.
 
         Curves whose clock ends before the run or starts after it would not be seen: their times
         are counted from the run's start.
@@ -111,7 +111,7 @@ class Opened:
 
 
 def open_sources(sources: Iterable[Any], *, trust: bool = False) -> Opened:
-    """Return what sources hold together: one description, result or study, and perhaps a record.
+    """Return the combined content of sources: one system, and perhaps a record.
 
     Raises
     ------

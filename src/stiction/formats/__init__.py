@@ -119,7 +119,7 @@ def read_tables(path: Path, layout: TextLayout) -> list[FileTable]:
 
 
 def _packed_names(path: Path) -> list[str]:
-    """Return the names in a zip archive; of a damaged one, those that still stand before parts."""
+    """Return the names in a zip archive; for a damaged one, the names before its parts."""
     with suppress(zipfile.BadZipFile, OSError), zipfile.ZipFile(path) as archive:
         return archive.namelist()
     with open(path, "rb") as file:

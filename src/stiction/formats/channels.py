@@ -1,4 +1,4 @@
-"""The channels of a record: what each is called in files, and in which unit it is stored."""
+"""The channels of a record: their names in files, and their stored units."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""HDF5 and what is made of it: NetCDF 4, MATLAB 7.3."""
+"""HDF5 and the formats based on it: NetCDF 4, MATLAB 7.3."""
 
 from __future__ import annotations
 

@@ -138,6 +138,6 @@ def _text(member: Member) -> str:
 
 
 def plain_text(value: Any) -> str:
-    """Return what a file holds as text: bytes, an array of one value, or anything else."""
+    """Return a value of a file as text: bytes, an array of one value, or anything else."""
     value = value[0] if isinstance(value, np.ndarray) and value.size == 1 else value
     return value.decode("utf-8", "replace") if isinstance(value, bytes) else str(value)

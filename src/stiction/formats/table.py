@@ -55,7 +55,7 @@ class FileColumn:
 
 @dataclass(frozen=True, eq=False)
 class FileTable:
-    """Columns of one length, and what the file says about them.
+    """Columns of one length, and the file's statements about them.
 
     Parameters
     ----------

@@ -132,7 +132,7 @@ def in_thousands(text: str, power: int) -> str:
 
 
 def is_electric(text: str) -> bool:
-    """Return whether a unit is that of a raw signal: a voltage, a current, counts."""
+    """Return whether a unit belongs to a raw signal: a voltage, a current, counts."""
     return _raw_units(spell(text), spell(text)) is not None
 
 

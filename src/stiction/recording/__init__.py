@@ -1,1 +1,1 @@
-"""Measured records: which column of a file is which channel, and what is known beside it."""
+"""Measured records: the channels of a file's columns, and the further knowledge of them."""

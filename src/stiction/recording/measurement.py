@@ -1,4 +1,4 @@
-"""From a file to its measurements: channels in SI, what is known of the rig, and the guess."""
+"""From a file to its measurements: channels in SI, properties of the rig, and the guess."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ UNEVEN = 0.01  # relative: intervals that differ by more are reported
 
 
 class Measurement(NamedTuple):
-    """The channels of one block in SI, by name, and what else the file and the user say."""
+    """The channels of one block in SI, by name, and further statements of the file and user."""
 
     channels: dict[str, Any]  # of arrays
     known: dict[str, Any]
@@ -63,7 +63,7 @@ class Measurement(NamedTuple):
 
 
 class TableBlock(NamedTuple):
-    """A block of a table, the columns that were chosen for it, and what is asked of the file."""
+    """A block of a table, the columns chosen for it, and the request for the file."""
 
     path: Path
     table: FileTable
@@ -254,7 +254,7 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
 
 
 def _apparatus_in_words(known: Mapping[str, Any]) -> list[str]:
-    """Return a note on what is stated of the apparatus, if anything is."""
+    """Return a note on the stated apparatus, if anything is stated."""
     its = [
         f"{name.replace('_', ' ')} {in_words(float(known[name]), unit)}"
         for name, unit in KNOWN.items()
@@ -311,7 +311,7 @@ def _notes_on_clock(
 def _other_clock(
     path: Path, table: FileTable, choice: Choice, name: str, part: Block
 ) -> Floats | None:
-    """Return the times of a channel that has its own; None if they are those of the force."""
+    """Return the times of a channel with its own clock; None if it shares the force's."""
     column, force = choice.channels[name].column, choice.channels["force"].column
     if column.clock is not None and force.clock is not None:
         own = column.clock[part.rows]
@@ -378,7 +378,7 @@ def _unwrap(
 
 
 def _with_noise(sensor: Sensor | None, values: Floats, name: str) -> Sensor:
-    """Return what is known of a sensor, with noise and quantisation estimated if they are not."""
+    """Return the properties of a sensor, with noise and quantisation estimated if not stated."""
     level = noise_level(values)
     if sensor is None:
         unit = CHANNELS[name].unit
@@ -453,7 +453,7 @@ def _label(table: FileTable, part: Block) -> str:
 
 
 def _uses(table: FileTable, choice: Choice, known: Mapping[str, Floats]) -> tuple[Use, ...]:
-    """Return what each column was taken for, of the channels that are `known`."""
+    """Return the use of each column for the `known` channels."""
     taken = {id(x.column): (name, x) for name, x in choice.channels.items() if name in known}
     found = []
     for column in table.columns:

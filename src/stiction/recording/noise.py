@@ -1,4 +1,4 @@
-"""What samples tell of a sensor's errors: white noise, and the steps of a digitised reading."""
+"""A sensor's errors from its samples: white noise, and the steps of digitised readings."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def white_noise(values: Floats, step: float = 0.0, *, order: int = ORDER) -> flo
 
 
 def difference_gain(order: int) -> int:
-    """Return the variance of differences of white noise over that of the noise.
+    """Return the variance of white noise's differences over that of the noise.
 
     It is the sum of the squares of their weights, which are binomial coefficients.
     """
@@ -152,7 +152,7 @@ def _median(values: Floats, step: float) -> float:
 
 
 def lattice(values: Floats) -> float:
-    """Return the step of which all values are multiples, up to a constant; 0 if there is none.
+    """Return the common step of all values, up to a constant; 0 if there is none.
 
     It is that of a converter for sure: there are at least a dozen codes, and four samples of each.
     `stiction.analysis.signals.digitised.resolution` bounds the rounding of any other signal.
@@ -180,7 +180,7 @@ def lattice(values: Floats) -> float:
 
 
 def _merge(codes: Floats) -> Floats:
-    """Return sorted values without those that differ from the one before by rounding alone."""
+    """Return sorted values; of those that differ by rounding alone, only the first."""
     apart = np.diff(codes, prepend=-np.inf) > 1e-9 * float(np.ptp(codes))
     return codes[apart]
 

@@ -1,4 +1,4 @@
-"""Where a record comes from: what was read as what, and what was skipped."""
+"""The origin of a record: how columns were read, and which parts were skipped."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Origin(Report):
 
     @classmethod
     def from_json(cls, text: str) -> Origin:
-        """Return what `to_json` wrote; TypeError or ValueError if it did not."""
+        """Return an origin that `to_json` wrote; raise TypeError or ValueError for other text."""
         raw: dict[str, Any] = json.loads(text)
         uses = tuple(Use(**each) for each in raw.pop("uses"))
         return cls(**{**raw, "uses": uses, "notes": tuple(map(str, raw.pop("notes")))})

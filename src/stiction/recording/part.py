@@ -17,7 +17,7 @@ DIRECTED = ("force", "force_across", "position", "drive_position")  # channels w
 
 
 def part_of(found: Measurement, samples: slice, name: str, way: float = 1.0) -> Measurement:
-    """Return some samples of a measurement; `way` -1 turns what has a direction round."""
+    """Return some samples of a measurement; `way` -1 reverses the sign of directed channels."""
     channels = {
         key: (way if key in DIRECTED else 1.0) * values[samples]
         for key, values in found.channels.items()
@@ -66,5 +66,5 @@ def part_between(
 
 
 def begin_and_end() -> str:
-    """Return the arguments by which a part of a file is read."""
+    """Return the arguments that select a part of a file."""
     return f"{Suggestion('begin', of='')}, {Suggestion('end')}"

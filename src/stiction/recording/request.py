@@ -1,4 +1,4 @@
-"""What the user says about a file: arguments first, then the small TOML beside it."""
+"""The user's statements about a file: arguments first, then the small TOML beside it."""
 
 from __future__ import annotations
 
@@ -48,7 +48,7 @@ def _wrap(value: object) -> object:
 
 
 class KnownApparatus(Described):
-    """What is known of the apparatus; the fields are those of a record."""
+    """The known apparatus; its fields are a record's."""
 
     normal_load: Force | None = None
     stiffness: Stiffness | None = None
@@ -66,7 +66,7 @@ KNOWN = {  # its fields and their units
 
 
 def _column(value: object) -> str:
-    """Return what is said of a column as text: its number may be an integer."""
+    """Return the statement on a column as text: its number may be an integer."""
     if isinstance(value, bool) or not isinstance(value, int | str):
         raise fault(f"{echo(value)} is not a column; write its name, its number, or its unit: 'mN'")
     return str(value)
@@ -134,18 +134,18 @@ class ReadingOptions(Described):
 
     @property
     def part(self) -> AskedPart:
-        """What is said of the part of the record."""
+        """The statements on the part of the record."""
         return AskedPart(self.begin, self.end, self.stroke)
 
     @property
     def columns(self) -> dict[str, str]:
-        """What is said of each channel."""
+        """The statements on each channel."""
         said = {name: getattr(self, name) for name in CHANNELS}
         return {name: text for name, text in said.items() if text is not None}
 
 
 class Request(NamedTuple):
-    """All that is said about a file: how to read it, numbers of the apparatus, sensors.
+    """All statements about a file: how to read it, numbers of the apparatus, sensors.
 
     `rig_load` (N) is that of the description of a rig, whose record a file is; NaN if that states
     none, or none for certain.
@@ -159,7 +159,7 @@ class Request(NamedTuple):
 
 
 def request(path: Path, given: Mapping[str, Any], sidecar: Path | None) -> Request:
-    """Return what arguments say about a file, and a TOML file beside it where they do not.
+    """Return the statements of arguments about a file, completed by a TOML file beside it.
 
     ``data.toml`` belongs to ``data.csv``, unless it describes a rig, with a table [slider].
 
@@ -195,7 +195,7 @@ def request(path: Path, given: Mapping[str, Any], sidecar: Path | None) -> Reque
 def _read(
     kind: type[T], values: Mapping[str, Any], places: Mapping[str, str], wrong: list[Fault]
 ) -> T:
-    """Return what values describe, by their defaults where they are wrong."""
+    """Return the described values, with defaults for wrong ones."""
     try:
         return kind(**values)
     except DescriptionError as error:

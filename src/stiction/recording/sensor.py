@@ -138,7 +138,7 @@ class Sensor(Described):
         return self
 
     def value(self, readings: Floats, time: Floats | None = None) -> Floats:
-        """Return the values behind readings, by gain and zero; `time` (n,), s, is that of each."""
+        """Return the values behind readings, by gain and zero, at `time` (n,), s."""
         return (readings - self.zeros(time)) / self.gain
 
     def zeros(self, time: Floats | None) -> Floats | float:
@@ -187,13 +187,13 @@ class Sensor(Described):
 
     @property
     def filters(self) -> tuple[LowPass, ...]:
-        """What bandwidth and anti-alias filter do to a signal."""
+        """The effect of bandwidth and anti-alias filter on a signal."""
         its = LowPass(self.bandwidth or 0.0, 1), LowPass(self.filter or 0.0, self.filter_order)
         return tuple(each for each in its if each.cut)
 
     @property
     def cut_off(self) -> float:
-        """The lowest frequency of which less than half of the power passes, Hz."""
+        """The lowest frequency at which less than half of the power passes, Hz."""
         return min((each.cut for each in self.filters), default=inf)
 
     def readings(
@@ -232,7 +232,7 @@ class Sensor(Described):
 
 
 def _split(given: Mapping[str, Any]) -> tuple[dict[str, Any], list[Fault]]:
-    """Return the arguments of a sensor with each uncertainty apart, and what is stated twice."""
+    """Return the arguments of a sensor with each uncertainty apart, and double statements."""
     read, wrong = dict(given), []
     for name in UNCERTAIN:
         both = split_uncertain(read.get(name))

@@ -1,4 +1,4 @@
-"""Stored records: NetCDF with the channels, what is known of the rig, sensors and origin."""
+"""Stored records: NetCDF with the channels, properties of the rig, sensors and origin."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def root_attributes(path: Path) -> list[str] | None:
 
 
 def read_stored(path: Path) -> Measurement:
-    """Return what `write_stored` wrote.
+    """Return a record that `write_stored` wrote.
 
     Raises
     ------

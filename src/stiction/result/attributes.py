@@ -1,4 +1,4 @@
-"""What is read of a file's attributes in another process, which imports little else (`apart`)."""
+"""Reading of a file's attributes in another process, with few imports (`apart`)."""
 
 from __future__ import annotations
 

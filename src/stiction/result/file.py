@@ -117,24 +117,24 @@ def size_of(*tables: ColumnTable) -> int:
 
 
 def repair_of(path: str | Path) -> Instruction:
-    """Return what computes damaged parts of a file or a store again."""
+    """Return the instruction that computes damaged parts of a file or a store again."""
     return Instruction(
         f"stiction check {argument(path)} --repair", f"st.check({str(path)!r}, repair=True)"
     )
 
 
 class DamageError(ResultError):
-    """A result has changed since it was written; `lost` tells where."""
+    """A result has changed since it was written; `lost` lists the places."""
 
     def __init__(self, path: str | Path, lost: Sequence[str]) -> None:
-        """Name the first places, and what computes the result again."""
+        """Name the first places, and the command that computes the result again."""
         self.lost = ", ".join(lost[:3])
         again = f"compute it again with: {repair_of(path)}"
         super().__init__(f"{path}: is damaged, or was changed: {self.lost}; {again}")
         self._made_of = path, lost
 
     def __reduce__(self) -> tuple[type[DamageError], tuple[str | Path, Sequence[str]]]:
-        """Pickle what the message is made of."""
+        """Pickle the parts of the message."""
         return type(self), self._made_of
 
 

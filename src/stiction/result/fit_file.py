@@ -1,4 +1,4 @@
-"""The file of a fit: draws of the posterior, the prior and more in groups, and what they rest on.
+"""The file of a fit: draws of posterior and prior, further groups, and their basis.
 
 Checksums stand in it as in the file of a run: HDF5's own of each array of numbers, which every
 program verifies, and one of the whole file behind the end of HDF5's data.

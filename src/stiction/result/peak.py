@@ -85,7 +85,7 @@ def largest_between(time: Floats, force: Floats, rate: Floats) -> LargestForce:
 
 
 def highest_unseen(time: Floats, force: Floats, rate: Floats) -> float:
-    """Return what the force may reach between samples: a sample and its distance from the cubic.
+    """Return the largest possible force between samples: one plus its distance from the cubic.
 
     The cubic goes through its neighbours; of two samples nothing is known between.
     """

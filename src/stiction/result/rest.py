@@ -1,4 +1,4 @@
-"""A run in which the mass never slips, and what would make it slip."""
+"""A run in which the mass never slips, and changes that would make it slip."""
 
 from __future__ import annotations
 

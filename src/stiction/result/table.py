@@ -1,4 +1,4 @@
-"""Tables of columns with units, samples and stick intervals: what a run holds without xarray.
+"""Tables of columns with units, samples and stick intervals: a run's data without xarray.
 
 xarray, and pandas below it, take as long to import as a run takes to simulate and write. A command
 that only computes and writes does without them.
@@ -115,7 +115,7 @@ def as_dataset(table: ColumnTable) -> xr.Dataset:
 
 
 def as_table(data: xr.Dataset) -> ColumnTable:
-    """Return what a dataset holds; the arrays are shared."""
+    """Return the content of a dataset as a table; the arrays are shared."""
     columns = {
         str(name): Column(tuple(map(str, each.dims)), each.values, each.attrs)
         for name, each in data.variables.items()
@@ -211,7 +211,7 @@ def mean_speeds(time: np.ndarray, *position: np.ndarray) -> np.ndarray:
 
 
 def fastest_slip(samples: Mapping[Any, Any] | ColumnTable) -> tuple[float, bool]:
-    """Return the largest slip speed that samples tell of, m/s, and whether they show the largest.
+    """Return the largest slip speed by the samples, m/s, and whether they show the largest.
 
     The mean velocity between two samples is no larger than the largest one there. Where it clearly
     exceeds those of all samples, it is a lower bound: a slip lies between samples.

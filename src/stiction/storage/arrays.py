@@ -1,4 +1,4 @@
-"""Arrays by name in a file of our own: what can be computed again, kept for the next time.
+"""Cached arrays by name in a file of our own, which can be computed again.
 
 A checksum stands behind the arrays. Those of the archive do not protect the shapes of its arrays:
 of one that seems shorter only a part is read, and no checksum of the whole is compared.

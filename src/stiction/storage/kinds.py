@@ -1,4 +1,4 @@
-"""What a path holds, so that whoever gave the wrong thing learns which command takes it."""
+"""The kinds of paths, for messages that name the command that takes a path."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ USES = {
 
 
 def use_of(path: str | Path, *wanted: str) -> str:
-    """Return what a path holds instead of what is `wanted`, and what takes it; '' if unknown.
+    """Return the content of a path instead of the `wanted` kind, and its use; '' if unknown.
 
     Where nothing is there, the path may be the name of something ready, see `use_of_name`.
     """
@@ -74,7 +74,7 @@ def use_of(path: str | Path, *wanted: str) -> str:
 
 
 def use_of_name(name: str) -> str:
-    """Return what takes the name of a published system or a ready study; '' of other names.
+    """Return the use of the name of a published system or a ready study; '' of other names.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def use_of_name(name: str) -> str:
 
 
 def kind_of(path: Path) -> str | None:
-    """Return the kind of what a path holds, as far as its beginning tells."""
+    """Return the kind of a path's content, as far as its beginning shows."""
     try:
         if path.is_dir():
             return STORE if (path / "zarr.json").is_file() else None

@@ -233,7 +233,7 @@ class Description(NamedTuple):
 
     @classmethod
     def from_json(cls, text: str, *, trust: bool = False) -> Self:
-        """Read back what `to_json` wrote.
+        """Read a description that `to_json` wrote.
 
         A user's law must have been loaded by this process from the same text; otherwise `trust`
         permits running the text in the JSON.
@@ -270,7 +270,7 @@ class Description(NamedTuple):
 
 
 def refuse_strangers(slider: object, initial: object) -> None:
-    """Refuse what is not a slider, and what is not an initial state."""
+    """Refuse an argument that is not a slider, and one that is not an initial state."""
     found = []
     if not isinstance(slider, Slider):
         remedy = "make one with st.Slider(...) or read one with st.Slider.from_toml(path)"
@@ -333,7 +333,7 @@ def with_duration(raw: Mapping[str, Any]) -> Mapping[str, Any]:
 def description_of(
     source: Slider | Description | str | Path, duration: Quantity | None = None
 ) -> Description:
-    """Return the description that is given, that of a file, or of a slider that runs so long.
+    """Return a description: the given one, that of a file, or that of a slider with a duration.
 
     A `duration` takes the place of that of a description.
 
@@ -355,7 +355,7 @@ def description_of(
 
 
 def system_and_start(source: Any, initial: Initial | None) -> tuple[Any, Initial | None]:
-    """Return a slider and the state it starts from: of a description or its file, those in it.
+    """Return a slider and its initial state, also from a description or its file.
 
     Anything else is returned as it is: who reads it refuses it. An `initial` that is given counts.
     """

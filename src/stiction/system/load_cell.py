@@ -30,7 +30,7 @@ class CellAxis(NamedTuple):
 
 
 def cell_axis(slider: Slider) -> CellAxis:
-    """Return the axis of a slider's load cell: the spring x, or that of its `cell_angle`."""
+    """Return the axis of a slider's load cell: the spring x, or the direction of `cell_angle`."""
     x, y = (1.0, 0.0) if slider.cell_angle is None else slider.cell
     share = float(slider.along_drive(x, y))
     share = 0.0 if abs(share) < ROUND else share  # at a right angle

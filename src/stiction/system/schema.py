@@ -1,4 +1,4 @@
-"""The JSON schema of a description, by which an editor completes and checks it as it is written.
+"""The JSON schema of a description, for completion and checks in an editor.
 
 It is derived from what reads descriptions: the fields of each table, the registry of laws, the
 pieces of programs. Types, bounds and keys are in it, and the SI unit as a keyword of its own, which
@@ -86,7 +86,7 @@ def quantity(number: Schema, kind: Kind, words: Iterable[str] = ()) -> Schema:
 
 
 def table(model: type[Described], told: Any = None, without: Iterable[str] = ()) -> Schema:
-    """Return the schema of a table; what its docstring says of each key is shown by editors."""
+    """Return the schema of a table, with its docstring's text on each key, which editors show."""
     found = place_bounds(model.model_json_schema(schema_generator=Generator))
     meanings = {
         name: " ".join(text.split())

@@ -95,7 +95,7 @@ def _is_load(value: Any) -> Any:
 
 
 def _are_several(springs: Any) -> bool:
-    """Return whether springs are given, or what cannot be springs."""
+    """Return whether springs are given, or values that cannot be springs."""
     return springs is not None and not (isinstance(springs, Sequence) and not springs)
 
 
@@ -276,7 +276,7 @@ class Slider(Apparatus):
 
     @property
     def motion(self) -> Drive:
-        """The drive, typed; a program that keeps to one velocity is that velocity."""
+        """The drive, typed; a program with one velocity only becomes that velocity."""
         drive: Drive = self.drive
         return drive.simplest() if isinstance(drive, DriveProgram) else drive
 
@@ -351,7 +351,7 @@ class Slider(Apparatus):
 
     @property
     def cell(self) -> tuple[float, float]:
-        """Unit vector of the load cell's axis, along (x, y); that of X by default."""
+        """Unit vector of the load cell's axis, along (x, y); X's by default."""
         if self.cell_angle is None:
             return self.direction
         return unit_vector(self.misalignment + self.cell_angle)

@@ -48,7 +48,7 @@ def write_description(
 
 
 def _law_lines(name: str) -> str:
-    """Return a law as a comment: its name, what it is, and the parameters that it takes."""
+    """Return a law as a comment: its name, its description, and its parameters."""
     kind = LAWS[name]
     hints = hints_of(kind)
     takes: dict[bool, list[str]] = {True: [], False: []}

@@ -1,4 +1,4 @@
-"""Sections of sentences and tables, of which reports consist, on a page or terminal."""
+"""Sections of sentences and tables, the parts of reports on a page or terminal."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def html(text: str) -> str:
 
 
 def cell_html(text: str) -> str:
-    """Return a cell of a table as HTML: what it begins with is a name, as of a parameter or column.
+    """Return a table's cell as HTML; a symbol at its beginning is a name, and stays as typed.
 
     >>> cell_html("k_y"), cell_html("stiffness k_y")
     ('k_y', 'stiffness k<sub>y</sub>')

@@ -95,14 +95,14 @@ def read_toml(path: str | Path) -> dict[str, Any]:
 
 
 def _encoding(content: bytes) -> str:
-    """Return what to do with a file that is not UTF-8."""
+    """Return the remedy for a file that is not UTF-8."""
     if content.startswith(UTF_16) or 0 in content[:2]:
         return "it is UTF-16, as Windows programs write it: save it in UTF-8"
     return str(WRITE) if 0 in content else "if a text editor shows it, save it in UTF-8"
 
 
 def _remedy(error: ValueError, text: str) -> str:
-    """Return how to write what TOML does not read, as far as its line tells."""
+    """Return the correct form of a line that TOML does not read, as far as the line shows it."""
     place = AT_LINE.search(str(error))
     line = text.split("\n")[int(place[1]) - 1] if place else ""
     for pattern, remedy in MISWRITTEN.items():
@@ -112,7 +112,7 @@ def _remedy(error: ValueError, text: str) -> str:
 
 
 def _instead(path: str | Path, written: bool) -> str:
-    """Return what takes a file that is not a description."""
+    """Return the command for a file that is not a description."""
     return "" if written else use_of(path, DESCRIPTION, STUDY)
 
 
@@ -211,7 +211,7 @@ def _tables_in(table: Any, names: Iterable[str]) -> Iterator[str]:
 def read_slider(
     path: str | Path, changes: Mapping[str, Any] | None
 ) -> tuple[dict[str, Any], list[Fault]]:
-    """Do as `read_changed`, without the tables of a run or a study, of which none can change."""
+    """Read a slider as `read_changed` does, without tables of runs; refuse changes of these."""
     raw, faults = read_changed(path, changes)
     lost = {fault.path for fault in faults}
     idle = [name for name in changes or () if name not in lost and keys_of(raw, name)[0] in OF_RUNS]
@@ -220,7 +220,7 @@ def read_slider(
 
 
 def _strange(name: str, readers: Mapping[str, Reader]) -> str:
-    """Return what is wrong with a table that has no reader."""
+    """Return the fault of a table without a reader."""
     if name in OF_STUDIES:
         reader = Instruction("'stiction sweep' runs", "st.Study.from_toml reads")
         return f"is a table of a study, which {reader}; take it out for a single run"

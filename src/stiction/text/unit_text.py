@@ -85,7 +85,7 @@ def factor(text: str, wanted: str) -> float | None:
 
 
 def _metric_factor(text: str, wanted: str) -> float | None:
-    """Return the factor between two products of common units; None if the registry must tell.
+    """Return the factor between two products of common units; None if the registry is needed.
 
     The registry knows them too, but takes a quarter of a second to read its own definitions.
     """

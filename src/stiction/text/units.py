@@ -38,7 +38,7 @@ from stiction.text.unit_text import UnitError, factor, short
 
 
 class Kind(NamedTuple):
-    """A physical quantity: what it is called, its SI unit, and an example to write."""
+    """A physical quantity: its name, its SI unit, and an example to write."""
 
     name: str
     unit: str
@@ -545,7 +545,7 @@ def to_error(value: float, error: float, unit: str) -> str:
 
 
 def _scale(largest: float, unit: str) -> tuple[float, str, str]:
-    """Return the size of what a number counts, a power of ten to write behind it, and the unit.
+    """Return the size of the unit to write, a power of ten to write behind a number, and the unit.
 
     Only a large number of a unit without prefixes needs the power.
     """

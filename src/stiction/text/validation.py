@@ -108,14 +108,14 @@ class Described(BaseModel, metaclass=_Presented):
         collect(name, super().__init__, known, values, independent=self._independent)
 
     def __setattr__(self, name: str, value: Any) -> None:
-        """Refuse to change a field: what was derived from it would remain."""
+        """Refuse to change a field, since values derived from it would remain."""
         if name in type(self).model_fields:
             remedy = f"write {type(self).__name__.lower()}.replace({name}={echo(value)})"
             raise DescriptionError.of(f"{type(self).__name__}.{name}", f"is frozen; {remedy}")
         super().__setattr__(name, value)
 
     def __eq__(self, other: object) -> bool:
-        """Compare the fields; the library would compare what was derived from them, too."""
+        """Compare the fields; the library would compare derived values, too."""
         names = type(self).model_fields
         return type(self) is type(other) and all(
             equal(getattr(self, name), getattr(other, name)) for name in names
@@ -133,7 +133,7 @@ class Described(BaseModel, metaclass=_Presented):
         return type(self)(**(fields_to_read(self, stated) | changes))
 
     def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
-        """Return a copy with other fields, without what was derived from the old ones."""
+        """Return a copy with other fields, without values derived from the old ones."""
         made = super().model_copy(update=update, deep=deep)
         for name in vars(made).keys() - type(made).model_fields.keys():
             del vars(made)[name]
@@ -184,7 +184,7 @@ def equal(one: object, other: object) -> bool:
 
 
 def distinct(value: object) -> object:
-    """Return what a value is told from others by: tuples with their classes, all the way down.
+    """Return a key that distinguishes values whose named tuples are of different classes.
 
     Named tuples of two classes are equal if their fields are, also inside another tuple.
 
@@ -202,7 +202,7 @@ def distinct(value: object) -> object:
 
 
 def _own_names(cls: Any, names: Iterable[str]) -> list[str]:
-    """Return the names without those of pydantic."""
+    """Return the names except pydantic's."""
     own = {name for kind in cls.__mro__ if kind is not BaseModel for name in vars(kind)}
     inherited = {name for name in dir(BaseModel) if name.startswith("_") or name not in own}
     plain = {*dir(object), *(name for name in names if not name.startswith(("__", "model_")))}
@@ -304,9 +304,9 @@ def with_faults_of_known(
     known: Iterable[str],
     values: Mapping[str, Any],
 ) -> list[Fault]:
-    """Return the faults of values, and those of the known ones against each other.
+    """Return the given faults, and the contradictions among the valid values.
 
-    Beside the others they were not compared.
+    Faults of the other values had prevented their comparison.
     """
     names = set(known)
     rest = {name: value for name, value in values.items() if name in names}
@@ -424,7 +424,7 @@ def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
 
 
 def _nearest(name: str, known: list[str]) -> list[str]:
-    """Return the nearest known name; those of one stem where only the last word differs much."""
+    """Return the nearest known name; all of one stem if only the last word differs much."""
     misspelt = get_close_matches(name, known, 1, MISSPELT)
     *stem, _ = re.split("[-_]", name)
     of_stem = [each for each in known if re.split("[-_]", each)[:-1] == stem]
@@ -466,7 +466,7 @@ def make(kind: type[T], values: Mapping[str, Any]) -> T:
 
 
 def in_si(value: T) -> T:
-    """Read those fields of a NamedTuple that are text or carry a unit; its numbers are in SI.
+    """Read the fields of a NamedTuple that are text or carry a unit; numbers are in SI.
 
     One that is `validate` has read them; another takes whatever it is called with.
     """

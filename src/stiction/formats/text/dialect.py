@@ -109,7 +109,7 @@ def _split_quoted(line: str, separator: str) -> list[str]:
 
 
 class UnclearCommas(ResultError):
-    """What is `unclear` about commas or points, and the remedy where a record is read."""
+    """The doubt about commas or points, and the remedy for reading a record."""
 
     def __init__(self, unclear: str, remedy: str) -> None:
         """Join both into the message."""
@@ -247,7 +247,7 @@ def _refuse_thousands(path: object, dialect: Dialect, rows: Sequence[Sequence[st
 
 
 def _remedy(commas: list[Dialect]) -> str:
-    """Return what helps where commas are decimal signs."""
+    """Return the remedy for commas as decimal signs."""
     if commas:
         return f"say {Suggestion('decimal', 'comma')}"
     return "write the file with semicolons between columns: here commas do both"

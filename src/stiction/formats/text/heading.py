@@ -104,13 +104,13 @@ def _score(cells: Sequence[str], width: int) -> float:
 
 
 def _is_known(cell: str) -> bool:
-    """Return whether a name is that of a channel, or has a unit."""
+    """Return whether a column's name is a channel's, or has a unit."""
     name, unit = split_unit(cell)
     return bool(unit) or _is_name(name)
 
 
 def _is_name(name: str) -> bool:
-    """Return whether a name is that of a channel."""
+    """Return whether a column's name is a channel's."""
     text = plain(name)
     patterns = (RATIO, LENGTH, *(channel.names for channel in CHANNELS.values()))
     return any(pattern.fullmatch(text) for pattern in patterns)

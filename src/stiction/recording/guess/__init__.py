@@ -1,1 +1,1 @@
-"""What a file probably means: its columns, its times, its remarks."""
+"""The probable meaning of a file: its columns, its times, its remarks."""

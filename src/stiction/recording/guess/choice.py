@@ -25,7 +25,7 @@ AN_AREA = f"{GAP} mm^2"  # that turns a stress into a force
 
 
 class UnclearColumns(ResultError):
-    """No column, or several, can be a channel; no column can be those that are `lacking`."""
+    """The error that no column, or several, can be a channel; `lacking` channels have none."""
 
     def __init__(self, message: str, *lacking: str) -> None:
         """Store the message, and the names of the channels."""
@@ -47,7 +47,7 @@ class Chosen(NamedTuple):
 
 
 class Choice(NamedTuple):
-    """The columns of all channels, and sentences on what was assumed."""
+    """The columns of all channels, and sentences on assumptions."""
 
     channels: dict[str, Chosen]
     notes: tuple[str, ...]
@@ -275,7 +275,7 @@ def _times(
     wish: _Wish,
     taken: Sequence[FileColumn],
 ) -> FileColumn:
-    """Return the column of times; of several, that which stands left of the force."""
+    """Return the column of times; of several, the one to the left of the force."""
     free = [each for each in table.columns if not any(each is one for one in taken)]
     pattern = CHANNELS["time"].names
     matches = [
@@ -363,7 +363,7 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
 
 
 def _say_units(name: str, column: FileColumn) -> str:
-    """Return the usual units of a channel, and what each would make of a column."""
+    """Return the usual units of a channel, and the column's values in each."""
     channel = CHANNELS[name]
     units = dict.fromkeys((channel.unit, channel.example))
     known = column.values[np.isfinite(column.values)]
@@ -406,14 +406,14 @@ def _refuse_lack(path: object, table: FileTable, name: str, remedy: str = "") ->
 
 
 def _with_columns(path: object, table: FileTable, name: str, why: str, remedy: str = "") -> str:
-    """Return why a channel has no column, the columns that there are, and what to say."""
+    """Return why a channel has no column, the existing columns, and the remedy."""
     columns = ", ".join(str(each) for each in table.columns) or "none"
     remedy = remedy or _say(table, name)
     return f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; {remedy}"
 
 
 def _say(table: FileTable, name: str) -> str:
-    """Return how a column is taken for a channel, with a gap for what only the user knows."""
+    """Return how to declare a column as a channel, with a gap for the user's knowledge."""
     example = _example(table, name)
     fill = f", {FILL}" if GAP in example else ""
     fill = fill.replace("number", "unit") if example.endswith(GAP) else fill
@@ -422,7 +422,7 @@ def _say(table: FileTable, name: str) -> str:
 
 
 def _example(table: FileTable, name: str) -> str:
-    """Return number and unit of a column that may be a channel: times are what increases."""
+    """Return number and unit of a column that may be a channel; times increase."""
     channel, increasing = CHANNELS[name], name == "time"
     likely = [x for x in table.columns if _increases(x.values) == increasing]
     column = (likely or [*table.columns])[0] if table.columns else None

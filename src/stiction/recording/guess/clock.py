@@ -100,7 +100,7 @@ def _are_periods(path: object, values: Floats, said: str | None, name: str) -> b
 
 @compute_once
 def rate_of(time: Floats) -> float:
-    """Return the samples per second, gaps left out; 0 if the times do not tell.
+    """Return the samples per second without gaps; 0 if the times do not determine it.
 
     It is the average if intervals differ at random.
     """

@@ -1,4 +1,4 @@
-"""What the lines above the samples say: interval, number of samples, wall clock."""
+"""The statements of the lines above the samples: interval, number of samples, wall clock."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ HERTZ = {"hz": 1.0, "khz": 1e3, "mhz": 1e6, "s/s": 1.0, "": 1.0, "sps": 1.0, "/s
 
 
 class Said(NamedTuple):
-    """What remarks say, each None or '' if they do not."""
+    """The statements of remarks, each None or '' without one."""
 
     interval: float | None
     stated: str
