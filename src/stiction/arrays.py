@@ -1,4 +1,4 @@
-"""Arrays of numbers as annotations name them, medians, what is computed once, and xarray, late."""
+"""Arrays of numbers as annotations name them, medians, cached results, and xarray on demand."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ Found = TypeVar("Found")
 def compute_once(
     function: Callable[Concatenate[Floats, Rest], Found],
 ) -> Callable[Concatenate[Floats, Rest], Found]:
-    """Let a function keep what it finds of the last few arrays that cannot change, while they live.
+    """Let a function cache its results for the last few immutable arrays, while they live.
 
     The arrays of a record are such, and a dozen findings ask for the step, the noise or the grid
     of each. What is found is shared by all of them: it must not be changed, nor hold the array,

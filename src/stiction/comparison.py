@@ -184,7 +184,7 @@ def compare(
 
 
 def share(progress: Callable[[float], None], done: int, runs: int) -> Callable[[float], None]:
-    """Return a callback that turns one run's progress into that of all runs."""
+    """Return a callback that turns one run's progress into the progress of all runs."""
     return lambda fraction: progress((done + fraction) / runs)
 
 
@@ -209,7 +209,7 @@ def labels(laws: Sequence[Law]) -> list[str]:
 
 
 def set_parameters(law: Law) -> dict[str, Any]:
-    """Return the parameters of a law without those that have their default."""
+    """Return the parameters of a law that differ from their defaults."""
     inner = law.law if isinstance(law, Anisotropic) else law
     defaults: dict[str, Any] = getattr(inner, "_field_defaults", {})
     known = parameters(law)

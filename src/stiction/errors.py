@@ -95,7 +95,7 @@ def in_terminal() -> Iterator[None]:
 
 
 class Instruction(NamedTuple):
-    """What a message tells its reader to do: put it into an f-string.
+    """An instruction in a message to its reader; put it into an f-string.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ class Instruction(NamedTuple):
     call: str
 
     def __str__(self) -> str:
-        """Return what this reader types."""
+        """Return the text for this reader to type."""
         return self.command if _terminals else self.call
 
 
@@ -138,7 +138,7 @@ class StictionError(Exception):
 
 
 class Fault(NamedTuple):
-    """One fault of a description: its path, and what to write instead."""
+    """One fault of a description: its path, and the remedy."""
 
     path: str
     message: str

@@ -41,7 +41,7 @@ def shortage(size: float) -> str:
 
 
 def python(module: str, stdout: int = subprocess.DEVNULL) -> subprocess.Popen[bytes]:
-    """Start a module of this package in a second process, which reads what to do.
+    """Start a module of this package in a second process, which reads its tasks.
 
     Raises
     ------

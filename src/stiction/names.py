@@ -104,18 +104,18 @@ def entry(room: str, name: str, attribute: str | None, registry: str) -> Any:
 
 
 def draw(figure: str, *what: Any, **options: Any) -> Any:
-    """Return what a public figure draws: a result asks for its own when called, see `plotting`."""
+    """Draw a public figure: a result calls for its own by name, see `plotting`."""
     return getattr(import_module("stiction.plotting"), figure)(*what, **options)
 
 
 def picture(figure: str, *what: Any) -> str:
-    """Return what a public figure draws as an image in HTML, for a notebook."""
+    """Return a public figure as an image in HTML, for a notebook."""
     shown = import_module("stiction.plotting.page.save")
     return str(shown.picture(getattr(import_module("stiction.plotting"), figure), *what))
 
 
 def own_picture(what: Any) -> str:
-    """Return what an object's own ``plot`` draws as an image in HTML, for a notebook."""
+    """Return the figure of an object's ``plot`` as an image in HTML, for a notebook."""
     shown, door = (import_module(f"stiction.plotting.{name}") for name in ("page.save", "door"))
     return str(shown.picture(door.plot, what))
 

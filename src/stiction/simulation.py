@@ -200,7 +200,7 @@ def trajectory_of(description: Description, solution: Solution) -> Trajectory:
 def label(
     description: Description, solution: Solution, status: Status, statistics: Statistics
 ) -> ColumnTable:
-    """Return what a run found as named arrays, and how it was found."""
+    """Return the results of a run as named arrays, with its statistics."""
     attributes = {
         "stiction_version": own_version(),
         "solver": f"{kind(description)}{', multiscale' if statistics.mapped else ''}, Radau IIA 5",
@@ -270,7 +270,7 @@ def solve_coarsely(
 
 
 def kind(description: Description) -> str:
-    """Return what is solved, in words."""
+    """Return the kind of the solved problem, in words."""
     if has_state(description.slider.law):
         return "friction with internal state"
     if description.run.regularisation is not None:

@@ -597,7 +597,7 @@ def critical_stiffness(
 
 
 def __dir__() -> list[str]:
-    """List the closed forms, without what they are made with."""
+    """List the closed forms, without their helpers."""
     own = (getattr(each, "__module__", "") == __name__ for each in globals().values())
     listed = (name for name, is_own in zip(globals(), own, strict=True) if is_own)
     return sorted(name for name in listed if not name.startswith("_"))

@@ -285,7 +285,7 @@ def export(result: Exportable | str | Path, path: str | Path, *, trust: bool = F
 
 
 def run_of(source: Trajectory | str | Path, trust: bool) -> Trajectory:
-    """Return a run, or that of a file; see `load`."""
+    """Return a run: the given one, or a file's; see `load`."""
     return source if isinstance(source, Trajectory) else load(source, trust=trust)
 
 

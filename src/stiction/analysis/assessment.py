@@ -1,4 +1,4 @@
-"""What of cycles and friction counts in an analysis, and why the rest does not."""
+"""Assessment of cycles and friction: those that count in an analysis, and why others do not."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ CHANGING = "the rate of loading goes on changing"
 
 
 class Assessment(NamedTuple):
-    """What of cycles and friction counts."""
+    """The cycles and friction of an analysis that count."""
 
     cycles: CycleTable  # a row for each cycle; columns that mean nothing for its motion are blank
     # those of its cycles that belong together, and those that creep before they slip
@@ -165,7 +165,7 @@ def _friction(
 
 
 def imposed_reversal(run: Trajectory | None, regime: Regime) -> str:
-    """Return what goes back and forth, so that no mean is a kinetic friction; empty if nothing.
+    """Return the imposed reversal that leaves no mean as kinetic friction; empty if none.
 
     Of a run, or of a record with this kind of motion.
     """

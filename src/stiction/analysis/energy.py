@@ -137,7 +137,7 @@ def _edges(run: Trajectory, edges: ArrayLike | None) -> Floats:
 
 
 def _powers(run: Trajectory, t: Floats, rows: Floats) -> Floats:
-    """Return the first powers of `ENERGIES`, and those that the springs take up along x, y (W)."""
+    """Return the first powers of `ENERGIES`, and the power into each spring along x, y (W)."""
     s = run.slider
     u_x, u_y, s_x, s_y, f_x, f_y = rows[:, :6].T
     d_x, d_y = s.along_axes(*s.motion.rate(t))

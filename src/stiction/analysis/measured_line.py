@@ -149,7 +149,7 @@ def _without_harmonics(lines: xr.DataArray, cycles: xr.Dataset, low: float) -> x
 
 
 def _with_lobe(stands: np.ndarray) -> np.ndarray:
-    """Return where a line stands, and beside it: its lobe tells where between samples it is."""
+    """Return a mask of a line and its neighbours: its lobe determines its place between samples."""
     half = int(LOBE)
     beside = sliding_window_view(np.pad(stands, ((half, half), (0, 0))), 2 * half + 1, axis=0)
     return np.asarray(beside.any(axis=-1))

@@ -83,7 +83,7 @@ def _samples(values: Any) -> Floats:
 
 
 def _spread(time: Floats) -> Floats:
-    """Return times that increase, those of equal samples spread evenly up to the next."""
+    """Return increasing times; samples with equal times are spread evenly up to the next time."""
     first = np.flatnonzero(np.diff(time, prepend=time[0] - 1.0))
     count = np.diff(first, append=len(time))
     ends = time[first]  # a copy
@@ -308,7 +308,7 @@ class Record(Described):
         return self
 
     def unit_as_read(self, channel: str) -> str | None:
-        """Return the unit that was said of an array; None where the array carried its own."""
+        """Return the stated unit of an array; None if the array carried its own."""
         return self._units.get(channel)
 
     @property
@@ -340,12 +340,12 @@ class Record(Described):
 
     @property
     def sticks(self) -> Floats | None:
-        """All intervals in which the mass sticks, (n, 2), s, where the record is that of a run."""
+        """All stick intervals of a run's record, (n, 2), s; None for a measured one."""
         return self._of_run and self._of_run.sticks
 
     @property
     def own_period(self) -> float | None:
-        """Period of the mass on the spring along x alone, s, where the record is that of a run."""
+        """Period of the mass on the spring along x alone, s; None for a measured record."""
         return 1.0 / self.slider.natural_frequency_x if self.slider else None
 
     @property
@@ -367,7 +367,7 @@ class Record(Described):
 
     @property
     def slider(self) -> Slider | None:
-        """The system, where the record is that of a run."""
+        """The system of a run's record; None for a measured one."""
         return self._of_run and self._of_run.slider
 
     @property
@@ -376,7 +376,7 @@ class Record(Described):
         return self._of_run and self._at_own_times(self._of_run.rate_across)
 
     def _at_own_times(self, values: Floats | None) -> Floats | None:
-        """Return values at all samples of the run at those of this record, which may be a part."""
+        """Return values at this record's times, from all samples of the run."""
         if self._of_run is None or values is None:
             return None
         return np.asarray(np.interp(self.time, self._of_run.time, values))
@@ -547,7 +547,7 @@ class Record(Described):
 
 
 def as_record(source: Trajectory | Record) -> Record:
-    """Return the record of a run, or a record, of which a slow sensor gave each value once.
+    """Return the record of a run, or a record in which a slow sensor's repeated values stand once.
 
     Raises
     ------
@@ -579,7 +579,7 @@ def _along_cell(x: float, y: float, f_x: Floats, f_y: Floats) -> Floats:
 
 
 def apparatus(slider: Slider) -> dict[str, Any]:
-    """Return what a record states of its apparatus, as a slider has it, by the record's fields."""
+    """Return the apparatus of a slider by the fields of a record."""
     return {
         "normal_load": slider.normal_load,
         "stiffness": stiffness_of_cell(slider, slider.k_y),

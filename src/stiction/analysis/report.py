@@ -97,7 +97,7 @@ class Analysis(Report):
     parts: dict[str, Any]
 
     def __eq__(self, other: object) -> bool:
-        """Compare source, record and report: what was found follows from them."""
+        """Compare source, record and report, from which all findings follow."""
         return isinstance(other, Analysis) and (
             (self.source, self.record, str(self)) == (other.source, other.record, str(other))
         )
@@ -211,7 +211,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 
 
 def _with_parts(analysis: Analysis) -> Analysis:
-    """Return an analysis with what each of its parts finds."""
+    """Return an analysis with the findings of each of its parts."""
     missing = {**analysis.missing}
     found = {
         name: attempt(missing, name, partial(find, analysis)) for name, find in functions("find")

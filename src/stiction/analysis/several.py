@@ -103,7 +103,7 @@ def section(found: Mapping[str, Analysis]) -> Section:
 
 
 def mean_over(found: Mapping[str, Analysis]) -> Section:
-    """Return the mean friction of the strokes of one test, each as telling, with its error.
+    """Return the mean friction of the strokes of one test, equally weighted, with its error.
 
     The error is that by their scatter: a zero that is off shifts the ways forth and back apart.
 

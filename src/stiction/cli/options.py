@@ -91,7 +91,7 @@ Library = Annotated[
 @Parameter(name="*", group="How a record is read")
 @dataclass(frozen=True, kw_only=True)
 class RecordOptions:
-    """What the user says about the file of a measured record.
+    """The user's statements about the file of a measured record.
 
     Parameters
     ----------
@@ -189,7 +189,7 @@ class RecordOptions:
     sidecar: Path | None = None
 
     def arguments(self) -> dict[str, Any]:
-        """Return what is given, by name."""
+        """Return the given options by name."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
 
@@ -202,7 +202,7 @@ def trust_in(slider: Slider) -> str:
 
 
 def library_or_cache(library: Path | None) -> Path:
-    """Return the folder of libraries: that which is named, or else that in the user's cache.
+    """Return the folder of libraries: the named one, or else the one in the user's cache.
 
     Where nothing can be written to the latter, say once that nothing is stored.
     """
@@ -223,7 +223,7 @@ def library_or_cache(library: Path | None) -> Path:
 def record_in(
     path: Path, measured: RecordOptions | None, trust: bool, rig_load: float | None = None
 ) -> Record:
-    """Read a measured record, or a run as if it was measured; `rig_load` is as of `read_source`."""
+    """Read a measured record, or a run as if it was measured; see `read_source` for `rig_load`."""
     from stiction.analysis.record import as_record
 
     return as_record(source_in(path, measured, trust, rig_load))
@@ -281,7 +281,7 @@ FromPreset = Annotated[
 def description_from(
     config: Path | None, preset: str | None, given: dict[str, Any], trust: bool
 ) -> Description:
-    """Return the description in a file, or that of a preset, with changed parameters."""
+    """Return the description of a file or a preset, with changed parameters."""
     from stiction.system.description import Description
     from stiction.text.paths import with_changes
 
@@ -341,7 +341,7 @@ def parse_assignment(text: str, option: str) -> tuple[str, str]:
 
 
 def parse_assignments(given: list[str] | None, option: str, faults: Faults) -> dict[str, str]:
-    """Return names and values of an option that may be repeated, and note those that are wrong."""
+    """Return names and values of an option that may be repeated; note the wrong ones."""
     found: dict[str, str] = {}
     for text in given or ():
         with faults.of_part():

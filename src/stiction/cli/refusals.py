@@ -39,7 +39,7 @@ def message_of(error: CycloptsError) -> str:
 
 
 def subject_of(error: StictionError) -> str:
-    """Return what an error is about, for the head of its message.
+    """Return the subject of an error, for the head of its message.
 
     A record, a result, a study and what is written are all files.
 
@@ -59,7 +59,7 @@ def command_of(error: CycloptsError) -> str:
 
 
 def _missing(error: MissingArgumentError) -> str:
-    """Return what is missing, and an example."""
+    """Return the missing argument, and an example."""
     assert error.argument is not None
     name = error.argument.name
     words = (word.partition("=")[0] for word in error.root_input_tokens or ())
@@ -74,7 +74,7 @@ def _missing(error: MissingArgumentError) -> str:
 
 
 def _example(error: MissingArgumentError, name: str) -> str:
-    """Return the example in the help of an option; of another argument, that of its command."""
+    """Return the example in an option's help; for another argument, the command's example."""
     if not name.startswith("-"):
         shown = SHOWN_COMMAND.search(getdoc(error.target) or "")
         return shown[1] if shown else ""

@@ -139,7 +139,7 @@ class Latest:
         return f"{runs_done(self._tally)} after {in_time(seconds)}{self.pace()}"
 
     def pace(self) -> str:
-        """Return what is known of the pace: a rate and the time left, or how long no run came."""
+        """Return the known pace: a rate and the time left, or the time since the last run."""
         tally, waited = self._tally, monotonic() - self._came
         if tally is None:
             return ""

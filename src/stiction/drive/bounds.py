@@ -29,7 +29,7 @@ def load_bounds(load: Any, start: float, end: float) -> tuple[Any, Any, Any]:
 
 
 class RowBounds(NamedTuple):
-    """Bounds between the rows of tables of a drive and a load, as of `drive_bounds`.
+    """Bounds between the rows of tables of a drive and a load, as `drive_bounds` gives them.
 
     Parameters
     ----------

@@ -100,7 +100,7 @@ class DriveProgram(Described):
         )
 
     def simplest(self) -> ConstantVelocity | DriveProgram:
-        """Return the constant velocity that this program keeps to, or itself if it varies."""
+        """Return a steady drive if this program keeps to one velocity, else the program itself."""
         first = self.stretches[0][1]
         constant = isinstance(first, ConstantVelocity)
         return first if constant and all(each == first for _, each in self.stretches) else self
@@ -223,7 +223,7 @@ def nominal_velocity(drive: ConstantVelocity | DriveProgram) -> float:
 
 
 def refuse_idle_base(drive: ConstantVelocity | DriveProgram, changed: Iterable[str]) -> None:
-    """Refuse to change the base velocity of a program of which no piece takes it.
+    """Refuse to change a program's base velocity if no piece uses it.
 
     Raises
     ------

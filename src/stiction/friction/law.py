@@ -119,7 +119,7 @@ def static_coefficient(law: Any) -> float:
 
 
 def implausible(law: Any) -> list[str]:
-    """Return what is implausible about a law, in sentences."""
+    """Return the implausible properties of a law, in sentences."""
     mu = static_coefficient(law)
     if mu <= PLAUSIBLE:
         return []

@@ -1,4 +1,4 @@
-"""The friction laws that descriptions know by name, and what is compiled with them."""
+"""The friction laws that descriptions know by name, and their compiled functions."""
 
 from __future__ import annotations
 

@@ -173,7 +173,7 @@ def excerpt(
     *,
     trust: bool = False,
 ) -> Excerpt:
-    """Return what a film of a run shows, by the arguments of `animate`.
+    """Return the content of a film of a run, by the arguments of `animate`.
 
     Raises
     ------

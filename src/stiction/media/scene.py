@@ -52,7 +52,7 @@ class Scene:
     """Artists that show the state of a run at any time, on given axes."""
 
     def __init__(self, ax: Axes, slider: Slider, samples: ColumnTable) -> None:
-        """Draw what stands, and make what moves."""
+        """Draw the fixed parts, and create the moving ones."""
         self.slider, self.samples = slider, samples
         c, s = slider.direction
         self.turn = np.array([[c, s], [-s, c]])  # from x, y to X, Y
@@ -136,7 +136,7 @@ class Scene:
         return [*moving, self.force, self.slip, *self.words]
 
     def show(self, state: dict[str, float], words: str) -> None:
-        """Move everything to a state: the run's columns at a time; `words` tell the time."""
+        """Move everything to a state: the run's columns at a time; `words` state the time."""
         u = np.array([state["u_x"], state["u_y"]])
         mass = HOME - self.turn @ (self.scale * u)
         self._move_plate(state)

@@ -153,7 +153,7 @@ def passage(
     *,
     trust: bool = False,
 ) -> Passage:
-    """Return what is heard of a run, by the arguments of `listen`.
+    """Return the audible part of a run, by the arguments of `listen`.
 
     Raises
     ------

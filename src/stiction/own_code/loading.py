@@ -25,7 +25,7 @@ LARGEST_FILE = 2**20  # bytes of a file with code
 
 
 class Role(NamedTuple):
-    """What a user's code is to be, for messages.
+    """The role of a user's code, for messages.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ class Role(NamedTuple):
     example: str
 
     def fault(self, message: str) -> DescriptionError:
-        """Return the error for a fault in what names the code."""
+        """Return the error for a fault in the reference to the code."""
         return DescriptionError.of(self.path, message)
 
 

@@ -33,7 +33,7 @@ class Text(NamedTuple):
 
 
 class TextLoader(InspectLoader):
-    """Loader of a module from a text, which it keeps as it was when run."""
+    """Loader of a module from a text, which it stores as it was when run."""
 
     def __init__(self, text: Text, path: str) -> None:
         """Store a text, and the path that tracebacks show."""
@@ -110,7 +110,7 @@ def _remake(text: Text, path: str, name: str, values: tuple[Any, ...]) -> Any:
 
 
 def raised_in_law(error: BaseException) -> str | None:
-    """Return what a user's law raised, and where; None if the error came from elsewhere.
+    """Return the error in a user's law and its place; None if it came from elsewhere.
 
     Machine code names the file that it was compiled from, which another folder may have had.
     """

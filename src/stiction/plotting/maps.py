@@ -104,7 +104,7 @@ def draw_measure(
 
 
 def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> list[Line2D]:
-    """Draw the zero contour of each field; return the lines of those that have one.
+    """Draw the zero contour of each field; return the lines of fields that have one.
 
     Each (n, m) by the name of its line, as fine as the line is to be.
     """

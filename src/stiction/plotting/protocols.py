@@ -1,4 +1,4 @@
-"""Figures of friction tests with a name: what `stiction.analysis` finds in each."""
+"""Figures of named friction tests, from the findings of `stiction.analysis`."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def plot_load_dependence(found: LoadDependence, ax: Axes | None = None) -> Axes:
 
 
 def plot_apparent_friction(found: ApparentFriction, ax: Axes | None = None) -> Axes:
-    """Draw what a load cell reads over the misalignment: its peak, its mean and its span.
+    """Draw a load cell's reading over the misalignment: its peak, its mean and its span.
 
     Parameters
     ----------

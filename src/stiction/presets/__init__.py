@@ -47,7 +47,7 @@ from stiction.presets.vibration import transverse_vibration as transverse_vibrat
 
 
 def __dir__() -> list[str]:
-    """List the presets, and what finds them; not the files in which they are."""
+    """List the presets and the functions that find them, not the modules."""
     return sorted(
         name
         for name, each in globals().items()

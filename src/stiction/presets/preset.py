@@ -1,4 +1,4 @@
-"""A published system: what it shows, where it is published, and the numbers that it must give.
+"""A published system: its results, its publication, and the numbers to reproduce.
 
 A preset is a function that returns a `Description`, decorated with `preset`, and a line in
 ``presets/__init__.py``. Its docstring is its story, for ``stiction presets NAME``.
@@ -92,7 +92,7 @@ class Published(NamedTuple):
 
 
 def holds(what: str, where: str = "published") -> Published:
-    """Return a qualitative result: what is said, which is measured as 1 if it holds."""
+    """Return a qualitative result: a statement, measured as 1 if it holds."""
     return Published(what, 1.0, 0.0, "1", where)
 
 
@@ -146,7 +146,7 @@ class Preset(NamedTuple):
         return cleandoc(str(self.make.__doc__))
 
     def numbers(self, run: Trajectory) -> list[Number]:
-        """Return each published number beside that of a run of the description."""
+        """Return each published number beside the number of a run of the description."""
         return [
             Number(each.where, each.what, each.value, float(found), each.tolerance, each.unit)
             for each, found in zip(self.published, self.measure(run), strict=True)

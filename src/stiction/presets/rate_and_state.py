@@ -44,7 +44,7 @@ def quasi_static(law: Any, k: float, drive: DriveProgram, settings: Settings) ->
 
 
 def step(law: Any, k: float) -> Description:
-    """Return the step from 1 to 10 um/s after 10 s, and 30 s of what follows."""
+    """Return the step from 1 to 10 um/s after 10 s, and the 30 s after it."""
     drive = DriveProgram(velocity=UM, program=[Constant(duration=10.0), Constant(10 * UM)])
     return quasi_static(law, k, drive, Settings(duration=40.0, sample_rate=20.0, rtol=1e-11))
 

@@ -39,7 +39,7 @@ def _year(preset: Preset) -> str:
 
 
 def story(preset: Preset) -> list[Section]:
-    """Return all about a preset: what it is, its source, its numbers, and what is assumed."""
+    """Return everything about a preset: its system, source, numbers and assumptions."""
     paragraphs = [" ".join(each.split()) for each in preset.story.split("\n\n")]
     source = [preset.reference, *([f"doi:{preset.doi}"] if preset.doi else [])]
     parts = [
@@ -128,7 +128,7 @@ def init(
 
 
 def comment(preset: Preset) -> str:
-    """Return the description of a preset in TOML, below what is known of it, as comments."""
+    """Return the description of a preset in TOML, below all knowledge of it as comments."""
     lines: list[str] = []
     for part in story(preset)[:-1]:
         lines += [*wrap(part.title, WIDTH)]

@@ -1,4 +1,4 @@
-"""Scenarios: apparatus of which only qualitative results could be read; parameters are assumed."""
+"""Scenarios: apparatus with only qualitative published results; parameters are assumed."""
 
 from __future__ import annotations
 

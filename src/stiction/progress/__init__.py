@@ -1,1 +1,1 @@
-"""The progress of long work: who is told, and how."""
+"""The progress of long work, and its reports to users."""

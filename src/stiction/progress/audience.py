@@ -1,4 +1,4 @@
-"""Who is told the progress of long work: a user who waits for it."""
+"""The audience of progress reports: a user who waits for long work."""
 
 from __future__ import annotations
 

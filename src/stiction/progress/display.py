@@ -19,7 +19,7 @@ told: list[str] = []  # work whose progress is told; what is a part of it tells 
 
 @contextmanager
 def telling(title: str) -> Iterator[None]:
-    """Let parts of some work tell nothing of their own."""
+    """Keep parts of some work from reports of their own."""
     told.append(title)
     try:
         yield

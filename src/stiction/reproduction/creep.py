@@ -1,4 +1,4 @@
-"""Figures beside those of the paper: creep against theory, and zero slip close up."""
+"""Figures beside the paper's: creep against theory, and a close view of zero slip."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The system at a first look: the rig, the friction force that turns, and what that looks like."""
+"""A first look at the system: the rig, the rotating friction force, and its effects."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LATEST = 0.985  # of the time until then
 
 
 def first_look(run: Trajectory) -> Figure:
-    """Draw the rig, how friction turns, and over time what load cell, friction and mass do.
+    """Draw the rig, the rotation of friction, and load cell, friction and mass over time.
 
     Parameters
     ----------

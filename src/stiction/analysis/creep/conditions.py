@@ -115,7 +115,7 @@ def shows_drive(record: Record) -> bool:
 
 
 def _velocity_and_way(record: Record) -> tuple[float | None, Floats | None]:
-    """Return the velocity (m/s) that a drive should keep, and how far it moves, (n,), m."""
+    """Return the intended velocity of a drive (m/s), and its displacement, (n,), m."""
     ways = record.drive_travel, record.drive_position
     way = next((each for each in ways if each is not None), None)
     if way is None and record.position is not None and record.stiffness is not None:

@@ -195,7 +195,7 @@ def _position(record: Record) -> Floats:
 
 
 def _grain(record: Record, position: Floats) -> float:
-    """Return the rounding error of a distance (m), mainly that of V t or of a reading in steps."""
+    """Return the rounding error of a distance (m), mainly from V t or from a digitised position."""
     travelled = (record.drive_velocity or 0.0) * np.abs(record.time).max(initial=0.0)
     rounding = 4.0 * np.spacing(max(travelled, np.abs(position).max(initial=0.0)))
     if record.position is None or record.slider is not None:

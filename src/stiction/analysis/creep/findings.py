@@ -142,7 +142,7 @@ def _with_divergence(found: CreepFound, rate: float) -> CreepFound:
 def _with_fits(
     found: CreepFound, run: Trajectory | None, record: Record, stiffness: float, V: float
 ) -> CreepFound:
-    """Return findings with what theory fits to the creep: its divergence, and the misalignment."""
+    """Return findings with the fits of theory to creep: its divergence, and the misalignment."""
     curves, mean, missing = found.curves, found.mean, {**found.missing}
     assert curves is not None
     assert mean is not None

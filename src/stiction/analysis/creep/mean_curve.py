@@ -70,7 +70,7 @@ def mean_curve(curves: xr.Dataset, record: Record, stated: Record) -> xr.Dataset
 
 
 def with_base(mean: xr.Dataset, record: Record, stated: Record) -> xr.Dataset:
-    """Return mean creep whose error has that of the stiffness which was taken from the loading.
+    """Return mean creep with the error of the stiffness that was taken from the loading.
 
     If the stated stiffness is right, the mass creeps while it is loaded, by the difference.
     """
@@ -100,7 +100,7 @@ def with_rounding(mean: xr.Dataset, record: Record, cycles: xr.Dataset) -> xr.Da
 
 
 def with_slip_time(mean: xr.Dataset, record: Record) -> xr.Dataset:
-    """Return mean creep whose error next to the slip has that of when the mass slips.
+    """Return mean creep with the error of the slip's time in the bin next to the slip.
 
     That is known to a sample, for all phases alike. With a part of it more, or less, the last bin
     has more or less of a motion that goes as fast as the drive. A bin before it has not.

@@ -267,7 +267,7 @@ def _acceleration(used: Bins) -> Floats:
 
 
 def _after_rest(used: Bins, drive_velocity: float) -> Bins:
-    """Return the bins, far from slip to near, of which none rests any more: creep begins in one."""
+    """Return the bins after the last rest, far from slip to near: creep begins in one of them."""
     begin = used.begin
     rests = begin[np.abs(used.velocity) < REST_SPEED * drive_velocity]
     if not len(rests):

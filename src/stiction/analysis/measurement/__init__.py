@@ -1,1 +1,1 @@
-"""Measured records: read from files, made from runs, and checked against what is stated."""
+"""Measured records: read from files, made from runs, and compared with stated values."""

@@ -22,7 +22,7 @@ from stiction.trajectory import Trajectory, load
 
 
 class ReadArguments(TypedDict, total=False):
-    """What the user says about a file; see `read_record`."""
+    """The user's statements about a file; see `read_record`."""
 
     time: str | int | None
     force: str | int | None
@@ -121,7 +121,7 @@ def _only_record(
     said: dict[str, Any],
     rig_load: float | None = None,
 ) -> Record:
-    """Return the record of a file that holds one, or of which one is asked for."""
+    """Return the only record of a file, or the requested one of several."""
     found = _measurements(path, sidecar, said, rig_load)
     if len(found) > 1:
         listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")

@@ -20,7 +20,7 @@ from stiction.trajectory import Trajectory
 
 
 class Sampling(Described):
-    """The rate at which a record is sampled, Hz; 0 for that of the run."""
+    """The sample rate of a record, Hz; 0 for the run's."""
 
     sample_rate: SampleRate = 0.0
 

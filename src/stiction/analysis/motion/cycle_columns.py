@@ -1,4 +1,4 @@
-"""What is measured of each cycle, the columns of the table, and their mean and spread."""
+"""The quantities measured of each cycle, the columns of the table, with mean and spread."""
 
 from __future__ import annotations
 

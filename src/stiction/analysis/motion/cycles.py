@@ -371,7 +371,7 @@ def _without_line(
 
 
 def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
-    """Return a record less a line, and its swings, of which the residue of the line is none."""
+    """Return a record without a line, and its swings; the line's residue does not count."""
     rest = record.with_force(record.force - line.values)
     found = own_swings(rest)._replace(lines=(line,))
     if is_residue(line, found.table):

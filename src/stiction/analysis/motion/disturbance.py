@@ -167,7 +167,7 @@ def is_stick_slip(table: CycleTable) -> bool:
 
 
 def is_residue(line: Line, table: CycleTable) -> bool:
-    """Return whether swings are no larger than what may be left of a line that was subtracted."""
+    """Return whether swings are no larger than the possible residue of a subtracted line."""
     drop = table["drop"]
     return len(drop) > 0 and float(np.median(drop)) < RESIDUE * line.height
 

@@ -145,7 +145,7 @@ def is_shown(drift: Drift, kind: str) -> bool:
 
 
 def with_drift(friction: Friction, record: Record, cycles: CycleTable, drift: Drift) -> Friction:
-    """Return the friction with the errors that it has if a drift is that of the zero.
+    """Return the friction with the errors that follow if a drift is the zero's.
 
     The zero is right at the first sample, as `detrend` takes it. Each is off by what it drifts
     until then: peaks and means by that of the middle of their times, where there are no cycles the

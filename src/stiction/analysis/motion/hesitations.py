@@ -71,7 +71,7 @@ class Hesitations(NamedTuple):
 def cycle_corners(
     value: Floats, time: Floats, ends: tuple[float, float], trough: bool
 ) -> Hesitations:
-    """Take the hesitations out of peaks and troughs, of which a trough stays first and last.
+    """Remove the hesitations from peaks and troughs; a trough stays first and last.
 
     The `ends` are extremes before and after them, as for `remove_hesitations`, N; `trough` says
     whether the first is a trough.
@@ -102,7 +102,7 @@ def remove_hesitations(values: Floats) -> Hesitations:
 
 
 def largest_leg(values: Floats) -> float:
-    """Return the size beyond which no leg says what is typical; infinity if all of them do.
+    """Return the size above which a leg is not typical; infinity if all legs are.
 
     There is one if a few falls, or rises, are far above all others, `FAR_ABOVE` times the largest
     of these, unless a loading leads to these falls.
@@ -121,7 +121,7 @@ def largest_leg(values: Floats) -> float:
 
 
 def _is_loaded(values: Floats, fall: Floats) -> bool:
-    """Return whether a force rises most of the time by what it loses in a few falls.
+    """Return whether a force rises most of the time, and falls as much in a few falls.
 
     Of each of some peaks and troughs in turn, `fall` is the height of such a fall from it, or 0.
     """
@@ -249,7 +249,7 @@ def _around(size: Floats) -> Floats:
 
 
 def _to_ends(near: Floats) -> Floats:
-    """Return values for all from those that have as many neighbours on either side."""
+    """Return values for all places, from values at places with enough neighbours on both sides."""
     return np.concatenate([np.full(AROUND, near[0]), near, np.full(AROUND, near[-1])])
 
 

@@ -1,4 +1,4 @@
-"""Vibrations: their period beside that of the mass on its spring, and how irregular they are."""
+"""Vibrations: their period beside that of the mass on its spring, and their irregularity."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A regular wave on which cycles ride, as of a disc that turns askew."""
+"""A regular wave under the cycles, such as a disc's that turns askew."""
 
 from __future__ import annotations
 

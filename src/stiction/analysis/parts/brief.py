@@ -24,7 +24,7 @@ OF_LOADING = {  # by their name in `Analysis.missing`
 
 
 def section(found: Analysis) -> Section:
-    """Return test, motion, whether the force turns, friction, the first warning, and what lacks."""
+    """Return test, motion, rotation of the force, friction, the first warning, and missing data."""
     kind, test = found.regime.surely, found.parts["procedure"]
     lines = [
         *([] if test is None else [f"A test of {name_of(test).replace('-', ' ')}, as below."]),
@@ -78,7 +78,7 @@ def warnings_in_short(said: tuple[str, ...]) -> list[str]:
 
 
 def _open_questions(found: Analysis) -> list[str]:
-    """Return what the loading of a spring shows elsewhere, and does not here."""
+    """Return the questions that the loading of a spring answers elsewhere, but not here."""
     names = [name for key, name in OF_LOADING.items() if key in found.missing]
     names += [
         x.name for x in found.parts["metadata"] if isfinite(x.stated) and not x.is_shown

@@ -148,7 +148,7 @@ def _while_it_creeps(found: Analysis) -> tuple[xr.Dataset, str]:
 
 
 def _presliding(found: Analysis, its: Misalignment) -> str:
-    """Return what presliding would do to the angle of a record, which its errors leave out."""
+    """Return the effect of presliding on the angle of a record, which its errors exclude."""
     if isinstance(found.source, Trajectory) and not states(found.source.slider.law):
         return ""
     shown = found.parts["rotation"]
@@ -229,7 +229,7 @@ def _creeping(row: xr.Dataset, V: float, lasts: float, rests: str) -> str:
 
 
 def tables(found: Analysis) -> dict[str, xr.Dataset | None]:
-    """Return the mean creep, and that of each stick phase."""
+    """Return the mean creep, and the creep of each stick phase."""
     return {"creep": found.creep, "creep-phases": found.curves}
 
 

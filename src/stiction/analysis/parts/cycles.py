@@ -73,7 +73,7 @@ def section(found: Analysis) -> Section:
 
 
 def turns_with_drive(found: Analysis) -> bool:
-    """Return whether the swings of a force are those of a drive that goes back and forth."""
+    """Return whether the swings of a force come from a drive that goes back and forth."""
     return found.regime.has(*TO_AND_FRO)
 
 

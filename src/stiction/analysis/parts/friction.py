@@ -91,7 +91,7 @@ def force_in_words(its: Measured) -> str:
 
 
 def _zero(found: Analysis) -> str:
-    """Return the zero that a record shows at its start, if the errors are those that it makes."""
+    """Return the zero that a record shows at its start, if the errors come from it."""
     shown: InitialRest | None = found.parts["zero"]
     errors = [each.error for each in found.friction[:3] if each is not None]
     if shown is None or not errors or abs(shown.reading) < MAKES * min(errors):

@@ -1,4 +1,4 @@
-"""What a measured record says of its own apparatus, beside what is stated."""
+"""The properties of its own apparatus that a measured record shows, beside the stated ones."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ HEADINGS = ("quantity", "shown", "stated", "", "by the")
 
 
 def section(found: Analysis) -> Section | None:
-    """Return them as a table, with a sentence on those that contradict each other."""
+    """Return them as a table, with a sentence on contradictory ones."""
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
     if all(each.agrees is None for each in its):  # nothing is stated
         return None
@@ -83,7 +83,7 @@ def verdict(each: StatedQuantity) -> str:
 
 
 def _verdict_of_bound(each: StatedQuantity) -> str:
-    """Return the same for a lower bound: only one that is near what is stated agrees with it."""
+    """Return the verdict on a lower bound: it agrees only if it is near the stated value."""
     if not each.agrees:
         return DOUBTED
     if not each.is_shown:

@@ -1,4 +1,4 @@
-"""What the mass does, in a sentence that needs no theory."""
+"""The motion of the mass, in a sentence that needs no theory."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def find(found: Analysis) -> str:
 
 
 def section(found: Analysis) -> Section:
-    """Return what follows the plain sentence of the brief, and the evidence of the kind."""
+    """Return the sentences after the plain one of the brief, and the evidence of the kind."""
     said = found.parts["motion"]
     more = said.removeprefix(first_sentence(said)).strip()
     grounds = f"Evidence: {found.regime.grounds}." if found.regime.evidence else ""
@@ -260,13 +260,13 @@ def _sticks(found: Analysis) -> str:
 
 
 def _swinging(found: Analysis) -> str:
-    """Return what is known to swing: the mass, or only the force, which friction changes too."""
+    """Return the part that is known to swing: the mass, or only the force, as friction may, too."""
     period = found.regime.evidence.get("natural_period", inf)
     return "mass" if COUPLED <= period <= SLOW_SWING else "force"
 
 
 def _not_its_own(found: Analysis) -> str:
-    """Return what else may swing in a record, if a mass on its spring swings at another rate."""
+    """Return other possible sources of a swing at another rate than the mass on its spring."""
     if found.regime.kind != HARMONIC or isinstance(found.source, Trajectory):
         return ""
     period = found.regime.evidence.get("natural_period", 1.0)
@@ -298,7 +298,7 @@ def _on_a_wave(found: Analysis) -> str:
 
 
 def _settles(found: Analysis, at: str) -> str:
-    """Describe what dies down, or settles, and what the mass does then."""
+    """Describe the part that dies down or settles, and the motion of the mass then."""
     evidence = found.regime.evidence
     if comes_to_rest(found.record.slip_speed):
         return "The motion dies down, and the mass comes to rest."
@@ -334,7 +334,7 @@ def _slides(evidence: dict[Evidence, float], at: str) -> str:
 
 
 def _besides(found: Analysis) -> str:
-    """Return at what frequency a force swings beside its course, if its spectrum shows it."""
+    """Return the frequency of a further swing of the force, if its spectrum shows one."""
     evidence, seen = found.regime.evidence, found.oscillation
     if found.regime.has("hidden"):
         swings, height = in_words(evidence["hidden"], "Hz"), evidence["hidden_height"]
@@ -392,7 +392,7 @@ def _stick_share(found: Analysis) -> str:
 
 
 def _why_transverse(found: Analysis) -> str:
-    """Return what makes cycles of a run those of both springs, or nothing for other cycles."""
+    """Return why cycles of a run belong to both springs; nothing for other cycles."""
     own = found.record.own_period
     if found.regime.kind != TRANSVERSE or own is None:
         return ""

@@ -1,4 +1,4 @@
-"""What a run, or a record, shows of the friction test that its drive or its load makes."""
+"""The friction test that the drive or load of a run or record makes, and its results."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def section(found: Analysis) -> Section | None:
 
 
 def name_of(its: SectionReport) -> str:
-    """Return the name of the test that an analysis is of, which is that of its files."""
+    """Return the name of the friction test in an analysis, which its files have, too."""
     return its.figure.removeprefix("plot_").replace("_", "-")
 
 
@@ -123,7 +123,7 @@ def tables(found: Analysis) -> dict[str, xr.Dataset]:
 
 
 def numbers(found: Analysis) -> dict[str, Any]:
-    """Return the same for JSON, with what follows from all rows."""
+    """Return the same for JSON, with the results from all rows."""
     its = found.parts["procedure"]
     if its is None:
         return {"procedure": None}

@@ -72,7 +72,7 @@ def in_short(found: Analysis) -> list[str]:
 
 
 def _course(its: Rotation, *, measured: bool) -> str:
-    """Return what both forces do, and with a known zero magnitude and angle."""
+    """Return the course of both forces, and with a known zero their magnitude and angle."""
     a, b = (in_words(float(each), "N") for each in its.along)
     c, d = (float(each) for each in its.across)
     across = "the force across"
@@ -105,7 +105,7 @@ def _means(its: Rotation) -> str:
 
 
 def _conclusion(its: Rotation, *, measured: bool) -> str:
-    """Return whether it turns or grows, and what follows."""
+    """Return the conclusion: the force turns, or it grows."""
     said = [f"It {CLAUSES[its.kind]}." if its.kind in CLAUSES else UNKNOWN]
     if its.kind == UNDETERMINED and its.stated:
         said.append("The errors leave both possible.")
@@ -135,7 +135,7 @@ def _conclusion(its: Rotation, *, measured: bool) -> str:
 
 
 def _left_out(its: Rotation) -> str:
-    """Return what the errors do not include."""
+    """Return the effects that the errors do not include."""
     drift = "" if its.loadings >= SEVERAL else ", a drift of the zero beyond a stated one"
     return (
         f"The errors leave out crosstalk of the channels{drift}, and gains or filters in which "

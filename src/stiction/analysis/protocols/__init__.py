@@ -1,1 +1,1 @@
-"""What a friction test with a name measures: healing, velocity steps, hysteresis, yaw sweeps."""
+"""The results of named friction tests: healing, velocity steps, hysteresis, yaw sweeps."""

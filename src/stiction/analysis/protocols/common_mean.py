@@ -1,4 +1,4 @@
-"""What values with errors have in common, and whether they differ by more than chance."""
+"""The common mean of values with errors, and whether they differ by more than chance."""
 
 from __future__ import annotations
 

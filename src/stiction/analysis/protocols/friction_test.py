@@ -61,7 +61,7 @@ class ConstantStretch(NamedTuple):
         return float(np.sign(self.velocity))
 
     def like(self, other: ConstantStretch) -> bool:
-        """Return whether velocity and load are those of another stretch, but for rounding."""
+        """Return whether velocity and load agree with another stretch's, but for rounding."""
         return alike(self.velocity, other.velocity) and alike(self.load, other.load)
 
 
@@ -71,7 +71,7 @@ def alike(one: float, two: float) -> bool:
 
 
 class FrictionTest(NamedTuple):
-    """The force over time, and what drive and load do meanwhile.
+    """The force over time, with the course of drive and load.
 
     Attributes
     ----------
@@ -132,7 +132,7 @@ class FrictionTest(NamedTuple):
         return off if self.law is None else 0.0
 
     def until_end(self, stretch: ConstantStretch, early: float = 0.0) -> Indices:
-        """Return the indices of the samples of a stretch without those that may be of the next.
+        """Return the indices of a stretch's samples, without those that may belong to the next.
 
         They begin by a time `early` (s) before the stretch does.
         """
@@ -183,7 +183,7 @@ class FrictionTest(NamedTuple):
         return self.within(*stretch[:2])[-count:]
 
     def successions(self) -> list[tuple[ConstantStretch, ConstantStretch]]:
-        """Return the pairs of stretches of which one follows the other at once."""
+        """Return the pairs of stretches that follow each other without a gap."""
         pairs = zip(self.stretches, self.stretches[1:], strict=False)
         return [(one, two) for one, two in pairs if two.start == one.end]
 
@@ -220,7 +220,7 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
 
 
 def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionTest:
-    """Return a run as a friction test whose stretches are those of `drive`.
+    """Return a run as a friction test with the stretches of `drive`.
 
     The empty end of a run that failed is left out.
     """
@@ -275,7 +275,7 @@ def of_record(
 
 
 def _against_friction(record: Record, found: list[ConstantStretch]) -> Floats:
-    """Return the force with the sign by which a measured drive does work: friction takes it."""
+    """Return the force with the sign that makes the work of the measured drive positive."""
     edges = [np.searchsorted(record.time, each[:2]) for each in found]
     work = [
         each.way * float(record.force[first:last].sum())

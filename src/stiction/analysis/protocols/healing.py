@@ -181,7 +181,7 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
 def _peaks(
     source: Trajectory | Record, test: FrictionTest, slides: list[ConstantStretch]
 ) -> list[Peak]:
-    """Return the peaks of slides; of a run that cannot be repeated, those of its samples."""
+    """Return the peaks of slides; from the samples if the run cannot be repeated."""
     if isinstance(source, Trajectory):
         with suppress(ResultError):
             return peaks_of_run(source, slides)

@@ -105,7 +105,7 @@ def _bends(times: Floats, places: Floats, far: float) -> list[int]:
 
 
 def _part(time: Floats, position: Floats, start: float, end: float, least: float) -> _Part:
-    """Return a part with the line through its samples, those at its ends left out.
+    """Return a part with the line through its samples, except the samples at its ends.
 
     It is bent if means spread about the line by `least` (m), and by more than their noise.
     """
@@ -121,7 +121,7 @@ def _part(time: Floats, position: Floats, start: float, end: float, least: float
 
 
 def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
-    """Return parts without brief ones of a velocity between those beside them, the briefest first.
+    """Return parts without brief transitions between two velocities, the briefest removed first.
 
     There the drive comes from one velocity to the next: it takes little time, and little way. A
     part that is faster than both neighbours, or slower, is one of the test, if it lasts over some
@@ -147,7 +147,7 @@ def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
 
 
 def _alike(speeds: Floats, durations: Floats) -> Floats:
-    """Return velocities of which those that differ by little are the same.
+    """Return velocities, with those that differ by little replaced by their mean.
 
     The variance of a slope falls with the cube of its duration.
     """

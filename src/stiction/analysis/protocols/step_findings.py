@@ -169,7 +169,7 @@ class VelocitySteps(SectionReport):
 
 
 class CommonValue(NamedTuple):
-    """What a - b of all steps have in common, its standard error, and whether they are alike."""
+    """The mean of a - b over all steps, its standard error, and whether the steps agree."""
 
     value: float
     error: float

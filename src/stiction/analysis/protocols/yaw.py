@@ -1,4 +1,4 @@
-"""Apparent friction over the yaw angle: what a load cell on the soft spring reads."""
+"""Apparent friction over the yaw angle, as a load cell on the soft spring reads it."""
 
 from __future__ import annotations
 

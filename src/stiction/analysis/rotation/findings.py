@@ -99,7 +99,7 @@ def rotation_of(record: Record, cycles: xr.Dataset) -> Rotation:
 
 
 def _rotation(its: MeanLoading, sensor: Sensor | None) -> Rotation:
-    """Return what a mean loading shows, by the zero of the force across if that is stated."""
+    """Return the finding of a mean loading, by the zero of the force across if it is stated."""
     if sensor is None or not sensor.zero_uncertainty:
         return _by_path(its)
     its = its._replace(drift=hypot(its.drift, sensor.zero_drift_uncertainty))
@@ -108,7 +108,7 @@ def _rotation(its: MeanLoading, sensor: Sensor | None) -> Rotation:
 
 
 def _with_scatter(found: Rotation, its: LoadingSeries) -> Rotation:
-    """Return a finding whose errors are at least those by the scatter of loadings (jackknife)."""
+    """Return a finding with errors that are at least the loadings' scatter (jackknife)."""
     means = [its.without(at).mean() for at in range(len(its))]
     if found.stated:
         less = [(each.change,) for each in (_by_zero(mean, found.zero_error) for mean in means)]
@@ -129,7 +129,7 @@ def _ends(kind: str, its: MeanLoading) -> Rotation:
 
 
 def _by_path(its: MeanLoading) -> Rotation:
-    """Return what the path of the force shows without a zero of the force across."""
+    """Return the finding from the path of the force, without a zero of the force across."""
     arc, line = best_arc(its), line_misfit(its)
     kind = UNDETERMINED
     most = (arc.change + ERRORS_95 * arc.change_error) * arc.F_0
@@ -146,7 +146,7 @@ def _by_path(its: MeanLoading) -> Rotation:
 
 
 def _by_zero(its: MeanLoading, zero_error: float, gain_error: float = 0.0) -> Rotation:
-    """Return what the magnitudes show, as the zero of the force across is known.
+    """Return the finding from the magnitudes, with a known zero of the force across.
 
     A force that first grows and then turns, or the other way round, does both, though its ends
     alone may show it grow.

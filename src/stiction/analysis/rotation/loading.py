@@ -58,7 +58,7 @@ class LoadingSeries(NamedTuple):
         return len(self.peaks)
 
     def without(self, at: int) -> LoadingSeries:
-        """Return all but one, for the scatter of what they yield."""
+        """Return all loadings except one, for the scatter of their results."""
         each = (np.delete(values, at, 0) for values in (self.means, self.peaks, self.spans))
         means, peaks, spans = each
         return LoadingSeries(means, self.noise, peaks, self.rounding, spans)

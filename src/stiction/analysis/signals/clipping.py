@@ -59,6 +59,6 @@ def flat_ends(values: Floats) -> list[FlatEnd]:
 
 
 def _most(values: Floats, lasts: Indices) -> int:
-    """Return how many samples have the most common of some values, each of which `lasts` some."""
+    """Return the number of samples of the most common value; each value `lasts` some samples."""
     _, kind = np.unique(values, return_inverse=True)
     return int(np.bincount(kind, lasts).max())

@@ -1,4 +1,4 @@
-"""Means of values of which neighbours are alike, and noise that lasts for several samples."""
+"""Means of correlated values, and noise that lasts for several samples."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ UNSEEN = 8.0
 
 
 def interval_95(values: Floats) -> Floats:
-    """Return the ends (2, ...) between which 95 % of all values lie, of which (n, ...) are drawn.
+    """Return the ends (2, ...) of the interval with 95 % of a population, from draws (n, ...).
 
     They are median-unbiased, whatever the distribution (R. J. Hyndman & Y. Fan, Am. Stat. 50, 361
     (1996)). Interpolated from the smallest to the largest value, those of 64 hold 93 % of others.
@@ -54,7 +54,7 @@ def correlation_time(values: Floats) -> float:
 
 
 def whole_correlation_time(deviations: Floats) -> float:
-    """Return the same for deviations from straight lines, with what they do not show of it.
+    """Return the correlation time of noise, from deviations from straight lines.
 
     A line follows a part of noise that lasts.
     """
@@ -68,7 +68,7 @@ def mean_and_spread(values: Floats) -> tuple[float, float]:
 
 
 def statistics(values: Floats) -> tuple[float, float, float]:
-    """Return mean, standard error and spread of values, of which neighbours may be alike.
+    """Return mean, standard error and spread of values that may be correlated.
 
     `error_of_few` makes that of few values larger.
     """
@@ -78,7 +78,7 @@ def statistics(values: Floats) -> tuple[float, float, float]:
 
 
 def error_of_few(error: float, freedom: float) -> float:
-    """Return a standard error of which two hold 95 % where few values tell it.
+    """Return a standard error, larger for few values, so that twice this error holds 95 %.
 
     The quantile of Student's t with so many degrees of freedom, over two, and at least 1.
 
@@ -91,7 +91,7 @@ def error_of_few(error: float, freedom: float) -> float:
 
 
 def standard_error(values: Floats) -> float:
-    """Return the standard error of the mean of values, of which neighbours may be alike."""
+    """Return the standard error of the mean of values that may be correlated."""
     return statistics(values)[1]
 
 
@@ -107,12 +107,12 @@ class CorrelatedNoise(NamedTuple):
         return self.few * self.deviation * sqrt(self.samples / (count + self.samples - 1.0))
 
     def own_error(self, count: int) -> float:
-        """Return the same by what is seen alone: there may be too few samples to see it."""
+        """Return the error by the observed noise alone, without a factor for few samples."""
         return self.error(count) / self.few
 
 
 def noise_about(parts: Sequence[Floats]) -> CorrelatedNoise:
-    """Return the noise that deviations from straight lines show: those of some parts in a row."""
+    """Return the noise of deviations from straight lines, in several parts in a row."""
     left = np.concatenate([np.empty(0), *parts])
     count = len(left)
     if count < FEWEST:

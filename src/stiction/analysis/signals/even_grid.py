@@ -32,7 +32,7 @@ FEWEST_SAMPLES = 16  # samples with which the step is first refined
 
 @dataclass(frozen=True, eq=False)
 class EvenGrid:
-    """Even times through those of a record."""
+    """Evenly spaced times through a record's times."""
 
     places: Floats  # (n,) of the record's samples on the grid, in steps from its first time
     # the first time of the grid and its step, s
@@ -42,7 +42,7 @@ class EvenGrid:
 
     @property
     def exact(self) -> bool:
-        """Whether the record's samples are those of the grid, one for each time."""
+        """Whether the record's samples lie on the grid, one at each time."""
         return self.size == len(self.places) and not self.off_grid.any()
 
     @cached_property
@@ -91,7 +91,7 @@ class EvenGrid:
         return even and not self.has_gaps
 
     def on(self, values: Floats) -> Floats:
-        """Return values at the times of the grid, from those at the record's own times."""
+        """Return values at the grid's times, from values at the record's own times."""
         if self.exact:
             return values
         at = np.arange(self.size, dtype=np.float64)
@@ -109,7 +109,7 @@ class EvenGrid:
         return np.concatenate([time[:1], time[0] + np.cumsum(steps)])
 
     def between(self, values: NDArray[Any]) -> NDArray[Any]:
-        """Return values that change slowly at the record's own times, from those on the grid."""
+        """Return slowly changing values at the record's own times, from values on the grid."""
         return np.asarray(np.interp(self.places, np.arange(self.size), values))
 
 

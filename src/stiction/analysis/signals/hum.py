@@ -73,7 +73,7 @@ class Line(NamedTuple):
 
 
 def narrow_lines(grid: EvenGrid | None, force: Floats, least: float = 1.0) -> list[Line]:
-    """Return up to four narrow lines of at least some clearness, first those most alone."""
+    """Return up to four narrow lines of a least clearness, the most isolated first."""
     seen = _spectrum_on_grid(force, grid)
     if grid is None or seen is None:
         return []
@@ -96,7 +96,7 @@ def line_near(grid: EvenGrid, force: Floats, frequency: float) -> Line | None:
 
 
 def lines_like(lines: Sequence[Line], grid: EvenGrid, values: Floats, least: float) -> list[Line]:
-    """Return the narrow lines of another channel that are of the mains or are those of a force.
+    """Return the narrow lines of another channel that belong to the mains or to given lines.
 
     Those of the mains from a frequency `least` (Hz) on: slower ones may be those of its cycles.
     """
@@ -143,7 +143,7 @@ def peak_frequencies(grid: EvenGrid | None, force: Floats) -> list[float]:
 
 
 class _Spectrum(NamedTuple):
-    """Power of a force, what it is `beside` each sample, and the samples' width in cycles."""
+    """Power of a force, the floor beside each sample, and the samples' width in cycles."""
 
     power: Floats
     floor: Floats
@@ -198,7 +198,7 @@ def _measure_line(force: Floats, grid: EvenGrid, seen: _Spectrum, at: int) -> Li
 
 
 def _gain(force: Floats, line: Floats) -> float:
-    """Return by which factor a line fits a force best."""
+    """Return the factor by which a line fits a force best."""
     size = inner_product(line, line)
     return inner_product(force, line) / size if size > 0.0 else 1.0
 

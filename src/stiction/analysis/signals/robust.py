@@ -1,4 +1,4 @@
-"""Means of equal parts, means of values among which a few are wild, and signals without those."""
+"""Means of equal parts, means that ignore wild values, and signals without wild values."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Straight lines through points by least squares, and what is uncertain of them."""
+"""Straight lines through points by least squares, and their uncertainty."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class StraightLine(NamedTuple):
         return self.level + self.slope * (x - self.centre)
 
     def deviations(self, x: Floats, y: Floats) -> Floats:
-        """Return what points deviate by from the line."""
+        """Return the deviations of points from the line."""
         return np.asarray(y - self.at(x))
 
 

@@ -137,7 +137,7 @@ def _column(table: FileTable, name: str, given: str | None) -> FrozenColumn:
 
 
 def _usual(table: FileTable, name: str) -> str:
-    """Return the name by which a column goes if none is given: of times, as in records."""
+    """Return the default name of a column; for times, the name in records."""
     if name != "time":
         return name
     usual = CHANNELS[name].names

@@ -52,7 +52,7 @@ class Rows(NamedTuple):
 
 
 def row_faults(table: Rows) -> Iterator[tuple[str, str]]:
-    """Yield every fault of a table: the column, and what is wrong with it."""
+    """Yield every fault of a table, with its column."""
     time, values = table.time, table.values
     if len(time) != len(values):
         message = f"has {len(values)} rows and time has {len(time)}; give one value for each time"
@@ -272,6 +272,6 @@ def length(time: FrozenColumn) -> float:
 
 
 def highest_frequency(time: FrozenColumn) -> float:
-    """Return the frequency (Hz) of which a period has `PERIOD` rows where they are densest."""
+    """Return the frequency (Hz) whose period has `PERIOD` rows where rows are densest."""
     some = min(PERIOD, len(time.values) - 1)
     return some / PERIOD / float(np.min(time.values[some:] - time.values[:-some]))

@@ -92,7 +92,7 @@ def locator(folder: Path, trust: bool = False) -> Locate:
 
 
 def locate_nothing(file: str) -> Path:
-    """Refuse every file: what is stored holds its tables."""
+    """Refuse every file, since stored results contain their tables."""
     message = f"the rows of {echo(file)} are not stored here; read the description it came from"
     raise DescriptionError.of("file", message)
 

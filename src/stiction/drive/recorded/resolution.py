@@ -1,4 +1,4 @@
-"""Whether the rows of a table resolve what they record: noise and jumps from row to row.
+"""The resolution of a table's rows: noise, and jumps from row to row.
 
 Each value is compared with the cubic through its four neighbours (M80). Where rows follow a smooth
 motion, the deviations of neighbours are alike; those of noise have opposite signs.
@@ -25,7 +25,7 @@ BINS, ABOVE, MARGIN = 9, 5.0, 2.0  # of the spectrum: smoothed over, over the no
 
 
 class Roughness(NamedTuple):
-    """What rows do not resolve: the standard deviation of noise, or the rows of single jumps.
+    """Unresolved parts of a table: the standard deviation of noise, or the rows of single jumps.
 
     `noise` is in the unit of the value that counts, and `share` is its share of the largest one;
     `cut_off` (Hz) is where the spectrum drowns in it, NaN if that is nowhere.
@@ -39,7 +39,7 @@ class Roughness(NamedTuple):
 
 
 def roughness(time: Floats, values: Floats, largest: float, integrated: bool) -> Roughness | None:
-    """Return what the rows of a table do not resolve, None if they resolve everything.
+    """Return the unresolved parts of a table; None if its rows resolve everything.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def cut_off(values: Floats, rate: float, square: float) -> float:
 
 
 def advice(found: Roughness, name: str, amount: str, rows: list[int], word: str) -> str:
-    """Return in words what is wrong with a column and what to do, for a message.
+    """Return the fault of a column and its remedy in words, for a message.
 
     `amount` is the noise with its unit, `rows` are the numbers of its rows, each a `word`.
     """

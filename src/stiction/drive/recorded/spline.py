@@ -143,7 +143,7 @@ def cubic_sum(r: Recording, i: Any, x: Any, dx: Any) -> Any:
 
 
 class Spline(NamedTuple):
-    """What the passages of one table have in common: a `Recording` from t = 0 on, no wave."""
+    """The common part of one table's passages: a `Recording` from t = 0 on, no wave."""
 
     rows: Floats
     first: Any

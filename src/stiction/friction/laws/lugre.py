@@ -113,7 +113,7 @@ def bristle_force(
 def bristle_gradient(
     sigma_0: float, sigma_1: float, sigma_2: float, give: float, by: Vector, z: tuple[float, ...]
 ) -> tuple[tuple[float, ...], ...]:
-    """Return the derivatives of force and deflection rate; `by` are those of `give` by the slip."""
+    """Return the derivatives of force and deflection rate, given those of `give` by the slip."""
     (by_x, by_y), (z_x, z_y) = by, z
     xx, xy, yx, yy = 1.0 - by_x * z_x, -by_y * z_x, -by_x * z_y, 1.0 - by_y * z_y
     by_z = sigma_0 - sigma_1 * give

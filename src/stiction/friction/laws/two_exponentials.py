@@ -49,7 +49,7 @@ class TwoExponentials(NamedTuple):
 
     @classmethod
     def like(cls, static: float, kinetic: float, speed: float) -> TwoExponentials:
-        """Return the law that loses half of what another does at half its speed, half at twice."""
+        """Return the law with half of the loss at half the given speed, and half at twice."""
         lost = 0.5 * (static - kinetic)
         return cls(kinetic, lost, 0.5 * speed, lost, 2.0 * speed)
 

@@ -124,7 +124,7 @@ def _in_python(kind: type) -> Iterator[set[str]]:
 
 
 def _methods(kind: type) -> list[Any]:
-    """Return the methods of a class, also inherited ones, but not those of tuple."""
+    """Return the methods of a class, also inherited ones, except tuple's own."""
     found = {
         name: each
         for base in reversed(kind.__mro__)
@@ -228,7 +228,7 @@ def _probes(law: Any) -> list[tuple[str, float]]:
 
 
 def no_number(law: Any) -> tuple[str, str] | None:
-    """Return which method of a law returns something else than a number, and what is wrong."""
+    """Return the method of a law that returns something else than a number, and the fault."""
     for method, v in _probes(law):
         try:
             value = getattr(law, method)(v)
@@ -245,7 +245,7 @@ _no_number = lru_cache(maxsize=256, typed=True)(no_number)  # once for each law,
 
 
 def check_end(law: Any, name: str) -> None:
-    """Raise an error if a law cannot be told from others, or one of its methods does not end."""
+    """Raise an error if a law cannot be distinguished from others, or a method does not end."""
     for key, value in law._asdict().items():
         try:
             hash(value)
@@ -269,7 +269,7 @@ def sound(law: Any, name: str) -> Any:
 
 @lru_cache(maxsize=256, typed=True)
 def _wrong(law: Any) -> tuple[str, str] | None:
-    """Return what is wrong with a set-valued law at a few speeds: of which method, and what.
+    """Return a fault of a set-valued law at a few speeds: the method, and the reason.
 
     Where Python cannot tell a value, compiled code may: then nothing is known to be wrong.
     """
@@ -307,7 +307,7 @@ def _wrong(law: Any) -> tuple[str, str] | None:
 
 
 def _value(method: Callable[[float], Any], v: float) -> float:
-    """Return what a method returns at a slip speed (m/s); NaN if it raises an error."""
+    """Return a method's value at a slip speed (m/s); NaN if it raises an error."""
     try:
         return float(method(v))
     except KeyboardInterrupt:

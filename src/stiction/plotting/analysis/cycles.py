@@ -61,7 +61,7 @@ def plot_cycles(
 def plot_motion(
     record: Record, cycles: xr.Dataset, kind: str, axes: Axes | Sequence[Axes] | None = None
 ) -> NDArray[np.object_]:
-    """Draw what `plot_cycles` draws, where cycles and kind of motion are known."""
+    """Draw as `plot_cycles` does, with cycles and kind of motion already known."""
     if not len(record):
         raise ResultError("the record has no samples; there is nothing to draw")
     steady = under_mean_load(record)

@@ -1,4 +1,4 @@
-"""An analysis, or those of several records, as one HTML page with figures."""
+"""One or several analyses as one HTML page with figures."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ DRAWN = {
 
 
 def write(found: Analysis, path: str | Path, name: str) -> Path:
-    """Write an analysis as a self-contained page; return the path. `name` is that of its source.
+    """Write an analysis of the source `name` as a self-contained page; return the path.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What a test of a rig reads, over its uncertain misalignment."""
+"""The readings of a rig's test over its uncertain misalignment."""
 
 from __future__ import annotations
 

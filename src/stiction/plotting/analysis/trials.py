@@ -113,7 +113,7 @@ def _wrap(title: str) -> str:
 
 
 def _draw_trial(ax: Axes, before: Record, trial: Trial, factor: float) -> dict[str, Artist]:
-    """Draw one trial over the test before; return what a legend has to name."""
+    """Draw one trial over the test before; return the entries of a legend."""
     title, record = trial
     low, high = later(factor, before, record)
     start, end, count = time_range(record, SEEN * (high - low) / factor)

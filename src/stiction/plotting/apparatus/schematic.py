@@ -159,7 +159,7 @@ def _yields(slider: Slider, place: int) -> list[bool]:
 
 
 def _draw_series(ax: Axes, lab: Placement, ends: Floats, side: Floats, yields: list[bool]) -> None:
-    """Draw springs one behind the other, with numbers beside them, and bars for what is rigid."""
+    """Draw springs in series with their numbers, and bars for rigid parts."""
     sizes = np.where(yields, 1.0, 0.4)
     joints = ends[0] + np.outer(np.r_[0.0, np.cumsum(sizes) / sizes.sum()], ends[1] - ends[0])
     turns = max(2, 6 - len(yields))
@@ -175,7 +175,7 @@ def _draw_series(ax: Axes, lab: Placement, ends: Floats, side: Floats, yields: l
 
 
 def _draw_masses(ax: Axes, lab: Placement, slider: Slider, side: float) -> None:
-    """Write the mass into the block; where two differ, draw their axes, that of m_x longer."""
+    """Write the mass into the block; if two differ, draw their axes, the longer for m_x."""
     if slider.mass_y is None or slider.mass_y == slider.mass:
         shapes.name(ax, (0, 0), "$m$")
         return

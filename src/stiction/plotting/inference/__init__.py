@@ -1,1 +1,1 @@
-"""Figures of fits: what is known before and after a measurement."""
+"""Figures of fits: the knowledge of parameters before and after a measurement."""

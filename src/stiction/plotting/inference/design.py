@@ -1,4 +1,4 @@
-"""How far further tests narrow what is known of a parameter."""
+"""The expected width of a parameter after further tests."""
 
 from __future__ import annotations
 

@@ -85,7 +85,7 @@ def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequenc
 
 
 class ParameterAxis(NamedTuple):
-    """The axis of a parameter: what values are divided by, its label, whether it is logarithmic.
+    """The axis of a parameter: its unit, its label, and whether it is logarithmic.
 
     It is where the prior is uniform in the logarithm, and is then drawn level.
     """

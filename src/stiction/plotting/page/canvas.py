@@ -1,4 +1,4 @@
-"""The canvas of a figure: given axes, or those of a new figure."""
+"""The canvas of a figure: given axes, or axes of a new figure."""
 
 from __future__ import annotations
 
@@ -33,12 +33,12 @@ def canvas(width: float, height: float) -> Figure:
 
 
 def panel(ax: Axes | None, height: float) -> Axes:
-    """Return the given axes, or those of a new figure of this height (in), as wide as a column."""
+    """Return the given axes, or axes of a new figure of this height (in), as wide as a column."""
     return fix_ticks([canvas(COLUMN, height).subplots()])[0] if ax is None else ax
 
 
 def stack(axes: Any, height: float, ratios: Sequence[float]) -> Sequence[Axes]:
-    """Return the given axes, or those of a new figure of this height (in), as wide as a column.
+    """Return the given axes, or axes of a new figure of this height (in), as wide as a column.
 
     They stand above each other on one x axis, their heights in these ratios.
     """

@@ -76,7 +76,7 @@ def page(
 
 
 def illustrations(drawn: Iterable[tuple[Figure | None, str]]) -> list[Illustration]:
-    """Return figures with their captions for a page, without those that are None."""
+    """Return figures with their captions for a page, except missing ones."""
     return [
         Illustration(b64encode(png(figure)).decode("ascii"), caption, figure.get_figwidth() / PAGE)
         for figure, caption in drawn

@@ -94,7 +94,7 @@ def png(fig: Figure) -> bytes:
 
 
 def picture(draw: Callable[..., Any], *what: Any) -> str:
-    """Return what a function draws as an image in HTML; '' if there is nothing to draw."""
+    """Return the figure of a function as an image in HTML; '' if there is nothing to draw."""
     try:
         figure = figure_of(draw, *what)
     except StictionError:

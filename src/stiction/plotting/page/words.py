@@ -122,7 +122,7 @@ def law_in_words(slider: Slider) -> list[str]:
 
 
 def parameters_in_words(law: Any) -> list[str]:
-    """Return a law's parameters with their units, without those left out as zero."""
+    """Return a law's parameters with their units, except those that are zero by default."""
     if isinstance(law, Anisotropic):
         grain = f"across/along {law.ratio:.4g}", f"axis at {degrees(law.angle):.4g}°"
         return [*parameters_in_words(law.law), *grain]

@@ -17,7 +17,7 @@ ROUNDED = 1e-12  # of the end of a window, as of the times of samples
 
 
 def excerpt(run: Trajectory, window: Sequence[Quantity] | None) -> Trajectory:
-    """Return what a run has in a part of its time: samples and rests.
+    """Return a part of a run: its samples and rests in a window of time.
 
     Parameters
     ----------

@@ -121,7 +121,7 @@ def _law(ax: Axes, run: Trajectory) -> None:
 
 
 def _words(run: Trajectory, part: Trajectory) -> Words:
-    """Return the text beside a run, of which a part is drawn."""
+    """Return the text beside a run, a part of which is drawn."""
     return [
         ("System", system_in_words(run.slider), BLACK),
         ("Friction", law_in_words(run.slider), BLACK),

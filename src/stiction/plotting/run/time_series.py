@@ -82,7 +82,7 @@ def draw_friction(ax: Axes, run: Trajectory) -> Line2D:
 
 
 def _after_start(run: Trajectory, variable: str) -> Floats:
-    """Return a variable without its first value, that of the release of the mass.
+    """Return a variable without its first value, at the release of the mass.
 
     There it moves with a millionth of the drive's speed, and friction is what it is in slip; it
     sticks, or creeps far slower, at once. Few samples, which are shown as such, keep it.

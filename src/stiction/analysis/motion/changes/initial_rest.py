@@ -1,4 +1,4 @@
-"""The rest before the first loading of a record: what it shows of the zero of its force.
+"""The rest before the first loading of a record, and the zero of the force that it shows.
 
 A drive that starts after the recording leaves the spring as it was. Whether that was unloaded, the
 record does not say: friction holds any force below its limit.

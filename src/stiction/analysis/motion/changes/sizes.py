@@ -168,7 +168,7 @@ def _are_alike(drop: Floats) -> bool:
 
 
 def _limit(smaller: CycleCorners, larger: CycleCorners) -> float:
-    """Return the drop between those of smaller and of larger cycles, N."""
+    """Return the drop that separates smaller from larger cycles, N."""
     return float(np.sqrt(np.median(smaller.drop) * abs(np.median(larger.drop))))
 
 

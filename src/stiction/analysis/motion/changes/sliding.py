@@ -58,7 +58,7 @@ def sliding(record: Record) -> Sliding:
 
 
 def _moving(record: Record) -> tuple[int, int]:
-    """Return the samples between which the drive is known to move, without those at its ends."""
+    """Return the range of samples in which the drive surely moves, without the ends of its path."""
     at = record.drive_position
     if at is None or not np.ptp(at) > seeming_motion(at):
         return 0, len(record)

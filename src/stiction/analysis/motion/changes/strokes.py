@@ -62,7 +62,7 @@ def _by_force(record: Record) -> tuple[float, float] | None:
 
 
 def _passages(time: Floats, side: Floats) -> tuple[Floats, Floats]:
-    """Return how long the passages from the lower level to the higher take (s), and those back."""
+    """Return the durations of passages from the lower level to the higher (s), and back."""
     at = np.flatnonzero(side)
     lasts: dict[int, list[float]] = {1: [], -1: []}
     for first, last in pairwise(at[_ends(side[at])]):

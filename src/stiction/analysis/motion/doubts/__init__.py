@@ -1,1 +1,1 @@
-"""Doubts about a record: numbers that contradict each other, and what samples do not show."""
+"""Doubts about a record: contradictory numbers, and motion that the samples do not resolve."""

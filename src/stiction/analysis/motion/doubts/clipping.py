@@ -95,7 +95,7 @@ def doubt_clipping(ends: Sequence[FlatEnd]) -> Iterator[str]:
 def without_cut_off(
     friction: Friction, record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]
 ) -> Friction:
-    """Return the friction without what peaks and troughs do not show that are cut off at ends."""
+    """Return the friction without the values that clipped peaks and troughs hide."""
     end = next((each for each in ends if each.name == "largest"), None)
     broke = friction.break_away
     if end is not None and broke is not None and _breaks_at(record, cycles, broke, end):
@@ -115,7 +115,7 @@ def without_cut_off(
 
 
 def cut_off(record: Record, cycles: CycleTable, ends: Sequence[FlatEnd]) -> str:
-    """Return what of the cycles is cut off at ends, in words; '' if nothing is."""
+    """Return the clipped parts of the cycles in words; '' if there are none."""
     return _in_words(_ends_reached(record, cycles, ends))
 
 

@@ -1,4 +1,4 @@
-"""Whether the rises of the force show creep, or what noise, filters and drifts make of them."""
+"""Whether the rises of the force show creep, or the effects of noise, filters and drifts."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def _way_of_drift(stiffness: float, cycles: CycleTable, drift: Drift | None) -> 
 
 
 def _spring(record: Record) -> tuple[float, float] | None:
-    """Return stiffness (N/m) and speed of the drive (m/s) by which ways follow from a force.
+    """Return the stiffness (N/m) and drive speed (m/s) that turn a force into a displacement.
 
     None where the position is known, or they are not.
     """

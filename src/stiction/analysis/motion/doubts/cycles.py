@@ -30,7 +30,7 @@ NAMED = 3  # cycles apart; more are counted
 
 
 def doubt_mean_period(cycles: CycleTable) -> Iterator[str]:
-    """Doubt one mean over cycles of which parts have a period of their own."""
+    """Doubt one mean period for a record whose parts have different periods."""
     period, start = cycles["period"], cycles["start"]
     parts = parts_of(period)
     if len(parts) < 2:

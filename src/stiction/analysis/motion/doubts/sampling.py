@@ -1,4 +1,4 @@
-"""Doubts about what the samples of a record show."""
+"""Doubts about the sampling of a record."""
 
 from __future__ import annotations
 
@@ -94,7 +94,7 @@ def _step_changes(steps: Floats) -> str:
 
 
 def doubt_repeats(record: Record) -> Iterator[str]:
-    """Doubt a sample rate of which each value is recorded several times."""
+    """Doubt a sample rate at which each value is recorded several times."""
     if record.repeats > 1:
         yield (
             f"Each value is recorded {record.repeats} times: the sensor gives "
@@ -183,7 +183,7 @@ def _slow_slips(record: Record, cycles: CycleTable, samples: float) -> str:
 
 
 def doubt_filter(record: Record, cycles: CycleTable) -> Iterator[str]:
-    """Doubt falls of the force that are quicker than what a stated filter passes."""
+    """Doubt falls of the force that are faster than a stated filter passes."""
     sensor = (record.sensors or {}).get("force")
     if sensor is None:
         return
@@ -249,7 +249,7 @@ def with_supposed_filter(
 
 
 def _smear(cycles: CycleTable, fall: float, filters: Sequence[LowPass]) -> tuple[float, float]:
-    """Return what filters do to peaks and troughs between straight lines, N.
+    """Return the smoothing of peaks and troughs between straight lines by filters, N.
 
     Falls of the force take `fall`, s.
 

@@ -34,7 +34,7 @@ Change = Mapping[str, int]  # from the names of MOVES to a power of 1000
 
 
 class Numbers(NamedTuple):
-    """What shows a wrong unit; NaN where it is not known.
+    """Numbers that reveal a wrong unit; NaN if unknown.
 
     The largest friction coefficient, and the rate of loading and k/m as found over as stated.
     """

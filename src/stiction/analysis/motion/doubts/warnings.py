@@ -216,7 +216,7 @@ def _unsteady(run: Trajectory) -> tuple[str, ...]:
 
 
 def variations(run: Trajectory) -> list[str]:
-    """Return what varies in a run, drive or load or both, in words."""
+    """Return the varying quantities of a run, drive or load or both, in words."""
     return [name for name, of in IMPOSED.items() if any(np.ptp(run.samples[x]) > 0.0 for x in of)]
 
 
@@ -339,7 +339,7 @@ def _remedy_of_mass(record: Record, ratio: float, kind: str, seen: Numbers) -> s
 
 
 def _settling(record: Record, drift: Drift, kind: str) -> Iterator[str]:
-    """Say that a zero may settle while a mass slides, which its force alone cannot tell."""
+    """Warn that a zero may settle while a mass slides, which the force alone cannot show."""
     if kind in (STEADY, SETTLING) and drift.shared > WORTH * largest_magnitude(record.force):
         yield (
             f"While the mass slides, the force settles by {in_words(drift.shared, 'N', 2)}. The "

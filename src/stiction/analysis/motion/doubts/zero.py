@@ -1,4 +1,4 @@
-"""Doubts about the zero of a force: what a record shows of it, and what it does not."""
+"""Doubts about the zero of a force: what the record shows of it, and what remains unknown."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def shift_of_zero(
 
 
 def with_zero(friction: Friction, record: Record, shown: InitialRest | None) -> Friction:
-    """Return the friction with the errors that it has if its zero is that which a record shows.
+    """Return the friction with the errors that follow if the record's apparent zero is true.
 
     A correction is made for an effect that is known (GUM, 3.2.4: JCGM 100:2008). This one is not: a
     spring that friction holds reads as much. So the values are those of the zero as it is supposed,
@@ -166,7 +166,7 @@ def doubt_zero(
 
 
 def _less(friction: Friction, zero: float) -> str:
-    """Return what friction is by another zero, N, in words."""
+    """Return the friction with another zero, N, in words."""
     known = {"static": friction.static, "kinetic": friction.kinetic}
     if not any(known.values()):
         known = {"break-away": friction.break_away}

@@ -1,4 +1,4 @@
-"""Free swings after each slip, as of a load cell that rings, and the force without them.
+"""Free swings after each slip, such as a load cell's, and the force without them.
 
 Between two kicks a free swing goes on by itself: from one period to the next its complex amplitude
 is multiplied by the same number, whatever the kick was. Swings of a mass that friction drives,
@@ -35,7 +35,7 @@ POINTS = 4097  # of a spectrum, over which noise is summed
 
 
 class FreeSwing(NamedTuple):
-    """A free swing, as of a load cell."""
+    """A free swing, such as a load cell's."""
 
     # Hz, and pi times the periods in which it falls to 1/e
     frequency: float
@@ -44,12 +44,12 @@ class FreeSwing(NamedTuple):
 
     @property
     def rings(self) -> bool:
-        """Whether it is that of a load cell which rings after each slip."""
+        """Whether it is a load cell's ringing after each slip."""
         return self.share > OFTEN and LEAST_QUALITY < self.quality < MOST_QUALITY
 
 
 class RingingCell(NamedTuple):
-    """A load cell that rings, and up to where its readings tell the force to which it answered.
+    """A ringing load cell, and the highest frequency at which its readings give the force.
 
     Parameters
     ----------
@@ -64,17 +64,17 @@ class RingingCell(NamedTuple):
     highest: float
 
     def restoration(self, frequency: Floats) -> Complex:
-        """Return what readings are multiplied by to give the force."""
+        """Return the factors by which readings are multiplied to give the force."""
         at = frequency / self.frequency
         found = (1.0 - at**2 + 1j * at / self.quality) * self.smoothing(frequency)
         return np.asarray(found)
 
     def smoothing(self, frequency: Floats) -> Floats:
-        """Return what is left of the force."""
+        """Return the remaining share of the force."""
         return np.asarray(1.0 / (1.0 + (frequency / self.highest) ** 2))
 
     def amplification(self, step: float, block: int) -> float:
-        """Return the noise of means over that of means of white noise, both of readings."""
+        """Return the noise of means of restored readings, over that of means of white noise."""
         frequency = np.linspace(0.0, 0.5 / step, POINTS)
         means = np.sinc(frequency * step * block) / np.sinc(frequency * step)
         power = np.abs(self.restoration(frequency) * means) ** 2
@@ -114,7 +114,7 @@ def _free_swing(even: Floats, step: float, period: float) -> FreeSwing | None:
 
 
 def _amplitude(values: Floats, turns: float) -> Complex:
-    """Return the complex amplitude around each value, of which a straight line has none.
+    """Return the complex amplitude around each value; it is zero for a straight line.
 
     Nor has a swing that turns the other way: each real one is half of it.
     """
@@ -129,7 +129,7 @@ def _amplitude(values: Floats, turns: float) -> Complex:
 
 
 def _usual(factors: Complex) -> complex:
-    """Return where complex numbers crowd: the median of those near it."""
+    """Return the centre of a crowd of complex numbers: the median of the numbers near it."""
     middle = complex(median(factors.real), median(factors.imag))
     for _ in range(PASSES):
         near = factors[np.abs(factors - middle) < NEAR]

@@ -1,4 +1,4 @@
-"""What the swings of a load cell after each slip do to the cycles of a record."""
+"""The effects of a load cell's ringing after each slip on the cycles of a record."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OFTEN = 0.5  # of the rises: if more ring, the load cell does
 
 
 class CellSwings(NamedTuple):
-    """What the swings of a load cell after each slip do to troughs and peaks (N) and rates (N/s).
+    """The effect of a load cell's ringing after each slip on troughs, peaks (N) and rates (N/s).
 
     By so much they are off in the usual rise.
     """
@@ -42,7 +42,7 @@ class CellSwings(NamedTuple):
 
 
 def swings_of_cell(record: Record, cycles: CycleTable) -> CellSwings | None:
-    """Return what the swings of a load cell do to the cycles of a record, None without any.
+    """Return the effect of a load cell's ringing on the cycles of a record; None without any.
 
     The first swing after a slip makes the trough. Later it has faded: the line through the last
     part of a rise tells how deep the trough is without it, and what is left of it at the peak. In a

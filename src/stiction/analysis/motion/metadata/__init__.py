@@ -1,1 +1,1 @@
-"""What a record says of its apparatus, beside what is stated of it."""
+"""The properties of the apparatus that a record shows, beside the stated ones."""

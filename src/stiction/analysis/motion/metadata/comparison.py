@@ -1,4 +1,4 @@
-"""All that a record says of its apparatus, beside what is stated of it."""
+"""All properties of the apparatus that a record shows, beside the stated ones."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ AT_REST, ZERO_READING = 0.02, 1e-12  # of the largest force: a reading at rest, 
 def compare_metadata(
     record: Record, kind: str, cycles: CycleTable, drift: Drift | None, ends: Sequence[FlatEnd]
 ) -> tuple[StatedQuantity, ...]:
-    """Return all that a record shows of its apparatus, beside what is stated.
+    """Return all properties of the apparatus that a record shows, beside the stated ones.
 
     Parameters
     ----------

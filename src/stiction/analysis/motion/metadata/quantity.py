@@ -49,7 +49,7 @@ class StatedQuantity(NamedTuple):
 
     @property
     def at_least(self) -> float:
-        """The lower bound, two standard errors below what was found; NaN if it says nothing.
+        """The lower bound, two standard errors below the value found; NaN if it excludes nothing.
 
         What is bounded is positive: a bound that is not says no more than that.
         """

@@ -119,7 +119,7 @@ def _main_part(record: Record, cycles: CycleTable) -> float:
 
 
 def _unseen_ends(reach: float, cycles: CycleTable) -> tuple[float, float]:
-    """Return by which factors slips may last longer, or shorter, than their falls are seen to.
+    """Return the factors by which slips may last longer, or shorter, than the falls seen.
 
     A force within `reach` (N) of a peak or a trough, by noise or a step of its converter, may have
     left it. Half a cosine begins and ends so, and the spring is loaded as slowly before and after

@@ -54,12 +54,12 @@ class Hump(NamedTuple):
 
     @property
     def likelihood(self) -> float:
-        """Likelihood of a vibration rather than noise, 0 to 1; one half at a height of 1."""
+        """Return the likelihood, 0 to 1, of a signal above noise; one half at a height of 1."""
         return likelihood(self.height)
 
 
 def likelihood(height: float) -> float:
-    """Return the likelihood, 0 to 1, of what stands out of noise; one half at a height of 1."""
+    """Return the likelihood, 0 to 1, of a signal above noise; one half at a height of 1."""
     odds: float = min(height, 1e9) ** STEEP
     return odds / (1.0 + odds)
 

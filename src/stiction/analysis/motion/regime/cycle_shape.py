@@ -170,7 +170,7 @@ def _sticking(record: Record, table: CycleTable) -> Floats:
 
 
 def _evidence(record: Record, table: CycleTable, shapes: Shapes) -> dict[Evidence, float]:
-    """Return what the shape of the cycles says, and how alike they are."""
+    """Return the evidence from the shape of the cycles, and their likeness to each other."""
     count, (rise, still, sticks) = len(table), shapes.typical
     alike = shapes.kinds.count(shapes.kind) / count
     evidence: dict[Evidence, float] = {"cycles": count, "rise_share": rise}
@@ -210,7 +210,7 @@ def _transverse(
 
 
 def _sizes(found: Swings) -> dict[Evidence, float]:
-    """Return what is to be said of the sizes of the cycles: over the noise, and over time."""
+    """Return the findings on the sizes of the cycles: relative to the noise, and over time."""
     drop = found.lasting["drop"]
     evidence: dict[Evidence, float] = {}
     grown = float(drop[-1] / drop[0])

@@ -260,7 +260,7 @@ def _hidden_line(record: Record, begin: int, least: float, clearness: float = 1.
 
 
 def _is_whole(line: Line, hump: Hump, record: Record) -> bool:
-    """Return whether a line is the whole vibration of a hump, in a record that can tell."""
+    """Return whether a line is the whole vibration of a hump, in a record that can show it."""
     known = line.frequency * record.duration > MANY_PERIODS
     return known and line.height**2 > LINE_SHARE * 8.0 * hump.rms**2
 

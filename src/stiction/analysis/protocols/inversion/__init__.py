@@ -1,1 +1,1 @@
-"""What a step of the drive tells of a rate-and-state law: the fit of its curve on the rig."""
+"""Inversion of a velocity step for a rate-and-state law: the fit of its curve on the rig."""

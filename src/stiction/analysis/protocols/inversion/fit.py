@@ -71,12 +71,12 @@ class Inversion(NamedTuple):
 
 
 def unknown(samples: int) -> Inversion:
-    """Return the fit of a step of which nothing is known but its samples."""
+    """Return the fit of a step without any known value."""
     return Inversion(nan, nan, nan, nan, nan, nan, nan, nan, False, np.full(samples, nan))
 
 
 def invert(data: StepData, law: Law) -> Inversion:
-    """Fit a law to a step; what the data do not determine is NaN."""
+    """Fit a law to a step; parameters that the data do not determine are NaN."""
     from scipy.optimize import least_squares
 
     if len(data.mu) < FEWEST or not np.isfinite(data.rig.stiffness):
@@ -101,7 +101,7 @@ def invert(data: StepData, law: Law) -> Inversion:
 
 
 def _starts(problem: StepProblem) -> list[Floats]:
-    """Return parameters near those that are sought, the best first; none if none is near."""
+    """Return parameters near the wanted ones, the best first; none if none is near."""
     data, mu = problem.data, problem.mu[1:]
     by, peak = log(data.rig.ratio), int((data.up * mu).argmax())
     change = (data.after - data.level) / by

@@ -1,4 +1,4 @@
-"""Which rate-and-state law the steps of a test follow: fits of each, and what they tell."""
+"""The rate-and-state law of a test's steps: fits of each law, and the choice between them."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class FittedLaw(NamedTuple):
 
 
 class LawChoice(NamedTuple):
-    """The law that fits best; another, where the points do not tell which is right; sentences."""
+    """The best-fitting law; a second law, if the points do not decide; sentences."""
 
     best: FittedLaw
     other: FittedLaw | None
@@ -82,7 +82,7 @@ def _fit(steps: Sequence[StepData], law: Law) -> FittedLaw:
 
 
 def _why(law: Law, own: Law | None) -> str:
-    """Return why a law alone is fitted, in a sentence; `own` is that of the run."""
+    """Return why only one law is fitted, in a sentence; `own` is the run's law."""
     why = "which is that of the run" if law == own else "as asked"
     if own and law != own:
         why = f"though the run has the {NAMES[own]}"
@@ -90,7 +90,7 @@ def _why(law: Law, own: Law | None) -> str:
 
 
 def _better(steps: Sequence[StepData], one: FittedLaw, two: FittedLaw) -> LawChoice:
-    """Return which of two laws fits better, as far as the points tell."""
+    """Return the better-fitting of two laws, as far as the points decide."""
     gain = _gain(one, two)
     best, other = (one, two) if gain >= 0.0 else (two, one)
     reasons = _reasons(steps, best)

@@ -1,4 +1,4 @@
-"""What the curves of a record's steps say of its rig and its clock, in sentences."""
+"""Errors of the rig's stiffness and of the clock that a record's steps show, in sentences."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ ALIKE_STIFFNESSES = log(1.02)  # stiffnesses that are so near to each other are 
 def say_rig_and_clock(
     steps: Sequence[StepData], fits: Sequence[Inversion], drive: str
 ) -> list[str]:
-    """Return how far stiffness and times of the steps are from those stated, where they are.
+    """Return the deviations of the steps' stiffness and times from the stated ones, if any.
 
     The `drive` says what tells the times of the steps: "the program", "the displacement of the
     drive".

@@ -38,7 +38,7 @@ AT_V = SimpleNamespace(V_star=1.0)  # of a law in these units, whose log_theta i
 
 
 class SpringSlider(NamedTuple):
-    """What a step of the drive meets: parameters over which nothing is fitted."""
+    """The conditions of a step of the drive: parameters that are not fitted."""
 
     ratio: float  # of the speeds after and before the step
     # k/W, 1/m, and c V/W, 1
@@ -47,7 +47,7 @@ class SpringSlider(NamedTuple):
 
 
 class FrictionCourse(NamedTuple):
-    """Spring force over load after a step, less that of steady sliding afterwards."""
+    """Spring force over load after a step, relative to steady sliding afterwards."""
 
     friction: Floats  # (n,), 1
     slope: Floats  # (n,), its change with the travel of the drive, 1/m

@@ -255,7 +255,7 @@ def _jump(data: StepData, mu: Floats) -> float:
 
 
 def _least_change(data: StepData, mu: Floats) -> float:
-    """Return the change of friction that is seen beyond noise, and beyond what evolves still."""
+    """Return the least change of friction that counts: above noise, and above slow evolution."""
     return max(ABOVE_NOISE * float(data.before.std()), FIRST_SEEN * _jump(data, mu))
 
 
@@ -291,7 +291,7 @@ def variances(off: Floats, fitted: int) -> tuple[float, float]:
 
 
 def slow_part(off: Floats) -> Floats:
-    """Return deviations without those that change quickly: noise."""
+    """Return the slow part of deviations, without noise."""
     from scipy.fft import dct, idct
 
     terms = dct(off, norm="ortho")

@@ -1,4 +1,4 @@
-"""``stiction design``: what to measure next."""
+"""``stiction design``: the further test that narrows a parameter most."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``stiction fit``: what measured records say about the parameters of a rig."""
+"""``stiction fit``: the parameters of a rig, from measured records."""
 
 from __future__ import annotations
 
@@ -149,7 +149,7 @@ def origins(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
 
 
 def warnings(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
-    """Return what analyses of records warn of: a fit does not see it."""
+    """Return the warnings of the records' analyses, which a fit ignores."""
     from stiction.analysis.report import analyse
 
     found = [(path, analyse(each).warnings) for path, each in zip(paths, records, strict=True)]
@@ -157,7 +157,7 @@ def warnings(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
 
 
 def write_figures(plots: Mapping[str, Any], folder: Path) -> None:
-    """Write figures by their names, as `stiction.plotting` draws what belongs to each."""
+    """Write figures by their names, drawn by `stiction.plotting`."""
     from stiction import plotting
     from stiction.plotting.page.canvas import figure_of
     from stiction.plotting.page.save import write

@@ -171,7 +171,7 @@ def _so_far(study: Study, store: Path) -> str:
 
 
 def doubts(study: Study) -> list[str]:
-    """Return what is implausible about the law of a run at a corner of the axes that can be one."""
+    """Return doubts about the law of a run at an allowed corner of the axes."""
     from stiction.friction.law import implausible
 
     for corner in product(*((0, size - 1) for size in study.layout.shape)):

@@ -1,4 +1,4 @@
-"""Rate-and-state friction with one state: ageing law, slip law, and that of Perrin et al."""
+"""Rate-and-state friction with one state: ageing law, slip law, and the law of Perrin et al."""
 
 from __future__ import annotations
 
