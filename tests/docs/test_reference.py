@@ -11,6 +11,7 @@ import pytest
 import stiction as st
 from stiction.names import public_names
 from stiction.presets import PRESETS
+from stiction.study.store.store import ENDS, OF_ANY_RUN
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGES = sorted((DOCS / "reference" / "python").glob("*.md"))
@@ -85,3 +86,11 @@ def test_each_name_has_an_example(name):
     known = FOUND[f"stiction.{maker}"] if maker else FOUND[name]
     shown = ">>> " in (inspect.getdoc(known) or "") or f".{maker or short}(" in GALLERY
     assert shown, f"{name} lacks an example in its docstring, or in a script of docs/gallery"
+
+
+def test_the_page_on_ends_has_each_status_with_its_message():
+    """The table of runs quotes the messages; that of studies has the further statuses."""
+    text = (DOCS / "reference" / "status.md").read_text("utf-8")
+    rows = re.findall(r"^\| `(\w+)` \| (.+) \| .+ \|$", text, re.M)
+    assert dict(rows[: len(st.Status)]) == {each.name: each.value for each in st.Status}
+    assert {name for name, _ in rows[len(st.Status) :]} == {*ENDS} - {*OF_ANY_RUN}
