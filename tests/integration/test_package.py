@@ -156,6 +156,28 @@ def test_names_in_the_glossary_are_names_in_the_code():
     assert sorted(IN_CODE.difference(*(re.findall(r"\w+", text) for text in texts))) == []
 
 
+def members():
+    """Return the names that each module and each class of the package defines."""
+    found = {"st": {*dir(st)}}
+    for path in (ROOT / "src").rglob("*.py"):
+        tree = ast.parse(path.read_text("utf-8"))
+        for owner in (tree, *(each for each in tree.body if isinstance(each, ast.ClassDef))):
+            own = found.setdefault(getattr(owner, "name", path.stem), set())
+            own.update(each.name for each in owner.body if hasattr(each, "name"))
+            fields = (each.target for each in owner.body if isinstance(each, ast.AnnAssign))
+            own.update(ast.unparse(each) for each in fields)
+    return found
+
+
+def test_members_in_the_glossary_are_there():
+    """`Workspace.share` had been moved into a function."""
+    known = members()
+    named = re.findall(r"`(\w+)\.(\w+)`", GLOSSARY)
+    assert len(named) > 15
+    wrong = [f"{owner}.{name}" for owner, name in named if name not in known.get(owner, ())]
+    assert wrong == []
+
+
 def test_names_survive_their_modules():
     """A submodule's name must not hide a public function of the same name."""
     code = "import stiction as st; st.simulate; st.simulate; import stiction.trajectory; st.load"
