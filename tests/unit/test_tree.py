@@ -24,6 +24,21 @@ REPLACED = re.compile(
     r"when left out|(?<!there )(?<!There )\b(is|are) no "
     "(?!longer|more|less|larger|smaller|closer|better|faster|slower|such)"
 )
+# words of first sentences that mostly hide the noun: "what is left" is the remainder
+HIDING = re.compile(r"\b([Ww]hat|told|kept|that which|as of)\b")
+HIDDEN = {  # which need no other: this list may only become shorter
+    "arguments.py: read_whole",
+    "arguments.py: refuse_last",
+    "cli/commands/analyse.py: import_",
+    "cli/commands/inference/design.py: design",
+    "study/execution/cores.py: ask",
+    "study/execution/engines.py: refuse_other",
+    "study/execution/engines.py: results",
+    "study/execution/sweep.py: Pace",
+    "study/execution/sweep.py: StoredOutcome",
+    "study/execution/sweep.py: values_of",
+    "study/store/kept.py: names_kept",
+}
 # decorators describe the function below them; laws of users, stored in results, have `settled`
 CONTRACTS = {"compiled", "inlined", "settled", "disturbed"}
 STRAY = re.compile(r".+(\.(orig|rej|bak|swp|swo|tmp)|~)")  # what patches and editors leave
@@ -160,6 +175,27 @@ def test_phrases_that_are_read_twice_are_replaced():
         for found in REPLACED.finditer(path.read_text("utf-8"))
     ]
     assert wrong == []
+
+
+def first_sentences(path):
+    """Yield name and first paragraph of each docstring of a file."""
+    kinds = ast.Module | ast.ClassDef | ast.FunctionDef
+    for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        if isinstance(node, kinds) and (text := ast.get_docstring(node)):
+            yield getattr(node, "name", "module"), text.partition("\n\n")[0]
+
+
+def test_first_sentences_name_what_they_are_about():
+    """As CONTRIBUTING (English) asks: "the remaining samples", not "what is left of them"."""
+    room = ROOT / TREES[0]
+    found = {
+        f"{path.relative_to(room).as_posix()}: {name}"
+        for path in room.rglob("*.py")
+        for name, text in first_sentences(path)
+        if HIDING.search(text)
+    }
+    assert sorted(found - HIDDEN) == [], "name the thing: CONTRIBUTING, English"
+    assert sorted(HIDDEN - found) == [], "take these out of HIDDEN: they are mended"
 
 
 def test_a_mutant_that_is_known_to_be_equivalent_is_one_of_a_line_that_is_there():

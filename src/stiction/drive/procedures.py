@@ -175,7 +175,7 @@ def _end(program: DriveProgram | LoadProgram) -> float | None:
 
 
 class Argument(NamedTuple):
-    """A number, or a list of numbers, as it was given, and what it must be."""
+    """A number, or a list of numbers, as it was given, and the condition on it."""
 
     path: str
     given: Any

@@ -1,4 +1,4 @@
-"""A table of named columns: what every reader of a file returns, before any interpretation."""
+"""A table of named columns, which every reader of a file returns before any interpretation."""
 
 from __future__ import annotations
 

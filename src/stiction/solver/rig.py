@@ -33,7 +33,7 @@ class Aligned(NamedTuple):
         return force
 
     def metric(self) -> tuple[float, float, float]:
-        """Return G (xx, xy, yy), by which |s|^2 = r.G r."""
+        """Return G (xx, xy, yy): |s|^2 = r.G r."""
         return 1.0, 0.0, 1.0
 
     def into_axes(self, cos_phi: float, sin_phi: float, vector: Vector) -> Vector:
@@ -73,7 +73,7 @@ class General(NamedTuple):
         return self.t_xx * x + self.t_yx * y, self.t_xy * x + self.t_yy * y
 
     def metric(self) -> tuple[float, float, float]:
-        """Return G = T^T T (xx, xy, yy), by which |s|^2 = r.G r."""
+        """Return G = T^T T (xx, xy, yy): |s|^2 = r.G r."""
         return (
             self.t_xx * self.t_xx + self.t_yx * self.t_yx,
             self.t_xx * self.t_xy + self.t_yx * self.t_yy,

@@ -62,7 +62,7 @@ def turned_into(problem: Problem, e_x: float, e_y: float) -> Tensor:
 
 @inlined
 def metric_into(problem: Problem, e_x: float, e_y: float) -> Tensor:
-    """Return G, by which |s|^2 = r.G r, in axes along e = (e_x, e_y) and across it."""
+    """Return G, |s|^2 = r.G r, in axes along e = (e_x, e_y) and across it."""
     if is_aligned(problem.rig):
         return Tensor(1.0, 0.0, 1.0)
     xx, xy, yy = metric(problem.rig)

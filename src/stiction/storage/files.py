@@ -177,7 +177,9 @@ def whole(target: Path) -> Iterator[Path]:
 
 
 def write_text(text: str, path: str | Path, suffixes: Collection[str] = ()) -> Path:
-    """Write a text into a file, whole or not at all; return its path. `suffixes` as of `placeable`.
+    """Write a text into a file, whole or not at all; return its path.
+
+    `suffixes` are as for `placeable`.
 
     Raises
     ------

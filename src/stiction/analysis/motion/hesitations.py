@@ -214,7 +214,7 @@ def swing(legs: Floats, most: float = np.inf) -> Floats:
 
 
 def _swing_beside(size: Floats, legs: Floats, joined: Indices, most: float) -> Floats:
-    """Return the `swing` of legs, some of which were joined of three, from that of the others.
+    """Return the `swing` of legs, some of which were joined from three, by the other legs' swing.
 
     Hesitations can go one beside the other along a whole record, some at a time: then all but a few
     keep their size.

@@ -44,7 +44,7 @@ class FastOscillation(NamedTuple):
 
     @classmethod
     def at_end(cls, slider: Slider, rate: Floats) -> FastOscillation:
-        """Return that of a run by its last rates (m/s) along the stiffer axis, of many periods."""
+        """Return a run's fast oscillation from its last rates (m/s) along the stiffer axis."""
         drive = abs(nominal_velocity(slider.motion) * slider.direction[slider.stiffer_axis])
         across = 0.5 * float(np.ptp(rate))
         amplitude = across / drive if drive > 0.0 else 0.0

@@ -149,7 +149,7 @@ class VelocitySteps(SectionReport):
         return f"Steady friction {way}: a - b = {value} on average{where}."
 
     def _differing(self) -> list[str]:
-        """Return which fitted parameters are not those of one law, in a sentence, if any is."""
+        """Return the fitted parameters that differ from step to step, in a sentence, if any do."""
         names = [name for name in ("a", "b", "D_c") if not _alike(self.steps, name)]
         if not names:
             return []

@@ -94,7 +94,7 @@ class Recording(NamedTuple):
         return value, found[:, 2] + wave[1], found[:, 3] + wave[2], found[:, 4] + wave[3]
 
     def fastest(self) -> float:
-        """Return the largest angular frequency, rad/s: curvature over slope, as of a harmonic."""
+        """Return the largest angular frequency, rad/s: curvature over slope, as for a harmonic."""
         _, _, change, curve, _ = np.abs(self.bounds).max(axis=0)
         return max(self.wave.fastest(), float(curve / change) if change > 0.0 else 0.0)
 

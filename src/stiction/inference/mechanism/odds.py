@@ -212,7 +212,7 @@ class Odds(Report):
         ]
 
     def sentences(self) -> list[str]:
-        """Return the decision and what limits it."""
+        """Return the decision and its limits."""
         objections = self.objections()
         found = ["No mechanism is claimed.", *objections] if objections else [self._claim()]
         if self.straight_excluded:

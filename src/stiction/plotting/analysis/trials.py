@@ -46,7 +46,7 @@ class Trial(NamedTuple):
 def plot_trials(
     before: Record, trials: Sequence[Trial], axes: Sequence[Axes] | None = None
 ) -> NDArray[np.object_]:
-    """Draw the force of each trial over that of the original test, a panel for each.
+    """Draw the force of each trial over the original test, a panel for each.
 
     Time runs as long as the trial does; where the test before is longer, it is cut, where it is
     shorter, it ends, and where next to nothing of it would be seen, or less than a swing, a band

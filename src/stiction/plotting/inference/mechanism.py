@@ -82,7 +82,7 @@ def draw_confusion(ax: Axes, confusion: Floats, names: Sequence[str]) -> None:
 
 
 def draw_loading(ax: Axes, odds: Odds) -> None:
-    """Draw the bend of the record's loading over those of simulations."""
+    """Draw the bend of the record's loading over the simulated ones."""
     share = odds.shares
     parts = len(share)  # of the first record, where there are several
     for i, (name, its) in enumerate(zip(odds.names, odds.likeness, strict=True)):

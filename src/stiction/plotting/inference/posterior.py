@@ -265,7 +265,7 @@ def plot_predictive(
 
 
 def draw_cycles(ax: Axes, seen: Any, found: Any) -> None:
-    """Draw some cycles of a record over those of a simulation."""
+    """Draw some cycles of a record over simulated ones."""
     factor, prefix = metric_prefix(found.measured.force)
     step = seen.conditions.step
     example = found.example.channels["force"], found.example.cycles

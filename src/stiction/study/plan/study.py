@@ -315,7 +315,7 @@ class Study(Described):
 
     @classmethod
     def from_json(cls, text: str, *, trust: bool = False) -> Self:
-        """Read back what `to_json` wrote; `trust` is that of `Description.from_json`."""
+        """Read a study that `to_json` wrote; for `trust` see `Description.from_json`."""
         return cls.from_dict(
             read_json(text),
             find=finder_for_results(trust),

@@ -1,4 +1,4 @@
-"""Measures of the user's own: functions from a run to a number, stored by name and by text."""
+"""The user's measures: functions from a run to a number, stored by name and by text."""
 
 from __future__ import annotations
 

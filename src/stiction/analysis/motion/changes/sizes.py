@@ -175,7 +175,7 @@ def _limit(smaller: CycleCorners, larger: CycleCorners) -> float:
 def _extent(
     whole: CycleCorners, smaller: CycleCorners, first: int, last: int, least: int
 ) -> tuple[int, int]:
-    """Return the peaks around smaller cycles, of which some may be among those of the whole.
+    """Return the indices of the peaks around smaller cycles, moved outwards over further ones.
 
     `first` and `last` are around those that were found, none before `least` is asked for.
     """

@@ -1,4 +1,4 @@
-"""Doubts about the zero of a force: what the record shows of it, and what remains unknown."""
+"""Doubts about the zero of a force: the evidence in the record, and its limits."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""The kind of motion in a record: its confidence, and what it rests on."""
+"""The kind of motion in a record: its confidence, and its evidence."""

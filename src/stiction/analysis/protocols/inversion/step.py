@@ -120,12 +120,12 @@ class StepProblem(NamedTuple):
         return low[: self.parameters], high[: self.parameters]
 
     def known_slopes(self, noise: float) -> Floats:
-        """Return the derivatives of what is known of delay and stiffness without the curve."""
+        """Return the derivatives of the delay and stiffness that are known without the curve."""
         errors = np.array([self.delay.error, 2.0 * FLAT * STIFFER])[: self.parameters - DELAY]
         return np.eye(self.parameters)[DELAY:] * (noise / errors[:, None])
 
     def known_residuals(self, at: Floats) -> Floats:
-        """Return the deviations of delay and stiffness from what is known without the curve."""
+        """Return the deviations of delay and stiffness from values known without the curve."""
         expected = np.array([0.0, 0.0, 0.0, 0.0, self.delay.likely, 0.0])[: self.parameters]
         return np.asarray(self.known_slopes(self.noise) @ (at - expected))
 

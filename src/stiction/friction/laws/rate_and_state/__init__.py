@@ -1,4 +1,4 @@
-"""Rate-and-state friction: `common` has what the laws share, the others one state and two.
+"""Rate-and-state friction: `common` has the shared part, the other modules one or two states.
 
 Friction depends on the slip speed V and on states theta, contact times of the surfaces
 (Dieterich 1979, doi:10.1029/JB084iB05p02161; Ruina 1983, doi:10.1029/JB088iB12p10359):
