@@ -94,6 +94,43 @@ def test_rooms_keep_their_old_names_with_a_warning():
             call("/no such folder/a.zarr")
 
 
+def test_progress_is_given_by_name():
+    """An audit and the paper took it by position, and no other did."""
+    verbs = [getattr(st, name) for name in st.__all__]
+    found = [inspect.signature(each).parameters for each in verbs if inspect.isfunction(each)]
+    kinds = [each["progress"].kind for each in found if "progress" in each]
+    assert len(kinds) >= 12
+    assert {*kinds} == {inspect.Parameter.KEYWORD_ONLY}
+
+
+def test_an_audit_takes_the_second_argument_of_its_old_name():
+    with (
+        pytest.warns(DeprecationWarning, match=r"called st\.audit\(slider, progress=progress\)"),
+        pytest.raises(st.DescriptionError, match="drive"),
+    ):
+        st.audit(PAPER.replace(drive=st.ConstantVelocity(0.0)), lambda fraction: None)
+
+
+def test_the_seed_of_an_audit_reaches_the_fit_and_the_odds(run, monkeypatch):
+    """Without it an audit could not be repeated with other draws, as a fit can."""
+    from stiction.auditing import measured
+
+    record, asked = st.measure(run, st.Sensor()), []
+    for name in ("observe", "predict"):
+        monkeypatch.setattr(measured, name, lambda *_: None)
+    for name in ("fit", "mechanism"):
+        monkeypatch.setattr(measured, name, lambda *_, seed, **__: asked.append(seed))
+
+    def withdraw(_):
+        raise st.StictionError("enough")
+
+    monkeypatch.setattr(measured, "withdraw", withdraw)
+    for given in ({}, {"seed": 3}):
+        with pytest.raises(st.StictionError, match="enough"):
+            st.audit(st.Rig(PAPER, {"phi": "1 +- 0.5 deg"}), record, **given)
+    assert asked == [0, 0, 3, 3]
+
+
 def test_stability_says_what_its_command_prints(config, capsys):
     found = st.stability(config, over="V", between=("0.1 mm/s", "1 m/s"))
     assert inside("stability", config, "--over", "V", "--between", "0.1 mm/s", "1 m/s") == 0
@@ -382,6 +419,7 @@ def test_independent_faults_are_named_in_one_round(
     ("command", "said"),
     [
         ("audit my.toml -n 10 --library sims", "--simulations, --library: there is no record"),
+        ("audit my.toml --seed 0", "--seed: there is no record"),
         ("audit my.toml --set duration=10s", "duration: has no effect: only a run reads it"),
         ("audit --preset leine-belt --set rtol=1e-5", "rtol: has no effect"),
         ("stability my.toml --set initial.u_x=1mm", "initial.u_x: has no effect"),
@@ -400,15 +438,15 @@ def test_no_simulations_of_an_audit_are_not_those_by_default(tmp_path, monkeypat
     Path("my.toml").write_text(PAPER.to_toml())
     asked = []
 
-    def audit(*_, simulations, **__):
-        asked.append(simulations)
+    def audit(*_, simulations, seed, **__):
+        asked.append((simulations, seed))
         raise st.StictionError("enough")
 
     monkeypatch.setattr("stiction.auditing.report.audit", audit)
     monkeypatch.setattr("stiction.cli.commands.audit.record_or_none", lambda *_, **__: "record")
-    for given in ((), ("-n", "0"), ("-n", "7")):
+    for given in ((), ("-n", "0"), ("-n", "7"), ("--seed", "3")):
         assert inside("audit", "my.toml", "--record", "my.csv", *given) == 2
-    assert asked == [4000, 0, 7]
+    assert asked == [(4000, 0), (0, 0), (7, 0), (4000, 3)]
 
 
 def test_a_misspelt_table_is_no_table_of_a_run():

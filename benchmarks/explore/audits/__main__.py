@@ -34,7 +34,7 @@ def look(seed: int, number: int) -> Seen:
     name = type(slider.law).__name__
     fractions: list[float] = []
     try:
-        found = st.audit(slider, fractions.append)
+        found = st.audit(slider, progress=fractions.append)
         page(found, f"rig {number}")
     except Exception as error:
         return Seen(number, name, process_time() - begin, (f"{type(error).__name__}: {error}",))

@@ -123,6 +123,7 @@ def compare(
     *,
     simulations: int = SIMULATIONS,
     library: str | Path | None = None,
+    seed: int = 0,
     progress: Callable[[float], None] | None = None,
 ) -> RecordComparison:
     """Fit a rig to a record, and simulate the record again with the fitted parameters.
@@ -138,7 +139,7 @@ def compare(
     try:
         seen = observe(record, rig.slider)
         found = fit(
-            record, rig, simulations=simulations, library=library,
+            record, rig, simulations=simulations, library=library, seed=seed,
             progress=lambda fraction: report(0.5 * fraction),
         )  # fmt: skip
     except ResultError as error:
@@ -147,7 +148,7 @@ def compare(
     odds, why = None, ""
     try:
         odds = mechanism(
-            record, rig, simulations=simulations // SHARE, library=library,
+            record, rig, simulations=simulations // SHARE, library=library, seed=seed,
             progress=lambda fraction: report(0.55 + 0.45 * fraction),
         )  # fmt: skip
     except (ResultError, DescriptionError) as error:

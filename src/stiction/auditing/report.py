@@ -41,7 +41,7 @@ from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
 from stiction.linear_stability.axis import steadily_driven
-from stiction.names import old_attributes
+from stiction.names import old_attributes, warn_renamed
 from stiction.progress.audience import with_progress
 from stiction.progress.report import Progress, part, silent
 from stiction.system.description import Description
@@ -191,11 +191,12 @@ class Audit(Report):
 @with_progress("auditing")
 def audit(
     slider: Slider | Description | Rig | str | Path,
-    progress: Callable[[float], None] | None = None,
-    *,
     record: Record | str | Path | None = None,
+    *,
     simulations: int = SIMULATIONS,
     library: str | Path | None = None,
+    seed: int = 0,
+    progress: Callable[[float], None] | None = None,
 ) -> Audit:
     """Audit an apparatus: will it measure friction, or itself?
 
@@ -205,13 +206,13 @@ def audit(
         The apparatus, or the file of its description, with a steady drive and load. The initial
         state and settings of a description are ignored. Where a parameter is uncertain, as in
         ``phi = "2 +- 1 deg"``, the audit ends with a tolerance budget.
-    progress : callable, optional
-        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
     record : Record, str or Path, optional
         A measured record of the apparatus, whose description states what is uncertain: the audit
         begins with what it says, by a fit (`stiction.fit`) and simulations with its parameters.
-    simulations, library
+    simulations, library, seed
         As of `stiction.fit`.
+    progress : callable, optional
+        Called with the fraction done; without it, a terminal or a notebook shows a bar or lines.
 
     Returns
     -------
@@ -232,8 +233,10 @@ def audit(
     >>> st.audit(st.presets.nakano_popov_2020().replace(phi="9.5 deg"))
     <Audit: settling; steady sliding is stable>
     """
-    beside = record if progress is None or callable(progress) else progress
-    refuse_swapped(slider, beside, "the rig comes first: st.audit(rig, record=record)")
+    if callable(record):  # the second argument of 0.4.0
+        warn_renamed("st.audit(slider, progress)", "st.audit(slider, progress=progress)")
+        record, progress = None, record
+    refuse_swapped(slider, record, "the rig comes first: st.audit(rig, record=record)")
     rig = rig_of(slider)
     inform = progress or silent
     before = FITTING if record is not None else 0.0
@@ -245,7 +248,7 @@ def audit(
         seen = record_from(record, load_of_records(rig))
         end_reading()
         measured = compare(
-            seen, rig, simulations=simulations, library=library,
+            seen, rig, simulations=simulations, library=library, seed=seed,
             progress=lambda fraction: inform(before * fraction),
         )  # fmt: skip
     end_reading()

@@ -67,6 +67,15 @@ MaybeSimulations = Annotated[
         ),
     ),
 ]
+MaybeSeed = Annotated[
+    int | None,
+    Parameter(
+        help=(
+            "With --record, number that selects the random draws of the simulations, by default "
+            "0: the same seed gives the same result. Example: --seed 1."
+        ),
+    ),
+]
 Seed = Annotated[
     int,
     Parameter(

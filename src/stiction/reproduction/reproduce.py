@@ -61,6 +61,7 @@ class Reproduction(NamedTuple):
 def paper(
     output: str | Path = "paper-output",
     figure: Literal[3, 4, 5] | None = None,
+    *,
     progress: Callable[[float], None] | None = None,
 ) -> Reproduction:
     """Reproduce Nakano & Popov (2020): its figures, and its numbers beside the computed ones.

@@ -176,7 +176,7 @@ def test_an_advised_damper_is_what_the_closed_form_says(found):
 def sliding():
     """An audit of what slides steadily, and the fractions that it told on its way."""
     fractions = []
-    return examine(PAPER.replace(phi="10 deg"), fractions.append), fractions
+    return examine(PAPER.replace(phi="10 deg"), progress=fractions.append), fractions
 
 
 def test_what_slides_steadily_needs_nothing(sliding):
@@ -209,7 +209,7 @@ def test_an_audit_takes_no_more_work_than_it_may_and_says_what_it_left_out(found
     assert trials > few
     monkeypatch.setattr(report, "MOST_WORK", tests + few)
     fractions = []
-    seen = examine(PAPER, fractions.append)
+    seen = examine(PAPER, progress=fractions.append)
     samples = sum(len(each.tried.record) for each in seen.advices if each.tried)
     assert sum(each.work for each in seen.advices) < few + samples
     assert [each.path for each in seen.advices if each.cut] == ["drive.velocity"]

@@ -13,6 +13,7 @@ from stiction.cli.options import (
     FromPreset,
     Library,
     MaybeOutput,
+    MaybeSeed,
     MaybeSimulations,
     RecordOptions,
     Trust,
@@ -37,6 +38,7 @@ def audit(
     record: Path | None = None,
     simulations: MaybeSimulations = None,
     library: Library = None,
+    seed: MaybeSeed = None,
     measured: RecordOptions | None = None,
 ) -> int:
     """Audit the apparatus that CONFIG describes: will it measure friction, or itself?
@@ -95,14 +97,14 @@ def audit(
             placeable(json)
     with faults.of_part():
         seen = record_or_none(
-            record, measured, trust, rig=rig, simulations=simulations, library=library
+            record, measured, trust, rig=rig, simulations=simulations, library=library, seed=seed
         )
     faults.refuse()
     assert rig is not None
     kept = None if seen is None else library_or_cache(library)
     count = SIMULATIONS if simulations is None else simulations
     with show_progress("auditing") as report:
-        found = examine(rig, report, record=seen, simulations=count, library=kept)
+        found = examine(rig, seen, simulations=count, library=kept, seed=seed or 0, progress=report)
     print_sections(title, found.tables())
     if output is not None:
         with show_progress("drawing"):

@@ -37,7 +37,7 @@ def paper(
     from stiction.reproduction.reproduce import paper as reproduce
 
     with show_progress("simulating and drawing") as report:
-        found = reproduce(output, figure, report)
+        found = reproduce(output, figure, progress=report)
     for path in found.files:
         say(f"wrote {path}")
     if found.table is not None:
