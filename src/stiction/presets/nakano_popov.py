@@ -21,7 +21,17 @@ DOI = "10.1103/PhysRevE.102.063001"
 
 
 def nakano_popov_2020() -> Slider:
-    """Return the system of Fig. 3 of Nakano & Popov, arXiv:2008.01854 (parameters: its caption)."""
+    """Return the slider of Fig. 3 of Nakano & Popov, arXiv:2008.01854 (parameters: its caption).
+
+    It is the slider alone, for `stiction.simulate` and calls that vary it; all other presets are
+    descriptions. The description is `nakano_popov_weakening`.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> st.presets.nakano_popov_2020() == st.presets.nakano_popov_weakening().slider
+    True
+    """
     return Slider(
         mass="0.25 kg",
         k_x="1 kN/m",

@@ -344,8 +344,9 @@ def description_of(
     """
     if isinstance(source, Slider):
         if duration is None:
-            remedy = "give duration='5 s', or make it one: st.Description.of(slider, '5 s')"
-            raise DescriptionError.of("description", f"a Slider has no duration; {remedy}")
+            remedy = "st.simulate and st.compare take duration='5 s'; or make it a description:"
+            message = f"a Slider has no duration; {remedy} st.Description.of(slider, '5 s')"
+            raise DescriptionError.of("description", message)
         return Description.of(source, duration)
     found = source if isinstance(source, Description) else Description.from_toml(source)
     if duration is None:
