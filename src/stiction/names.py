@@ -10,16 +10,18 @@ from __future__ import annotations
 import sys
 import warnings
 from collections.abc import Callable, Iterable, Mapping
-from functools import cache
+from functools import cache, wraps
 from importlib import import_module
 from inspect import currentframe
 from os import sep
 from pathlib import Path
 from types import FunctionType
-from typing import Any
+from typing import Any, TypeVar, cast
 
 from stiction.arguments import doorway
 from stiction.errors import StictionError
+
+F = TypeVar("F", bound=Callable[..., Any])
 
 
 @cache
@@ -254,6 +256,35 @@ def old_attributes(function: Callable[..., Any], renamed: Mapping[str, str]) -> 
     """
     for old, new in renamed.items():
         setattr(function, old, _Moved(f"stiction.{function.__name__}.{old}", new))
+
+
+def old_keywords(**renamed: str) -> Callable[[F], F]:
+    """Return a decorator for a function that takes old names of its arguments, with a warning.
+
+    Parameters
+    ----------
+    renamed : str
+        The new name of each argument, by its old one.
+
+    Examples
+    --------
+    >>> area = old_keywords(width="a")(lambda a, b: a * b)
+    >>> area(2, b=3)
+    6
+    """
+
+    def decorate(function: F) -> F:
+        @wraps(function)
+        def call(*args: Any, **values: Any) -> Any:
+            for old, new in renamed.items():
+                if old in values and new not in values:
+                    warn_renamed(f"the argument {old} of {function.__name__}", new)
+                    values[new] = values.pop(old)
+            return function(*args, **values)
+
+        return cast(F, call)
+
+    return decorate
 
 
 def old_method(old: str, new: str) -> Callable[..., Any]:

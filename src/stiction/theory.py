@@ -42,6 +42,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiction.arguments import is_numeric, name_arguments
 from stiction.arrays import Floats
 from stiction.errors import DescriptionError, echo
+from stiction.names import old_keywords
 from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
 from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantity, unit_on
@@ -53,11 +54,11 @@ REMEDY = ".to_base_units().magnitude of a quantity, or the values of an array, i
 
 KINDS = {  # of arguments that may be given as text with a unit, by their names
     **dict.fromkeys(("V",), VELOCITY),
-    **dict.fromkeys(("F_0", "W", "normal_load"), FORCE),
+    **dict.fromkeys(("F_0", "W"), FORCE),
     **dict.fromkeys(("l_x", "u_x", "D_c"), LENGTH),
     **dict.fromkeys(("phi", "theta"), Kind("an angle", "rad", "1 deg")),
-    **dict.fromkeys(("k_x", "k_y", "stiffness"), Kind("a stiffness", "N/m", "1 kN/m")),
-    **dict.fromkeys(("m", "mass"), Kind("a mass", "kg", "250 g")),
+    **dict.fromkeys(("k", "k_x", "k_y"), Kind("a stiffness", "N/m", "1 kN/m")),
+    "m": Kind("a mass", "kg", "250 g"),
     "t": TIME,
     "c_x": Kind("a damping coefficient", "N*s/m", "1 N s/m"),
     "slope": Kind("a slope of friction over speed", "s/m", "1 s/m"),
@@ -104,17 +105,18 @@ def _in_si(name: str, value: Any) -> Any:
 _limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")
 
 
+@old_keywords(stiffness="k", mass="m")
 @_units
 @_limits
-def natural_frequency(stiffness: ArrayLike, mass: ArrayLike) -> Floats:
-    """Angular natural frequency sqrt(stiffness/mass), rad/s (omega_x, omega_y of the paper).
+def natural_frequency(k: ArrayLike, m: ArrayLike) -> Floats:
+    """Angular natural frequency sqrt(k/m), rad/s (omega_x, omega_y of the paper).
 
     Parameters
     ----------
-    stiffness : array_like
+    k : array_like
         Principal stiffness, k_x or k_y (N/m).
-    mass : array_like
-        Mass m (kg).
+    m : array_like
+        Mass (kg).
 
     Examples
     --------
@@ -122,12 +124,13 @@ def natural_frequency(stiffness: ArrayLike, mass: ArrayLike) -> Floats:
     >>> round(float(st.theory.natural_frequency(10e6, 0.25) / (2 * np.pi)), 1)
     1006.6
     """
-    stiffness, mass = _floats(stiffness, mass)
-    return np.sqrt(stiffness / mass)
+    k, m = _floats(k, m)
+    return np.sqrt(k / m)
 
 
+@old_keywords(normal_load="W")
 @_units
-def friction_force(mu_0: ArrayLike, normal_load: ArrayLike) -> Floats:
+def friction_force(mu_0: ArrayLike, W: ArrayLike) -> Floats:
     """Friction at vanishing slip speed, F_0 = mu_0 W (N); mu_0 (-), normal load W (N).
 
     Examples
@@ -136,8 +139,8 @@ def friction_force(mu_0: ArrayLike, normal_load: ArrayLike) -> Floats:
     >>> float(st.theory.friction_force(0.2, 10.0))
     2.0
     """
-    mu_0, normal_load = _floats(mu_0, normal_load)
-    return mu_0 * normal_load
+    mu_0, W = _floats(mu_0, W)
+    return mu_0 * W
 
 
 @_units

@@ -46,6 +46,18 @@ def test_friction_and_slip_length():
     assert theory.slip_length(F_0, K_X) == L_X
 
 
+def test_old_names_of_arguments_work_with_a_warning():
+    """Mass, load and stiffness have the symbols of the other formulas: m, W and k."""
+    with pytest.warns(DeprecationWarning, match="argument normal_load of friction_force .* W;"):
+        assert theory.friction_force(0.20, normal_load=10.0) == F_0
+    with pytest.warns(DeprecationWarning, match="called [km];") as seen:
+        found = theory.natural_frequency(stiffness="10 MN/m", mass="250 g")
+    assert found == theory.natural_frequency(k=K_Y, m=M)
+    assert [each.filename for each in seen] == [__file__] * 2
+    with pytest.raises(TypeError, match="mass"):
+        theory.natural_frequency(K_Y, m=M, mass=M)
+
+
 def test_first_stick():
     duration = theory.first_stick_duration(F_0, V, PHI, K_X, K_Y)
     assert duration == pytest.approx(11.4595e-3, abs=5e-8)
