@@ -76,6 +76,13 @@ def test_parts_of_results_are_where_their_page_says():
     assert all(isinstance(resolve_name(name), type) for name in names_on(page))
 
 
+@pytest.mark.parametrize("name", [name for name, each in FOUND.items() if inspect.isfunction(each)])
+def test_defaults_of_arguments_fit_a_line_or_so(name):
+    """`check_law` had all of its speeds in its signature."""
+    arguments = inspect.signature(FOUND[name]).parameters.values()
+    assert [each.name for each in arguments if len(repr(each.default)) > 130] == []
+
+
 @pytest.mark.parametrize("name", LISTED)
 def test_each_name_has_an_example(name):
     """In its docstring, which doctest runs, or in a script of the gallery, which the build runs."""

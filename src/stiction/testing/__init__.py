@@ -36,7 +36,7 @@ def checks_of(law: Any) -> dict[str, Check]:
     return {**(WITH_STATE if has_state(law) else SET_VALUED), **COMMON}
 
 
-def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
+def check_law(law: Any, speeds: Sequence[float] | None = None) -> None:
     """Check that a friction law satisfies the solver's assumptions.
 
     Its methods must end, its values must be finite, its friction dissipative, its slope the
@@ -48,7 +48,7 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     law : FrictionLaw or StateLaw
         With its parameters, e.g. ``MyLaw(mu=0.2)``.
     speeds : sequence of float, optional
-        Slip speeds at which it is checked, m/s; by default 1 nm/s to 10 m/s.
+        Slip speeds at which it is checked, m/s; by default `SPEEDS`, 0 and 1 nm/s to 10 m/s.
 
     Raises
     ------
@@ -73,7 +73,7 @@ def check_law(law: Any, speeds: Sequence[float] = SPEEDS) -> None:
     found = [
         Fault(f"{kind}.{name}", message)
         for name, check in checks_of(law).items()
-        for message in check(law, speeds)
+        for message in check(law, SPEEDS if speeds is None else speeds)
     ]
     if found:
         raise DescriptionError(found)
