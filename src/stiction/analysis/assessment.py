@@ -167,7 +167,7 @@ def _friction(
 def imposed_reversal(run: Trajectory | None, regime: Regime) -> str:
     """Return the imposed reversal that leaves no mean as kinetic friction; empty if none.
 
-    Of a run, or of a record with this kind of motion.
+    It is that of a run, or of a record with this kind of motion.
     """
     if run is not None and turns_round(run):
         return "the drive goes back and forth"

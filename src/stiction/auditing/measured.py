@@ -202,7 +202,7 @@ def _is_same(value: float | None, other: float | None, apart: float) -> bool:
 def withdraw(found: RecordComparison) -> RecordComparison:
     """Withdraw a claim of rotation if the rig as described does not explain the record.
 
-    Both compare the record with simulations of a rig whose friction rotates, by measures and
+    Claim and explanation compare the record with simulations of rotating friction, by measures and
     limits of their own.
     """
     if found.like or found.odds is None or found.odds.decision not in TURNING:

@@ -161,7 +161,7 @@ class Rig(_Parts):
 def with_priors(slider: Slider, stated: Mapping[str, Any]) -> tuple[Slider, dict[str, Prior]]:
     """Return a slider at the medians of its uncertain values, and all priors.
 
-    One that is given as a prior says nothing of the slider.
+    A value that is given as a `Prior` leaves the slider as it is.
     """
     priors = read_priors(partial(unit, slider), stated)
     told = [name for name, its in stated.items() if not isinstance(its, Prior)]

@@ -78,7 +78,7 @@ def eigenvalues(matrix: Floats, error: Floats) -> Eigenvalues:
 def grade(matrix: Floats) -> tuple[Floats, Floats, Indices]:
     """Return a balanced matrix with its large rows first, and the scale and order of its unknowns.
 
-    Of such a matrix the QR algorithm mostly finds small eigenvalues to their own digits (Stewart,
+    For such a matrix the QR algorithm mostly finds small eigenvalues to their own digits (Stewart,
     Numer. Math. 90 (2001), 349).
     """
     from scipy.linalg import matrix_balance

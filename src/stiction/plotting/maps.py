@@ -106,7 +106,7 @@ def draw_measure(
 def draw_theory(ax: Axes, x: Side, y: Side, fields: Mapping[str, Floats]) -> list[Line2D]:
     """Draw the zero contour of each field; return the lines of fields that have one.
 
-    Each (n, m) by the name of its line, as fine as the line is to be.
+    `fields` are arrays (n, m) by the names of their lines, as fine as the lines are to be.
     """
     lines = []
     looks: tuple[tuple[str, Any], ...] = ((BLACK, "-"), (GREEN, (0, (4, 1.5))))

@@ -468,7 +468,7 @@ def make(kind: type[T], values: Mapping[str, Any]) -> T:
 def in_si(value: T) -> T:
     """Read the fields of a NamedTuple that are text or carry a unit; numbers are in SI.
 
-    One that is `validate` has read them; another takes whatever it is called with.
+    A class with `validate` has read them already; another one takes them as they are given.
     """
     if hasattr(type(value).__new__, READS):
         return value

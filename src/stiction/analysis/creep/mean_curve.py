@@ -102,7 +102,7 @@ def with_rounding(mean: xr.Dataset, record: Record, cycles: xr.Dataset) -> xr.Da
 def with_slip_time(mean: xr.Dataset, record: Record) -> xr.Dataset:
     """Return mean creep with the error of the slip's time in the bin next to the slip.
 
-    That is known to a sample, for all phases alike. With a part of it more, or less, the last bin
+    It is known to a sample, for all phases alike. With a part of it more, or less, the last bin
     has more or less of a motion that goes as fast as the drive. A bin before it has not.
     """
     V, velocity = record.drive_velocity, float(mean["velocity"][0])

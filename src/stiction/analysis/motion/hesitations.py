@@ -104,8 +104,8 @@ def remove_hesitations(values: Floats) -> Hesitations:
 def largest_leg(values: Floats) -> float:
     """Return the size above which a leg is not typical; infinity if all legs are.
 
-    There is one if a few falls, or rises, are far above all others, `FAR_ABOVE` times the largest
-    of these, unless a loading leads to these falls.
+    Legs are not typical if a few falls, or rises, are far above all others, `FAR_ABOVE` times the
+    largest of these, unless a loading leads to these falls.
     """
     change = np.diff(values[1:-1])
     few = len(change) // (2 * RARE)
@@ -123,7 +123,7 @@ def largest_leg(values: Floats) -> float:
 def _is_loaded(values: Floats, fall: Floats) -> bool:
     """Return whether a force rises most of the time, and falls as much in a few falls.
 
-    Of each of some peaks and troughs in turn, `fall` is the height of such a fall from it, or 0.
+    `fall` is the height of such a fall from each of some peaks and troughs in turn, or 0.
     """
     passed = np.cumsum(fall) - fall
     peaks = (values + passed)[int(values[0] < values[1]) :: 2]

@@ -123,7 +123,7 @@ def _part(time: Floats, position: Floats, start: float, end: float, least: float
 def _without_brief(parts: list[_Part], interval: float) -> list[_Part]:
     """Return parts without brief transitions between two velocities, the briefest removed first.
 
-    There the drive comes from one velocity to the next: it takes little time, and little way. A
+    In a transition the drive passes from one velocity to the next, in little time and travel. A
     part that is faster than both neighbours, or slower, is one of the test, if it lasts over some
     means at an `interval` (s).
     """

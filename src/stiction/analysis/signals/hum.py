@@ -98,7 +98,7 @@ def line_near(grid: EvenGrid, force: Floats, frequency: float) -> Line | None:
 def lines_like(lines: Sequence[Line], grid: EvenGrid, values: Floats, least: float) -> list[Line]:
     """Return the narrow lines of another channel that belong to the mains or to given lines.
 
-    Those of the mains from a frequency `least` (Hz) on: slower ones may be those of its cycles.
+    Lines of the mains count from a frequency `least` (Hz) on: slower ones may be the cycles' own.
     """
     return [
         line

@@ -94,7 +94,7 @@ def _whole(seen: SimulatedTest) -> str:
 def _why(found: Audit, inertia: float) -> tuple[str, str]:
     """Return why the mass is slower than the drive for a while, with details.
 
-    Both are empty where that is too short.
+    Reason and details are empty if that time is too short.
     """
     seen, misaligned = found.observation, found.slider.misalignment != 0.0
     if seen.motion in VIBRATES:

@@ -249,8 +249,8 @@ def errors_of(
 ) -> Iterator[list[Floats]]:
     """Yield leave-one-out errors (n, p): of the present test, of parts of each test, of the test.
 
-    Of rigs with these parameters (n, p) and features (n, f); none is learned from fewer rigs than
-    `fewest`.
+    The rigs have parameters `truth` (n, p) and features `rows` (n, f). An error is NaN if it would
+    be learned from fewer rigs than `fewest`.
     """
     width, present = rows.shape[1] // len(trial.conditions), tests[0].channels
 

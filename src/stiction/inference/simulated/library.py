@@ -156,7 +156,7 @@ def refuse_too_few(
 def library_folder(library: str | Path | None) -> Path | None:
     """Return the folder of libraries, created and writable; None if none is named.
 
-    That in the user's cache need not be: nothing is stored then.
+    The folder in the user's cache need not be writable: nothing is stored then.
 
     Raises
     ------

@@ -87,7 +87,7 @@ def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequenc
 class ParameterAxis(NamedTuple):
     """The axis of a parameter: its unit, its label, and whether it is logarithmic.
 
-    It is where the prior is uniform in the logarithm, and is then drawn level.
+    It is logarithmic if the prior is uniform in the logarithm, which is then drawn level.
     """
 
     unit: float

@@ -160,9 +160,9 @@ def measures_in_folder(folder: Path, trust: bool = False) -> FindMeasure:
 def measures_of_results(trust: bool = False) -> FindMeasure:
     """Return a finder for measures of a store, which runs code only with `trust`.
 
-    But for functions that the user has given to a study in this process: a store may name any
-    function that is loaded. A measure that may not be run has no function: what it returned can
-    still be read and drawn.
+    Exceptions are functions that the user has given to a study in this process, since a store may
+    name any function that is loaded. A measure that may not be run has no function; its stored
+    values can still be read and drawn.
     """
 
     def find(reference: str, text: str | None) -> OwnMeasure:

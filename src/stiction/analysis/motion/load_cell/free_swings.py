@@ -116,7 +116,7 @@ def _free_swing(even: Floats, step: float, period: float) -> FreeSwing | None:
 def _amplitude(values: Floats, turns: float) -> Complex:
     """Return the complex amplitude around each value; it is zero for a straight line.
 
-    Nor has a swing that turns the other way: each real one is half of it.
+    It is also zero for a swing that turns the other way: half of each real swing.
     """
     half = max(round(0.5 * WINDOW / turns), 2)
     away = np.arange(-half, half + 1)
