@@ -30,7 +30,14 @@ from stiction.inference.priors import Prior, middle
 from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
-from stiction.inference.simulated.library import Library, build, library_folder, refuse_too_few
+from stiction.inference.simulated.library import (
+    FIRST_SIMULATIONS,
+    Library,
+    build,
+    library_folder,
+    refuse_too_few,
+    will_be_too_few,
+)
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import ANALYSE
@@ -41,8 +48,6 @@ from stiction.system.slider import Slider
 
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
-# Simulations that tell whether all of them will be too few, except once in a thousand
-FIRST_SIMULATIONS = 96
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
 
 
@@ -115,32 +120,31 @@ def fit(
 
 
 def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int) -> None:
-    """Refuse a number of simulations once the first ones show that too few will have cycles.
-
-    By the bound of Clopper and Pearson (Biometrika 26, 404 (1934)) on the share that has some.
-    """
-    from scipy.special import betaincinv
-
+    """Refuse a number of simulations once the first show that too few will have cycles."""
     if simulations <= FIRST_SIMULATIONS:
         return
     first = build(plan_of, FIRST_SIMULATIONS, folder, seed=seed)
-    usable = len(first.scores)
-    share = (
-        float(betaincinv(usable + 1, FIRST_SIMULATIONS - usable, 0.999))
-        if usable < FIRST_SIMULATIONS
-        else 1.0
-    )
-    if share * simulations < FEWEST_SIMULATIONS:
+    if will_be_too_few(len(first.scores), FIRST_SIMULATIONS, simulations, FEWEST_SIMULATIONS):
         refuse_few_of(first)
 
 
 def refuse_few_of(library: Library) -> None:
     """Refuse a library of which too few simulations have cycles."""
+    usable = len(library.scores)
+    refuse_few("simulated records", usable, library.wanted, FEWEST_SIMULATIONS)
+
+
+def refuse_few(what: str, usable: int, simulated: int, fewest: int, recorded: bool = True) -> None:
+    """Refuse simulations of which fewer have cycles; say what decides how many have.
+
+    They are compared with those of a record, or else with that of the rig in the middle of its
+    priors.
+    """
+    compared = "the record's" if recorded else "that in the middle of the priors"
+    also = f", and whether the record is stick-slip at all: `{ANALYSE}` tells" if recorded else ""
     refuse_too_few(
-        "simulated records", len(library.scores), library.wanted, FEWEST_SIMULATIONS,
-        f" no longer than {LONGEST_CYCLE:g} times the record's",
-        "the priors, and stiffness and velocity, which decide how long a cycle lasts, and whether "
-        f"the record is stick-slip at all: `{ANALYSE}` tells",
+        what, usable, simulated, fewest, f" no longer than {LONGEST_CYCLE:g} times {compared}",
+        f"the priors, and stiffness and velocity, which decide how long a cycle lasts{also}",
     )  # fmt: skip
 
 

@@ -8,9 +8,10 @@ import stiction as st
 from stiction.cli.options import library_or_cache
 from stiction.errors import ResultError
 from stiction.inference import fit as fits
+from stiction.inference.columns import features_from
 from stiction.inference.mechanism import comparison
 from stiction.inference.next_test import design as designs
-from stiction.inference.simulated.library import BLOCK, library_folder, simulate_all
+from stiction.inference.simulated.library import BLOCK, FIRST, library_folder, simulate_all
 from stiction.storage import arrays
 from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
 
@@ -77,6 +78,61 @@ def test_other_folders_are_written_or_refused(tmp_path, unwritable, capsys):
 def test_the_cache_is_in_the_users_cache():
     assert cache_folder().name == "libraries"
     assert "stiction" in cache_folder().parts
+
+
+def test_what_is_begun_is_not_simulated_again(monkeypatch):
+    """Simulations that are stored nowhere would be made twice, after a look at the first ones."""
+    asked = []
+
+    def simulate(_, number, __):
+        asked.append(number)
+        return np.array([number]), np.array([-number])
+
+    monkeypatch.setattr("stiction.inference.simulated.library.simulate", simulate)
+    begun = simulate_all(None, 2 * BLOCK, None, seed=0)
+    assert sorted(asked) == [*range(2 * BLOCK)]
+    scores, found = simulate_all(None, 2 * BLOCK + 1, None, seed=0, begun=begun)
+    assert sorted(asked) == [*range(3 * BLOCK)]
+    assert scores[:, 0].tolist() == (-found[:, 0]).tolist() == [*range(2 * BLOCK + 1)]
+
+
+FEW = {  # simulations, and how the refusal begins after the first of them
+    "fit": (400, "only 1 of 96 simulated records have"),
+    "mechanism": (200, "only 4 of 128 simulated records of rate and state, and by no mechanism"),
+    "design": (200, "only 1 of 96 rigs drawn from the priors have"),
+    "audit": (400, "No verdict: only 1 of 96 simulated records have"),
+}
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_too_few_cycles_are_refused_after_the_first_simulations(name, rig, record, monkeypatch):
+    """A mechanism and a design simulated all for minutes, and said then that few have cycles."""
+    asked, (count, begins) = [], FEW[name]
+
+    def simulate(plan, number, _):
+        asked.append(number)
+        columns = len(features_from((), plan.conditions[0], plan.basis or plan.slider))
+        row = np.full(columns * len(plan.conditions), np.nan if number else 0.0)
+        return np.zeros(len(plan.priors)), row
+
+    monkeypatch.setattr("stiction.inference.simulated.library.simulate", simulate)
+    said = refusal(name, rig, record, count)
+    assert said.startswith(begins)
+    assert " have cycles of stick and slip no longer than 4 times the record's, " in said
+    assert " are needed: check the priors, and stiffness and velocity, which decide how " in said
+    assert said.rstrip(".").endswith("whether the record is stick-slip at all: `st.analyse` tells")
+    assert max(asked) == FIRST - 1
+
+
+def refusal(name, rig, record, count):
+    """What is said of so many simulations of which hardly any has cycles."""
+    if name == "audit":
+        page = str(st.audit(rig, record=record, simulations=count))
+        return next(line.strip() for line in page.splitlines() if "of 96" in line)
+    given = (rig, record) if name == "design" else (record, rig)
+    with pytest.raises(ResultError) as refused:
+        getattr(st, name)(*given, simulations=count)
+    return str(refused.value)
 
 
 def test_progress_is_told_within_the_first_block(monkeypatch):

@@ -8,7 +8,8 @@ however many of its simulations have cycles: the odds before are even.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from math import ceil
 from pathlib import Path
 from typing import Any, NamedTuple, Self
 
@@ -18,7 +19,7 @@ from scipy.optimize import minimize
 from scipy.special import log_softmax, softmax
 
 from stiction.arrays import Floats
-from stiction.errors import ResultError
+from stiction.inference.fit import refuse_few
 from stiction.inference.learning.summary import (
     Regression,
     Standard,
@@ -29,7 +30,13 @@ from stiction.inference.learning.summary import (
     single_threaded_algebra,
 )
 from stiction.inference.mechanism.rivals import Mechanism
-from stiction.inference.simulated.library import have_cycles, simulate_all
+from stiction.inference.simulated.library import (
+    BLOCK,
+    FIRST_SIMULATIONS,
+    have_cycles,
+    simulate_all,
+    will_be_too_few,
+)
 from stiction.inference.simulated.plan import Plan
 from stiction.progress.report import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
@@ -85,35 +92,81 @@ def simulate(
     Raises
     ------
     ResultError
-        If by no mechanism enough of them have cycles of stick and slip.
+        If by no mechanism enough of them have cycles of stick and slip; as soon as the first ones
+        tell that.
     """
+    first = begin(rivals, count, folder, seed, part(progress, 0, 10))
+    progress = part(progress, 1, 10, of=9)
     total = sum(len(rival.plans) for rival in rivals)
     done, found, parameters, absent = 0, {}, [], []
+    usable = {}
     for rival in rivals:
         parts, drawn = [], []
         for plan in rival.plans:
-            place = None if folder is None else folder / f"{plan.key}-{seed}"
             wanted = -(-count // len(rival.plans))
-            report = part(progress, done, total)
-            scores, rows = simulate_all(plan, wanted, place, seed=seed, progress=report)
+            scores, rows = simulate_all(
+                plan, wanted, place_of(plan, folder, seed), seed=seed,
+                progress=part(progress, done, total), begun=first.get(plan.key),
+            )  # fmt: skip
             kept = have_cycles(rows)
             parts.append(rows[kept])
             drawn.append(scores[kept])
             done += 1
         features = np.concatenate(parts)
+        usable[rival.name] = len(features), count
         if len(features) < FEWEST_SIMULATIONS:
             absent.append(rival.name)
         else:
             found[rival.name] = features
             parameters.append(common_columns(rival.plans, drawn))
     if not found:
-        raise ResultError(
-            f"by no mechanism {FEWEST_SIMULATIONS} of {count} simulated records have cycles of "
-            "stick and slip: check the priors, or simulate more"
-        )
+        refuse_few_of_all(usable)
     labels = np.repeat(np.arange(len(found)), [len(each) for each in found.values()])
     features = np.concatenate([*found.values()])
     return Simulations((*found,), features, labels, (*absent,), (*parameters,))
+
+
+def begin(
+    rivals: Sequence[Mechanism], count: int, folder: Path | None, seed: int, progress: Progress
+) -> dict[str, tuple[Floats, Floats]]:
+    """Return the first simulations of each plan, by its key; none where all are no more.
+
+    They are refused if they tell that by no mechanism enough of all will have cycles.
+    """
+    if count <= FIRST_SIMULATIONS:
+        return {}
+    total = sum(len(rival.plans) for rival in rivals)
+    found: dict[str, tuple[Floats, Floats]] = {}
+    usable = {}
+    for rival in rivals:
+        some = BLOCK * ceil(
+            FIRST_SIMULATIONS / (BLOCK * len(rival.plans))
+        )  # by each plan, whole blocks
+        its = []
+        for plan in rival.plans:
+            report, place = part(progress, len(found), total), place_of(plan, folder, seed)
+            found[plan.key] = simulate_all(plan, some, place, seed=seed, progress=report)
+            its.append(have_cycles(found[plan.key][1]))
+        own = np.concatenate(its)
+        usable[rival.name] = int(own.sum()), len(own)
+    if all(will_be_too_few(*each, count, FEWEST_SIMULATIONS) for each in usable.values()):
+        refuse_few_of_all(usable)
+    return found
+
+
+def refuse_few_of_all(usable: Mapping[str, tuple[int, int]]) -> None:
+    """Refuse simulations of which too few have cycles by each mechanism.
+
+    Of each, how many have some, and of how many.
+    """
+    most = max(usable, key=lambda name: usable[name][0] / usable[name][1])
+    what = f"simulated records of {most}, and by no mechanism more,"
+    refuse_few(what, *usable[most], FEWEST_SIMULATIONS)
+
+
+def place_of(plan: Plan, folder: Path | None, seed: int) -> Path | None:
+    """Return where the simulations of a plan are kept; None where nothing is."""
+    return None if folder is None else folder / f"{plan.key}-{seed}"
 
 
 def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:

@@ -7,12 +7,13 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.errors import Faults, Instruction, ResultError
 from stiction.inference.columns import features_from
-from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for
+from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for, refuse_few
 from stiction.inference.learning import calibration
 from stiction.inference.next_test.advice import Advice
 from stiction.inference.next_test.expected import (
@@ -51,10 +52,11 @@ from stiction.inference.observation import (
 from stiction.inference.posterior import RARE, unlike
 from stiction.inference.rig import Rig, refuse_swapped
 from stiction.inference.simulated.library import (
+    FIRST_SIMULATIONS,
     have_cycles,
     library_folder,
-    refuse_too_few,
     simulate_all,
+    will_be_too_few,
 )
 from stiction.inference.simulated.plan import Plan
 from stiction.inference.suitability import explain_unlike
@@ -64,6 +66,7 @@ from stiction.system.slider import Slider
 from stiction.text.quantity_text import percent
 from stiction.text.units import Quantity, in_words
 
+DRAWN = "rigs drawn from the priors"
 NOT_COMPARED = "Whether the record is like those of the rig as described is not known: "
 OTHER_NOISE = "the simulated tests have another noise, as given; leave it out to compare them."
 
@@ -169,7 +172,17 @@ def answer(
     whole = progress or silent
     simulating, learning = part(whole, 0, 10, of=6), part(whole, 6, 10, of=4)
     count = wanted.simulations
-    scores, features = simulate_all(trial, count, folder, seed=seed, progress=simulating)
+    first = simulate_all(
+        trial, FIRST_SIMULATIONS, folder, seed=seed, progress=part(simulating, 0, 20)
+    )
+    cycles, recorded = int(show_cycles(trial, measured, first[1]).sum()), seen is not None
+    if will_be_too_few(cycles, FIRST_SIMULATIONS, count, FEWEST_RIGS):
+        refuse_few(DRAWN, cycles, FIRST_SIMULATIONS, FEWEST_RIGS, recorded)
+    scores, features = simulate_all(
+        trial, count, folder, seed=seed, progress=part(simulating, 1, 20, of=19), begun=first
+    )
+    cycles = int(show_cycles(trial, measured, features).sum())
+    refuse_few(DRAWN, cycles, count, FEWEST_RIGS, recorded)
     path = None if folder is None else folder / f"tests-{count}-{'-'.join(measured)}.npz"
     every = [Further("the present test", measured), *tests]
     found = learn_or_read(trial, every, scores, features, path, learning)
@@ -178,11 +191,22 @@ def answer(
         doubt = seen.disputed or doubts(trial, seen, scores, features, wanted, path)
     whole(1.0)
     assumed = assumptions(() if seen is None else measured, present, wanted, averaged)
-    columns = features.shape[1] // len(trial.conditions)
-    usable = int(have_cycles(features[:, :columns]).sum())
+    usable = int(have_cycles(features[:, : features.shape[1] // len(trial.conditions)]).sum())
     rare = tuple(each.test for each in found if round(each.usable * usable) < FEWEST_RIGS)
     common = tuple(each for each in found if each.test not in rare)
     return Advice(trial, name, common, (*skipped,), (*assumed,), usable, rare, doubt)
+
+
+def show_cycles(trial: Plan, channels: Sequence[str], features: Floats) -> NDArray[np.bool_]:
+    """Return which rigs with these features (n, f) show cycles in the present test."""
+    return have_cycles(features_of(trial, channels, features))
+
+
+def features_of(trial: Plan, channels: Sequence[str], features: Floats, number: int = 0) -> Floats:
+    """Return those of some channels in one of the records, at first that of the present test."""
+    width = features.shape[1] // len(trial.conditions)
+    columns = features_from(tuple(channels), trial.conditions[0], trial.slider)
+    return features[:, number * width : (number + 1) * width][:, columns]
 
 
 def must_slip(present: Conditions | None) -> Conditions:
@@ -224,10 +248,7 @@ def expectations(
     trial: Plan, tests: Sequence[Further], scores: Floats, features: Floats, progress: Progress
 ) -> Iterator[Expected]:
     """Yield the remaining error after each test, the present one first."""
-    width = features.shape[1] // len(trial.conditions)
-    columns = features_from(tests[0].channels, trial.conditions[0], trial.slider)
-    complete = have_cycles(features[:, :width][:, columns])
-    refuse_too_few("rigs drawn from the priors", int(complete.sum()), len(complete), FEWEST_RIGS)
+    complete = show_cycles(trial, tests[0].channels, features)
     truth, rows = scores[complete], features[complete]
     groups = [
         [
@@ -252,20 +273,16 @@ def errors_of(
     The rigs have parameters `truth` (n, p) and features `rows` (n, f). An error is NaN if it would
     be learned from fewer rigs than `fewest`.
     """
-    width, present = rows.shape[1] // len(trial.conditions), tests[0].channels
-
-    def seen(number: int, channels: Sequence[str]) -> Floats:
-        columns = features_from(channels, trial.conditions[0], trial.slider)
-        return rows[:, number * width : (number + 1) * width][:, columns]
-
+    present = tests[0].channels
     known: dict[tuple[str, ...], Floats] = {}  # what the first record says, by its channels
     further = iter(range(1, len(trial.conditions)))
     for test in tests:
         if test.channels not in known:
-            known[test.channels] = estimates(seen(0, test.channels), truth, fewest)
+            known[test.channels] = estimates(features_of(trial, test.channels, rows), truth, fewest)
         records = [known[test.channels]]
         if test.record is not None:
-            records.append(estimates(seen(next(further), test.channels), truth, fewest))
+            own = features_of(trial, test.channels, rows, next(further))
+            records.append(estimates(own, truth, fewest))
         less = [its for its in known if {*present} < {*its} < {*test.channels}]
         parts = [truth - known[each] for each in (present, *less)]
         yield [*parts, left_out_errors(records, truth, fewest)]
@@ -286,9 +303,7 @@ def doubts(
     """
     if any(wanted.noises[name] is not None for name in seen.conditions.noise):
         return NOT_COMPARED + OTHER_NOISE
-    width = features.shape[1] // len(trial.conditions)
-    columns = features_from(tuple(seen.conditions.noise), trial.conditions[0], trial.slider)
-    rows = features[:, :width][:, columns]
+    rows = features_of(trial, tuple(seen.conditions.noise), features)
     usable = have_cycles(rows)
     if (count := usable.sum()) < FEWEST_SIMULATIONS:
         few = f"{count} of the simulated rigs have cycles now, {FEWEST_SIMULATIONS} are needed"

@@ -25,6 +25,9 @@ from stiction.study.execution.cores import Cores
 from stiction.text.suggestion import Suggestion
 
 BLOCK = 32  # simulations that are stored together
+# simulations that tell whether all of them will be too few, except once in a thousand
+FIRST_SIMULATIONS = 3 * BLOCK
+SURE = 0.999
 SAFE = 1.2  # times as many simulations as give enough on average: over four deviations of 300
 
 
@@ -55,12 +58,14 @@ def have_cycles(rows: Floats) -> NDArray[np.bool_]:
 
 
 def simulate_all(
-    plan: Plan, count: int, folder: Path | None, *, seed: int, progress: Progress = silent
-) -> tuple[Floats, Floats]:
+    plan: Plan, count: int, folder: Path | None, *, seed: int, progress: Progress = silent,
+    begun: tuple[Floats, Floats] | None = None,
+) -> tuple[Floats, Floats]:  # fmt: skip
     """Return normal scores (n, p) and features (n, f) of `count` simulations.
 
     Features of a record with too few cycles are NaN. What a folder holds already is not simulated
-    again: simulation number i is the same whatever the number of others.
+    again, nor are the first ones if they are given as `begun`, whole blocks: simulation number i is
+    the same whatever the number of others.
     """
     if count < 1:
         raise DescriptionError.of("simulations", f"must be at least 1, is {count}")
@@ -70,6 +75,8 @@ def simulate_all(
         if folder is None
         else {each: rows for each in blocks if (rows := read_block(folder, each)) is not None}
     )
+    if begun is not None:
+        done |= dict(enumerate(zip(*(in_blocks(its) for its in begun), strict=True)))
     missing = [each for each in blocks if each not in done]
 
     ready, lock = dict.fromkeys(missing, 0), Lock()
@@ -86,6 +93,11 @@ def simulate_all(
         report(block, BLOCK)
     scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
     return scores, found
+
+
+def in_blocks(rows: Floats) -> list[Floats]:
+    """Return whole blocks of rows, (n, m)."""
+    return np.split(rows, range(BLOCK, len(rows), BLOCK))
 
 
 def tell_nobody(block: int, rows: int) -> None:
@@ -127,6 +139,21 @@ def simulate(plan: Plan, number: int, seed: int) -> tuple[Floats, Floats]:
         its = features(conditions.step, channels, scale, cycles)
         found.append(its if made else np.full_like(its, np.nan))
     return drawn, np.concatenate(found)
+
+
+def will_be_too_few(usable: int, tried: int, wanted: int, fewest: int) -> bool:
+    """Return whether `fewest` of all simulations cannot have cycles, as the first ones tell.
+
+    Of those, `tried`, so many are `usable`. By the bound of Clopper and Pearson (Biometrika 26, 404
+    (1934)) on the share that has some.
+
+    >>> [will_be_too_few(usable, 96, 400, 300) for usable in (20, 60, 96)]
+    [True, False, False]
+    """
+    from scipy.special import betaincinv  # slow to import
+
+    share = float(betaincinv(usable + 1, tried - usable, SURE)) if usable < tried else 1.0
+    return share * wanted < fewest
 
 
 def refuse_too_few(
