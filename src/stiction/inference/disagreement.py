@@ -14,7 +14,7 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.inference.columns import shape_features
 from stiction.inference.features import DROP, LOADING
-from stiction.inference.learning.conflict import Conflict
+from stiction.inference.learning.conflict import Conflict, Departure
 from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import Observation, steadiness
 from stiction.inference.simulated.library import Library
@@ -105,6 +105,5 @@ def stated_rate(library: Library, seen: Sequence[Observation]) -> Conflict:
         shape = shape_features(its.conditions, plan.slider)
         rates = known[:, DROP] - known[:, LOADING]
         own = float(its.features[DROP] - its.features[LOADING])
-        found.append(Conflict.between(known[:, shape], rates, stated, its.features[shape], own))
-    least = min(found, key=lambda each: each.p_value)
-    return least._replace(p_value=steadiness(each.p_value for each in found))
+        found.append(Departure.of(known[:, shape], rates, stated, its.features[shape], own))
+    return Conflict.between(found)

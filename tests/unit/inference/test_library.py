@@ -11,7 +11,12 @@ from stiction.inference import fit as fits
 from stiction.inference.columns import features_from
 from stiction.inference.mechanism import comparison
 from stiction.inference.next_test import design as designs
-from stiction.inference.simulated.library import BLOCK, FIRST, library_folder, simulate_all
+from stiction.inference.simulated.library import (
+    BLOCK,
+    FIRST_SIMULATIONS,
+    library_folder,
+    simulate_all,
+)
 from stiction.storage import arrays
 from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
 
@@ -121,7 +126,7 @@ def test_too_few_cycles_are_refused_after_the_first_simulations(name, rig, recor
     assert " have cycles of stick and slip no longer than 4 times the record's, " in said
     assert " are needed: check the priors, and stiffness and velocity, which decide how " in said
     assert said.rstrip(".").endswith("whether the record is stick-slip at all: `st.analyse` tells")
-    assert max(asked) == FIRST - 1
+    assert max(asked) == FIRST_SIMULATIONS - 1
 
 
 def refusal(name, rig, record, count):

@@ -8,6 +8,7 @@ from tests.uncertain import TEXT
 
 import stiction as st
 from stiction.errors import DescriptionError
+from stiction.inference.disagreement import stated_rate
 from stiction.inference.features import features
 from stiction.inference.fit import check, compare, plan_for
 from stiction.inference.observation import Conditions, Noise, Observation
@@ -58,6 +59,20 @@ def test_a_velocity_that_is_stated_wrongly_is_doubted(library, velocity):
 def test_a_velocity_that_is_stated_rightly_is_not(library):
     found = [compare(library, [each]) for each in records(library, 1.0)]
     assert not [its for each in found for its in each.doubts if "times the rate" in its]
+
+
+def test_three_records_are_doubted_as_one_is(library):
+    """Of three none ever was: a p-value of each, by 200 simulations, was multiplied by three."""
+    thrice = library._replace(features=np.tile(library.features, 3))
+    found = [stated_rate(thrice, [each] * 3) for each in records(library, 1.07)]
+    doubted = [each for each in found if each.p_value < CONTRADICTS]
+    assert len(doubted) >= 0.6 * len(found) > 6
+
+
+def test_three_records_that_are_stated_rightly_are_not(library):
+    thrice = library._replace(features=np.tile(library.features, 3))
+    found = [stated_rate(thrice, [each] * 3) for each in records(library, 1.0)]
+    assert not [each for each in found if each.p_value < CONTRADICTS]
 
 
 def test_the_rate_follows_from_stiffness_velocity_and_gain():
