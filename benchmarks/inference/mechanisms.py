@@ -27,8 +27,16 @@ from stiction.analysis.motion.rest import HELD
 from stiction.friction.laws import Anisotropic, Stribeck
 from stiction.inference.columns import bend_features, features_from
 from stiction.inference.features import USED
+from stiction.inference.learning.summary import Standard
 from stiction.inference.mechanism import likeness
-from stiction.inference.mechanism.classifier import Classifier, Simulations, learn_or_read, simulate
+from stiction.inference.mechanism.classifier import (
+    Classifier,
+    Discriminant,
+    Simulations,
+    learn_or_read,
+    place_of,
+    simulate,
+)
 from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, surely
@@ -42,6 +50,7 @@ from stiction.inference.rig import Rig
 from stiction.inference.simulated.library import have_cycles, simulate_all
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import draw
+from stiction.storage.arrays import read_arrays, write_arrays
 from stiction.system.parameter import change_unchecked
 
 Floats = NDArray[np.float64]
@@ -126,19 +135,20 @@ class Part(NamedTuple):
 class Called(NamedTuple):
     """The most probable mechanism of records, whether that is sure, and whether it is claimed.
 
-    `held` is whether rotation is said to be static friction on the misaligned rig.
+    `usual` is whether it would be claimed but for static friction on the misaligned rig; `held`
+    whether rotation is said to be that.
     """
 
     likeliest: NDArray[np.int64]
     sure: NDArray[np.bool_]
+    usual: NDArray[np.bool_]
     claimed: NDArray[np.bool_]
     held: NDArray[np.bool_]
 
 
 def angles(rotation: Plan, count: int, folder: Path | None, seed: int) -> Floats:
     """Return the misalignment (deg) of each test record of rotation that has cycles."""
-    place = None if folder is None else folder / f"{rotation.key}-{seed}"
-    scores, features = simulate_all(rotation, count, place, seed=seed)
+    scores, features = simulate_all(rotation, count, place_of(rotation, folder, seed), seed=seed)
     shares = ndtr(scores[have_cycles(features), [*rotation.priors].index("phi")])
     return np.degrees(rotation.priors["phi"].quantile(shares))
 
@@ -159,14 +169,14 @@ def call(
         for label, each in zip(likeliest, zip(scores, records.bends, strict=True), strict=True)
     ]
     sure = surely(probabilities, classifier.probabilities_by_halves(records.features))
-    usual = [not its.unlike for its in found]
-    claimed = sure & np.array(usual)
+    usual = sure & ~np.array([its.unlike for its in found])
+    claimed = usual.copy()
     for place, name in enumerate(names):
         its = np.nonzero(claimed & (likeliest == place))[0]
         claimed[its] = check.probability(name, records.features[its]) >= CLAIM
     alike = [references[0].typicality.alike(each, ALIKE_SIMULATIONS) for each in scores]
     held = np.array([Rest.among(rest[some]).held for some in alike]) & (likeliest == 0)
-    return Called(likeliest, sure, claimed, held)
+    return Called(likeliest, sure, usual, claimed, held)
 
 
 def found_when_known(known: Part, other: Part) -> float:
@@ -176,7 +186,7 @@ def found_when_known(known: Part, other: Part) -> float:
     """
     labels = np.repeat([0, 1], [len(known.labels), len(other.labels)])
     both = np.concatenate([known.features, other.features])
-    share = learn_or_read(Simulations(("library", "other"), both, labels)).whole.left_out[:, 1]
+    share = Discriminant.of(Standard.of(both).scores(both), labels).left_out[:, 1]
     return float((share[labels == 1] > np.quantile(share[labels == 0], 1.0 - RARE)).mean())
 
 
@@ -193,6 +203,17 @@ class AtRest(NamedTuple):
     known: Floats
     unseen: Floats
     others: tuple[Floats, ...]
+
+
+def stored_shares(of: Plan, scores: Floats, folder: Path | None, seed: int) -> Floats:
+    """Return how far the mass rests in simulations with these scores, simulated once."""
+    place = place_of(of, folder, seed)
+    path = None if place is None else place / f"rest-{len(scores)}.npz"
+    found = (read_arrays(path) or {}).get("shares")
+    if found is None:
+        found = shares_at_rest(of, scores)
+        write_arrays(path, shares=found)
+    return found
 
 
 def report(
@@ -223,18 +244,29 @@ def report(
         f"{CLAIM} and above {shares[1]:.1%}, claimed {claimed[some].mean():.1%}; "
         f"{held_in_words(its.held[turning][some & claimed], rest.unseen[some & claimed])}"
     )
+    for label, name in enumerate(known.names):
+        own = its.likeliest[labels == label] == label
+        before, after = ((each[labels == label] & own).mean() for each in (its.usual, its.claimed))
+        print(f"    {name}: called so {after:.1%}, refused by condition 5 {before - after:.1%}")
     for (name, records), at_rest in zip(others, rest.others, strict=True):
         found = call(classifier, references, records, check, *named)
         claimed = found.claimed & (drifts >= TREND) if name == DRIFTING else found.claimed
-        counts = np.bincount(found.likeliest[claimed], minlength=len(known.names))
-        listed = ", ".join(
-            f"{known.names[i]} {counts[i] / len(claimed):.0%}" for i in np.nonzero(counts)[0]
-        )
+        refused = names_in_words(known.names, found.likeliest, found.usual & ~found.claimed)
         said = found.likeliest[claimed] == 0
         print(
-            f"    {name}: undecided {1.0 - claimed.mean():.1%}; called {listed or 'none'}; "
-            f"{held_in_words(found.held[claimed][said], at_rest[claimed][said])}"
+            f"    {name}: undecided {1.0 - claimed.mean():.1%}; called "
+            f"{names_in_words(known.names, found.likeliest, claimed)}; refused by condition 5 "
+            f"{refused}; {held_in_words(found.held[claimed][said], at_rest[claimed][said])}"
         )
+
+
+def names_in_words(
+    names: Sequence[str], likeliest: NDArray[np.int64], some: NDArray[np.bool_]
+) -> str:
+    """Return of which mechanisms some of all records are, with their shares of all."""
+    shares = np.bincount(likeliest[some], minlength=len(names)) / len(some)
+    found = (f"{name} {share:.1%}" for name, share in zip(names, shares, strict=True) if share)
+    return ", ".join(found) or "none"
 
 
 def held_in_words(held: NDArray[np.bool_], rest: Floats) -> str:
@@ -271,11 +303,15 @@ def main() -> None:
         checked = simulate(rivals, options.simulations, folder, seed=first)
         known = checked.among(CLAIMED)
         unseen = simulate(rivals[:-1], options.records, folder, seed=second).among(CLAIMED)
+        if unseen.names != known.names:
+            parser.error(f"by one of {', '.join(known.names)} hardly any of the records has cycles")
         others = [simulate([each], options.records, folder, seed=third) for each in strange]
         plans = [each.plans[0] for each in strange]
-        pairs = [(rivals[0].plans[0], known), (rivals[0].plans[0], unseen)]
-        pairs += zip(plans, others, strict=True)
-        at_rest = [shares_at_rest(plan, each.parameters[0]) for plan, each in pairs]
+        seeds = [first, second, *[third] * len(plans)]
+        some = zip(
+            [*[rivals[0].plans[0]] * 2, *plans], [known, unseen, *others], seeds, strict=True
+        )
+        at_rest = [stored_shares(of, its.parameters[0], folder, seed) for of, its, seed in some]
         rest = AtRest(at_rest[0], at_rest[1], (*at_rest[2:],))
         print(
             f"{name}: {len(known.labels)} records to learn from, {len(unseen.labels)} to test on; "
