@@ -265,8 +265,8 @@ class Fit(Report):
         sentences += self.disturbances
         sentences.append(
             "Experimental. Width: that of the posterior over that of the prior. Coverage: the "
-            "share of such 95 % intervals that hold the truth, of simulated records that were left "
-            "out. It says nothing of what no simulation contains."
+            f"share of such 95 % intervals that hold the truth, of {len(self.ranks)} simulated "
+            "records that were left out. It says nothing of what no simulation contains."
         )
         own = [x.name for x in self.estimates if x.name in MEANINGS]
         sentences += [f"{name} is the {MEANINGS[name]}." for name in own]

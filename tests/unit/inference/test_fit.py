@@ -203,6 +203,8 @@ def test_coverage_is_measured_on_records_left_out_and_reported(found, tmp_path):
     brief, shown, notes = found.tables()
     assert "Experimental" in str(notes)
     assert brief.title == "In short"
+    said = f"of {len(found.ranks)} simulated records that were left out"  # of which it is a share
+    assert said in " ".join(str(notes).split())
     (line,) = (each for each in brief.sentences if each.startswith("With 95 % intervals: "))
     for x in found.estimates:  # each once: as known, or as not identifiable
         assert (f"{x.name.split('.')[-1]} {middle(x)} (" in line) is (x in found.known)
