@@ -885,6 +885,33 @@ def test_a_claim_of_contacts_with_memory_names_the_law_that_may_pass_for_it():
     assert "may pass" not in " ".join(odds_with().sentences())
 
 
+def test_a_static_peak_that_was_not_compared_is_not_called_less_probable():
+    """It was, where no simulation of static friction on the misaligned rig had cycles."""
+    sure = np.array([0.02, 0.03, 0.95])
+    aged = odds_with(
+        probabilities=sure, by_halves=np.array([sure, sure]), absent=(MISALIGNED_STATIC,)
+    )
+    said = " ".join(aged.sentences())
+    assert "was compared" not in said
+    assert "Not excluded: friction that weakens with speed below a static peak" in said
+    assert f"Not compared: {MISALIGNED_STATIC}." in said
+
+
+@pytest.mark.parametrize(("offset", "absent"), [(5.0, (MISALIGNED_STATIC,)), (-5.0, ())])
+def test_the_odds_name_what_contacts_with_memory_were_not_compared_with(
+    rig, rotating, offset, absent
+):
+    """Where rotation is claimed, static friction on the misaligned rig is no rival of it."""
+    random, seen = np.random.default_rng(1), observe(rotating, rig.slider)
+    width = len(plan_for(rig, [seen.conditions]).priors)
+    places = seen.features + np.repeat([[max(offset, 0.0)], [max(-offset, 0.0)]], 60, axis=0)
+    simulated = Simulations(
+        (ROTATION, RATE_AND_STATE), places + 0.5 * random.standard_normal(places.shape),
+        np.repeat([0, 1], 60), (MISALIGNED_STATIC,), (random.standard_normal((60, width)),) * 2,
+    )  # fmt: skip
+    assert comparison.compare(simulated, rig, [seen]).absent == absent
+
+
 def test_a_claim_of_static_friction_names_the_rate_and_state_that_is_like_it():
     """Below the smallest direct effect that is simulated, it was claimed without a word."""
     sure = np.array([0.02, 0.95, 0.03])

@@ -146,8 +146,9 @@ def compare(
     labels = simulated.labels
     probabilities = learned.probabilities(observed)[0]
     name = simulated.names[int(np.argmax(probabilities))]
-    beside_static = 1.0
+    beside_static, absent = 1.0, simulated.absent
     if name in ELASTIC:
+        absent = every.absent  # static friction on the misaligned rig among them
         static = StaticCheck.of(every, beside(path, "check"), to_check)
         beside_static = float(static.probability(name, observed[None])[0])
     rest = None
@@ -165,7 +166,7 @@ def compare(
         bend=observed[bend],
         steady=steadiness(p for each in seen for p in each.trend),
         counts=tuple(np.bincount(labels).tolist()),
-        absent=simulated.absent,
+        absent=absent,
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),
         explanation=explain_unlike([each.changes for each in seen]),
         disputed=" ".join(each.disputed for each in seen if each.disputed),

@@ -67,7 +67,8 @@ class Odds(Report):
         Number of simulations of each mechanism.
     absent : tuple of str
         Mechanisms that are not compared: hardly any record simulated by them has cycles of stick
-        and slip, or none that are not far longer than the measured ones.
+        and slip, or none that are not far longer than the measured ones. Static friction on the
+        misaligned rig is one of them if the likeliest one is compared with it.
     channels : tuple of str
         What was measured.
     explanation : str
@@ -242,10 +243,14 @@ class Odds(Report):
         if self.decision in (LUGRE, RATE_AND_STATE):
             found.append(
                 "Not excluded: friction that weakens with speed below a static peak on a "
-                "misaligned rig. A peak above constant friction, and above the law of the "
-                "description where that can have one, was compared and is less probable; above "
-                f"another law it may pass for {self.decision}."
+                "misaligned rig."
             )
+            if MISALIGNED_STATIC not in self.absent:
+                found.append(
+                    "A peak above constant friction, and above the law of the description where "
+                    "that can have one, was compared and is less probable; above another law it "
+                    f"may pass for {self.decision}."
+                )
         if self.decision == STATIC and RATE_AND_STATE in self.names:
             found.append(
                 "Not excluded: rate and state with a direct effect a below the simulated ones, "
