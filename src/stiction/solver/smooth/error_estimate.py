@@ -157,7 +157,8 @@ def balance(
         d_x, d_y = (yy * r_x - xy * r_y) * per, (xx * r_y - yx * r_x) * per
         share = 1.0
         if eps < inf:
-            slope, friction = (at.s_xx, at.s_xy, at.s_yy), (at.f_xx, at.f_xy, at.f_yy)
+            mixed = 0.5 * (at.f_xy + at.f_yx)
+            slope, friction = (at.s_xx, at.s_xy, at.s_yy), (at.f_xx, mixed, at.f_yy)
             share = inertia_share(problem, g, 1.0, (q_x, q_y), slope, friction)
         q_x, q_y, _, size = correct(start, share, w.size[0], q_x, q_y, d_x, d_y)
         if n > 2:

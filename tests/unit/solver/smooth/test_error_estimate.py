@@ -220,6 +220,30 @@ def test_a_balance_over_many_decades_takes_few_iterations(name, h, monkeypatch):
     assert len(points) <= 6  # without the damping 8 to 10
 
 
+def test_the_share_of_inertia_has_both_mixed_derivatives_of_friction(monkeypatch):
+    """They differ where friction depends on the direction of slip, as here they are made to."""
+    problem, start, w = solved_step("ageing", 1e-4)
+    balance, points, frictions = plain(error_estimate.balance), [], []
+    evaluate, inertia_share = (balance.__globals__[x] for x in ("evaluate", "inertia_share"))
+
+    def noted(*arguments):
+        at = evaluate(*arguments)
+        points.append(at._replace(f_yx=at.f_yx + 0.1 * at.f_xx))
+        return points[-1]
+
+    def shared(*arguments):
+        frictions.append(arguments[-1])
+        return inertia_share(*arguments)
+
+    monkeypatch.setitem(balance.__globals__, "evaluate", noted)
+    monkeypatch.setitem(balance.__globals__, "inertia_share", shared)
+    p = plain(error_estimate.within)(w, INTERIOR)
+    balance(problem, start, 1e-4, INTERIOR, DEFECT_WEIGHT, p, w, 1e-12, NONE)
+    (xx, mixed, yy), at = frictions[0], points[0]
+    assert (xx, yy) == (at.f_xx, at.f_yy)
+    assert mixed == pytest.approx(0.5 * (at.f_xy + at.f_yx), rel=1e-12)
+
+
 @pytest.mark.parametrize("name", ["smoothed", "lugre", "ageing"])
 def test_without_a_balance_the_error_is_infinite(name):
     problem, start, w = solved_step(name, 1e-3)
