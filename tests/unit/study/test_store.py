@@ -202,9 +202,9 @@ def replace_store(path, study):
 def test_a_worker_that_outlives_a_store_opens_the_one_in_its_place(tmp_path):
     """Workers of a cluster do: they took the blocks of the old layout for all blocks."""
     path = tmp_path / "a.zarr"
-    old = sent(create(STUDY, path)).open()
+    old = sent(create(STUDY, path)).store()
     new = replace_store(path, OTHER)
-    assert sent(new).open().layout == new.layout != old.layout
+    assert sent(new).store().layout == new.layout != old.layout
     for task in range(OTHER.layout.tasks):
         do_block(OTHER, sent(new), task, never)
     assert (st.open_study(path)["status"] == 0).all()
@@ -218,11 +218,11 @@ def sent(store):
 def test_equal_stores_are_opened_once(tmp_path):
     """A worker opens a store for its first block, and a store of the same content is the same."""
     store = create(STUDY, tmp_path / "a.zarr")
-    first = sent(store).open()
-    assert sent(store).open() is first
+    first = sent(store).store()
+    assert sent(store).store() is first
     again = replace_store(store.path, STUDY)
     assert again.identity == store.identity
-    assert sent(again).open() is first
+    assert sent(again).store() is first
 
 
 @pytest.mark.parametrize("instead", [OTHER, None])

@@ -85,7 +85,7 @@ def do_block(
     study: Study, address: StoreAddress, task: int, unwanted: Callable[[], bool]
 ) -> Came | None:
     """Do the runs of a block as `finish_block` does; None if another sweep is doing them."""
-    with address.open().claim(task) as mine:
+    with address.store().claim(task) as mine:
         return finish_block(study, address, task, unwanted) if mine else None
 
 
@@ -96,7 +96,7 @@ def finish_block(
 
     A worker that outlived its client may have written it meanwhile; then it stays as it is.
     """
-    store = address.open()
+    store = address.store()
     region = store.layout.region(task)
     size = size_of(region)
     if store.has(region):

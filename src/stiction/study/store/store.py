@@ -225,7 +225,7 @@ class StoreAddress(NamedTuple):
     path: Path
     identity: str
 
-    def open(self) -> Store:
+    def store(self) -> Store:
         """Open the store for writing, once in each process.
 
         Raises
@@ -234,11 +234,11 @@ class StoreAddress(NamedTuple):
             If another store has taken its place.
         """
         _refuse_replaced(self.path, self.identity)
-        return _opened(*self)
+        return _open_once(*self)
 
 
 @lru_cache(maxsize=4)
-def _opened(path: Path, _identity: str) -> Store:
+def _open_once(path: Path, _identity: str) -> Store:
     return store_at(path, "r+")
 
 

@@ -231,12 +231,12 @@ def test_the_share_of_inertia_has_both_mixed_derivatives_of_friction(monkeypatch
         points.append(at._replace(f_yx=at.f_yx + 0.1 * at.f_xx))
         return points[-1]
 
-    def shared(*arguments):
+    def note_share(*arguments):
         frictions.append(arguments[-1])
         return inertia_share(*arguments)
 
     monkeypatch.setitem(balance.__globals__, "evaluate", noted)
-    monkeypatch.setitem(balance.__globals__, "inertia_share", shared)
+    monkeypatch.setitem(balance.__globals__, "inertia_share", note_share)
     p = plain(error_estimate.within)(w, INTERIOR)
     balance(problem, start, 1e-4, INTERIOR, DEFECT_WEIGHT, p, w, 1e-12, NONE)
     (xx, mixed, yy), at = frictions[0], points[0]
