@@ -50,7 +50,11 @@ def strokes(position: Floats) -> list[Stroke]:
 
 
 def _turns(position: Floats, reach: float) -> list[int]:
-    """Return the samples at which a displacement about its middle turns."""
+    """Return the samples at which a displacement about its middle turns.
+
+    Where a record begins or ends near an end of the way, its drive did not turn there: it starts,
+    or stops.
+    """
     out = np.flatnonzero(np.abs(position) > ENDS * reach)
     if not len(out):
         return []
@@ -60,7 +64,8 @@ def _turns(position: Floats, reach: float) -> list[int]:
     for part in parts:  # at one end, and then at the other
         far = np.abs(position[part])
         near = part[far >= far.max() - AT_AN_END * reach]
-        found.append(int(near[0] + near[-1]) // 2)
+        if near[0] > 0 and near[-1] < len(position) - 1:
+            found.append(int(near[0] + near[-1]) // 2)
     return found
 
 

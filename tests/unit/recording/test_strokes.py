@@ -50,6 +50,19 @@ def test_a_stroke_that_is_cut_by_the_beginning_counts_from_half_of_its_length_on
     assert TIME[first.samples][0] == pytest.approx(1.5, abs=0.08)
 
 
+@pytest.mark.parametrize("dwell", [0.0, 0.5])
+@pytest.mark.parametrize("count", [1, 2, 4])
+def test_strokes_from_the_first_sample_to_the_last_leave_none_out(count, dwell):
+    """1 % of the way, and the unloaded spring with it, was cut off at both ends of a record."""
+    time = np.arange(0.0, count * (PERIOD / 2.0 + dwell) + 0.005, 0.01)
+    scatter = 0.01 * np.random.default_rng(5).standard_normal(len(time))
+    for noise in (0.0, scatter):
+        for position in (to_and_fro(time, dwell), REACH - to_and_fro(time, dwell)):
+            found = strokes(position + noise)
+            assert len(found) == count
+            assert (found[0].samples.start, found[-1].samples.stop) == (0, len(time))
+
+
 def test_a_drive_that_does_not_turn_makes_one_stroke():
     assert len(strokes(TIME)) == 1
     assert len(strokes(np.zeros(10))) == 1
