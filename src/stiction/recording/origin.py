@@ -24,6 +24,27 @@ class Use:
     largest: float
 
 
+@dataclass(frozen=True)
+class OriginOfStroke:
+    """Which way a stroke goes in its file, and what the file's strokes show of the zero.
+
+    Parameters
+    ----------
+    way : float
+        -1 for a way back, whose forces and displacements were turned round.
+    after_turn : bool
+        Whether the drive turns where it begins: the spring is loaded backwards there.
+    middle, middle_error : float or None
+        N, middle of the forces forth and back in the file, and its standard error: the zero, if
+        friction is as large both ways. None where the strokes do not tell.
+    """
+
+    way: float = 1.0
+    after_turn: bool = False
+    middle: float | None = None
+    middle_error: float | None = None
+
+
 @dataclass(frozen=True, repr=False)
 class Origin(Report):
     """Where a record comes from.
@@ -44,6 +65,8 @@ class Origin(Report):
         Name of the block, and wall-clock time of its beginning, as the file has them.
     notes : tuple of str
         What was skipped, turned round, or looks odd.
+    stroke : OriginOfStroke or None
+        Of a stroke of a drive that goes to and fro.
     """
 
     file: str
@@ -56,6 +79,7 @@ class Origin(Report):
     label: str = ""
     start: str = ""
     notes: tuple[str, ...] = ()
+    stroke: OriginOfStroke | None = None
 
     def __repr__(self) -> str:
         """Return one line."""
@@ -77,14 +101,25 @@ class Origin(Report):
 
     def to_json(self) -> str:
         """Return the guess as JSON."""
-        return json.dumps(asdict(self), ensure_ascii=False)
+        raw = asdict(self)
+        if self.stroke is None:  # as a version without strokes wrote it, and reads it
+            del raw["stroke"]
+        return json.dumps(raw, ensure_ascii=False)
 
     @classmethod
     def from_json(cls, text: str) -> Origin:
         """Return an origin that `to_json` wrote; raise TypeError or ValueError for other text."""
         raw: dict[str, Any] = json.loads(text)
         uses = tuple(Use(**each) for each in raw.pop("uses"))
-        return cls(**{**raw, "uses": uses, "notes": tuple(map(str, raw.pop("notes")))})
+        stroke = raw.pop("stroke", None)
+        return cls(
+            **{
+                **raw,
+                "uses": uses,
+                "notes": tuple(map(str, raw.pop("notes"))),
+                "stroke": None if stroke is None else OriginOfStroke(**stroke),
+            }
+        )
 
 
 def sentence(note: str) -> str:

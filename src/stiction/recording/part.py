@@ -10,6 +10,7 @@ from stiction.errors import ResultError
 from stiction.formats.table import number_of
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import FEWEST_SAMPLES, Measurement
+from stiction.recording.request import KnownApparatus
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words
 
@@ -33,6 +34,9 @@ def part_of(found: Measurement, samples: slice, name: str, way: float = 1.0) -> 
         else use
         for use in found.origin.uses
     ]
+    known = dict(found.known)
+    if way < 0.0 and known.get("zero") is not None:  # it is stated as the file has its forces
+        known["zero"] = -float(KnownApparatus(zero=known["zero"]).zero or 0.0)
     origin = replace(
         found.origin,
         uses=tuple(used),
@@ -40,7 +44,7 @@ def part_of(found: Measurement, samples: slice, name: str, way: float = 1.0) -> 
         rate=rate_of(time),
         notes=(note, *found.origin.notes),
     )
-    return found._replace(channels=channels, sensors=sensors, origin=origin)
+    return found._replace(channels=channels, known=known, sensors=sensors, origin=origin)
 
 
 def part_between(

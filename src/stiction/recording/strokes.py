@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -11,6 +12,7 @@ from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.formats.table import number_of
 from stiction.recording.measurement import Measurement
+from stiction.recording.origin import OriginOfStroke
 from stiction.recording.part import part_of
 from stiction.text.suggestion import Suggestion
 
@@ -18,6 +20,7 @@ ALL = "all"  # of the strokes are asked for
 EACH = Suggestion("stroke", ALL, of="st.read_records")
 ENDS = 0.25  # of the reach, about its middle: beyond it the drive is at one end or at the other
 AT_AN_END = 0.02  # of the reach: so near its end a drive turns, or dwells
+HIGH_AND_LOW = (0.05, 0.95)  # quantiles of a force, between peaks and troughs of slips
 WHOLE = 0.5  # of the reach: a part at the beginning or the end of a record that is less is left out
 
 
@@ -104,10 +107,33 @@ def all_strokes(path: object, found: Measurement) -> list[Measurement]:
             f"its column and unit, such as {Suggestion('drive_position', 'stage=mm')}"
         )
     parts = strokes(found.channels[name])
-    return [
-        part_of(found, samples, f"stroke {number} of {len(parts)}", way)
-        for number, (samples, way) in enumerate(parts, 1)
-    ]
+    middle = _middle(found.channels["force"], parts)
+    each = []
+    for number, (samples, way) in enumerate(parts, 1):
+        part = part_of(found, samples, f"stroke {number} of {len(parts)}", way)
+        place = OriginOfStroke(way, samples.start > 0, *middle)
+        each.append(part._replace(origin=replace(part.origin, stroke=place)))
+    return each
+
+
+def _middle(force: Floats, parts: list[Stroke]) -> tuple[float, float] | tuple[None, None]:
+    """Return the middle of the forces forth and back, N, and its standard error; None if unknown.
+
+    Of each stroke its last half counts, in two parts, by the middle between its high and its low
+    forces: slips that are cut at an end shift a mean. A force that has one sign both ways has been
+    turned round already, or is none of friction.
+    """
+    levels: dict[float, list[float]] = {1.0: [], -1.0: []}
+    for samples, way in parts:
+        last = np.array_split(force[samples], 4)[2:]
+        levels[way] += [float(np.quantile(x, HIGH_AND_LOW).mean()) for x in last if len(x)]
+    if min(map(len, levels.values())) < 2:
+        return None, None
+    forth, back = (np.array(each) for each in levels.values())
+    if forth.mean() * back.mean() >= 0.0:
+        return None, None
+    variance = sum(float(each.var(ddof=1)) / len(each) for each in (forth, back))
+    return 0.5 * float(forth.mean() + back.mean()), 0.5 * variance**0.5
 
 
 def by_strokes() -> str:

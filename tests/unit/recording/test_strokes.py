@@ -178,6 +178,62 @@ def test_a_spring_that_is_loaded_backwards_after_a_turn_is_no_zero_that_is_off()
     assert "give zero='" not in said
 
 
+def stick_slip_to_and_fro(tmp_path, off=0.0, seed=7):
+    """Write stick-slip between 0.9 N and 1 N whose spring is loaded over 1 mm after each turn."""
+    time = np.arange(0.0, 24.0, 0.01)
+    stage, way = to_and_fro(time), np.where(time % PERIOD < PERIOD / 2.0, 1.0, -1.0)
+    since = time % (PERIOD / 2.0)
+    begins = np.where(time < PERIOD / 2.0, 0.0, -1.0)
+    loading = begins + (1.0 - begins) * since
+    force = way * np.where(since < 1.0, loading, 1.0 - 0.1 * (1.0 - (since - 1.0) / 0.3 % 1.0))
+    force += off + 2e-3 * np.random.default_rng(seed).standard_normal(len(time))
+    rows = "".join(f"{t:.2f},{x:.4f},{f:.5f}\n" for t, x, f in zip(time, stage, force, strict=True))
+    target = tmp_path / "strokes.csv"
+    target.write_text(f"time [s],stage [mm],Fx [N]\n{rows}")
+    return target
+
+
+def test_a_stroke_after_a_turn_of_the_drive_need_not_show_the_unloaded_spring(tmp_path):
+    """Each of five strokes warned, and its zero would have shifted friction."""
+    for record in st.read_records(stick_slip_to_and_fro(tmp_path), stroke="all"):
+        found = st.analyse(record)
+        assert not any("zero" in each for each in found.warnings)
+        assert found.friction.static.force == pytest.approx(1.0, abs=0.01)
+
+
+@pytest.mark.parametrize("off", [0.05, -0.15])
+def test_forces_forth_and_back_show_a_zero_that_is_off(tmp_path, off):
+    """One value of the zero serves for all strokes: as the file has its forces."""
+    path = stick_slip_to_and_fro(tmp_path, off)
+    for record in st.read_records(path, stroke="all"):
+        found = st.analyse(record)
+        (said,) = (each for each in found.warnings if "zero" in each)
+        named = float(said.split("give zero='")[1].split(" N'")[0])
+        assert named == pytest.approx(off, abs=0.01)
+        static = found.friction.static
+        assert abs(static.force - 1.0) < 1.2 * static.error
+    for record in st.read_records(path, stroke="all", zero=off):
+        found = st.analyse(record)
+        assert not any("zero" in each for each in found.warnings)
+        assert found.friction.static.force == pytest.approx(1.0, abs=0.01)
+
+
+def test_a_zero_is_turned_round_on_a_way_back(path, tmp_path):
+    """It was subtracted from forces that had been turned round: the error was twice the zero."""
+    whole = st.read_record(path)
+    whole.save(tmp_path / "whole.nc")
+    for source in (path, tmp_path / "whole.nc"):
+        plain, zeroed = (st.read_record(source, stroke=2, zero=z) for z in (None, "50 mN"))
+        assert zeroed.force == pytest.approx(plain.force + 0.05)
+
+
+def test_a_stored_stroke_keeps_its_place_among_the_strokes(path, tmp_path):
+    stroke = st.read_record(path, stroke=2)
+    assert (stroke.origin.stroke.way, stroke.origin.stroke.after_turn) == (-1.0, True)
+    stored = st.read_record(stroke.save(tmp_path / "second.nc"))
+    assert stored.origin.stroke == stroke.origin.stroke
+
+
 def test_the_zero_of_a_later_stroke_is_less_certain_if_it_drifts(path):
     path.with_suffix(".toml").write_text(
         '[sensors.force]\nzero_uncertainty = "30 mN"\nzero_drift = "0 +- 10 mN/s"\n'

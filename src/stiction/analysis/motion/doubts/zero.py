@@ -18,6 +18,7 @@ from stiction.analysis.motion.metadata.comparison import AT_REST
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
+from stiction.recording.origin import OriginOfStroke
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import in_words, to_error
 
@@ -86,6 +87,26 @@ def zero_shown(record: Record, friction: Friction, cycles: CycleTable) -> Initia
     return rest if rest.reading < lowest else None
 
 
+def place_of_stroke(record: Record) -> OriginOfStroke | None:
+    """Return where a record stands among the strokes of its file, if it is one of them."""
+    return None if record.origin is None else record.origin.stroke
+
+
+def zero_of_strokes(record: Record) -> InitialRest | None:
+    """Return the middle of the forces forth and back, in the direction of a stroke, if it is off.
+
+    It is the zero where friction is as large both ways.
+    """
+    stroke = place_of_stroke(record)
+    if stroke is None or stroke.middle is None or is_stated(record):
+        return None
+    error = stroke.middle_error or 0.0
+    least = max(ERRORS_997 * error, AT_REST * largest_magnitude(record.force))
+    if abs(stroke.middle) <= least:
+        return None
+    return InitialRest(stroke.way * stroke.middle, error)
+
+
 def shift_of_zero(
     record: Record, friction: Friction, cycles: CycleTable, shown: InitialRest | None
 ) -> float:
@@ -95,6 +116,7 @@ def shift_of_zero(
     """
     if why_no_friction(record, friction, cycles):
         return inf
+    shown = shown or zero_of_strokes(record)
     return 0.0 if shown is None else abs(shown.reading)
 
 
@@ -105,6 +127,7 @@ def with_zero(friction: Friction, record: Record, shown: InitialRest | None) -> 
     spring that friction holds reads as much. So the values are those of the zero as it is supposed,
     and the error reaches to those of the other zero. A stated zero has its stated uncertainty.
     """
+    shown = shown or zero_of_strokes(record)
     further = stated_error(record) if shown is None else hypot(shown.reading, shown.error)
     return friction.with_errors(break_away=further, static=further, kinetic=further)
 
@@ -112,7 +135,11 @@ def with_zero(friction: Friction, record: Record, shown: InitialRest | None) -> 
 def doubt_zero(
     record: Record, friction: Friction, cycles: CycleTable, shown: InitialRest | None
 ) -> Iterator[str]:
-    """Doubt the zero if a record begins unloaded, or reaches impossible values."""
+    """Doubt the zero if a record begins unloaded, or reaches impossible values.
+
+    A stroke that begins at a turn of the drive cannot show the unloaded spring; the strokes forth
+    and back together show the zero.
+    """
     largest = largest_magnitude(record.force)
     if friction.kinetic is not None and is_about_zero(friction, cycles):
         yield (
@@ -141,7 +168,20 @@ def doubt_zero(
             f"friction is less than half of the static one; give {ZERO}, the reading without load."
         )
         return
+    stroke = place_of_stroke(record)
+    way = 1.0 if stroke is None else stroke.way
+    middle = None if shown is not None else zero_of_strokes(record)
+    if middle is not None:
+        yield (
+            f"{_less(friction, middle.reading)} if friction is as large on the way forth as on the "
+            f"way back, whose middle is {in_words(way * middle.reading, 'N')}: if that is the zero "
+            f"of the force, give {_zero_in_file(middle.reading, way)}. The errors of friction "
+            "allow for it."
+        )
+        return
     if is_stated(record) or (shown is None and friction.break_away is None):
+        return
+    if shown is None and stroke is not None and stroke.after_turn:
         return
     first, noise = first_level(record.force)
     read, hidden = first, NOISE * noise
@@ -154,7 +194,7 @@ def doubt_zero(
         yield (
             f"{_less(friction, read)} if the start at {in_words(read, 'N')}, before the first "
             "loading, is the zero: if the spring was unloaded, give "
-            f"{ZERO._replace(value=f'{read:.4g} N')}{turned}. The errors of friction allow for it."
+            f"{_zero_in_file(read, way)}{turned}. The errors of friction allow for it."
         )
     else:
         after = ", as after a turn of the drive" if read < 0.0 else ""
@@ -163,6 +203,11 @@ def doubt_zero(
             f"{in_words(read, 'N')}, the force rises. The spring was loaded already{after}, or the "
             f"zero is off: give {ZERO}, the reading without load."
         )
+
+
+def _zero_in_file(reading: float, way: float) -> Suggestion:
+    """Return how a zero is given, N: as the file has its forces, which a way back turns round."""
+    return ZERO._replace(value=f"{way * reading:.4g} N")
 
 
 def _less(friction: Friction, zero: float) -> str:
