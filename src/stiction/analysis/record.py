@@ -14,6 +14,7 @@ from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import PydanticCustomError
 
 from stiction.analysis.signals.digitised import first_of_each
+from stiction.analysis.signals.measured_drive import even_velocity
 from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arguments import with_article
 from stiction.arrays import Floats, Indices, xr
@@ -142,7 +143,8 @@ class Record(Described):
     stiffness_across : float or str, optional
         Of the spring across it, N/m. With `mass` it yields the transverse frequency.
     drive_velocity : float or str, optional
-        Along the force, m/s.
+        Along the force, m/s. Where none is stated, an analysis takes the slope of
+        `drive_position`, if that is even.
     mass : float or str, optional
         kg.
     position, slip_speed : array, optional
@@ -205,6 +207,7 @@ class Record(Described):
     drive_position_unit: str = "m"
     _same_time: int = PrivateAttr(0)
     _repeats: int = PrivateAttr(1)
+    _measured_velocity: float | None = PrivateAttr(None)
     _of_run: OfRun | None = PrivateAttr(None)
     _units: dict[str, str] = PrivateAttr(default_factory=dict)
 
@@ -321,6 +324,17 @@ class Record(Described):
         """Number of samples for which each value of the force lasted (`each_value_once`)."""
         return self._repeats
 
+    def with_measured_velocity(self) -> Self:
+        """Return the record with the velocity of an even `drive_position`, if none is stated."""
+        if self.drive_velocity is not None or self.drive_position is None or not len(self):
+            return self
+        velocity = even_velocity(self.time, self.drive_position)
+        if velocity is None:
+            return self
+        found = self.model_copy(update={"drive_velocity": velocity})
+        found._measured_velocity = velocity
+        return found
+
     def each_value_once(self) -> Self:
         """Return the record with each value of the force once, if a slow sensor repeats them all.
 
@@ -337,6 +351,17 @@ class Record(Described):
     def stated_load(self) -> float | None:
         """Normal load as it was stated, N; None where `normal_load` is the mean of `load`."""
         return self.normal_load if "normal_load" in self.model_fields_set else None
+
+    @property
+    def stated_velocity(self) -> float | None:
+        """Drive velocity as it was stated, m/s; None where `drive_velocity` was measured."""
+        measured = self.drive_velocity == self._measured_velocity
+        return None if measured else self.drive_velocity
+
+    def stated(self) -> dict[str, float | None]:
+        """Return the numbers of the apparatus that were stated, by name; None of the others."""
+        own = {"normal_load": self.stated_load, "drive_velocity": self.stated_velocity}
+        return {name: getattr(self, name) for name in KNOWN} | own
 
     @property
     def sticks(self) -> Floats | None:
@@ -480,8 +505,7 @@ class Record(Described):
         ResultError
             If the file cannot be written there.
         """
-        known = {name: getattr(self, name) for name in KNOWN} | {"normal_load": self.stated_load}
-        numbers = {name: value for name, value in known.items() if value is not None}
+        numbers = {name: value for name, value in self.stated().items() if value is not None}
         channels = {"time": self.time, **self.channels()}
         return write_stored(path, channels, numbers, self.sensors or {}, self.origin)
 
@@ -528,10 +552,9 @@ class Record(Described):
         return write_tables({"record": self.data}, path, {})
 
     def _repr_html_(self) -> str:
-        stated = {name: getattr(self, name) for name in KNOWN} | {"normal_load": self.stated_load}
         rows = [
             (name.replace("_", " "), in_words(value, KNOWN[name]))
-            for name, value in stated.items()
+            for name, value in self.stated().items()
             if value is not None
         ]
         sampled = f"{len(self)} samples over {in_words(self.duration, 's')}: "
@@ -549,19 +572,27 @@ class Record(Described):
 def as_record(source: Trajectory | Record) -> Record:
     """Return the record of a run, or a record in which a slow sensor's repeated values stand once.
 
+    A drive velocity that is not stated is that which an even displacement of the drive shows.
+
     Raises
     ------
     ResultError
         If `source` is neither.
     """
     if isinstance(source, Record):
-        return source.each_value_once()
+        return source.each_value_once().with_measured_velocity()
     if isinstance(source, Trajectory):
         return record_of(source)
     what = with_article(type(source).__name__)
     is_rig = isinstance(getattr(source, "slider", source), Slider)
     remedy = "st.simulate(...)" if is_rig else "st.Record(time=..., force=...)"
     raise ResultError(f"{what} is neither a run nor a record; make one with {remedy}")
+
+
+def lacking_for_loading(record: Record) -> str:
+    """Return which numbers of the rate of loading a record does not know, for a message."""
+    known = {"stiffness": record.stiffness, "drive velocity": record.drive_velocity}
+    return " and ".join(name for name, value in known.items() if value is None)
 
 
 def across_force(run: Trajectory, record: Record) -> bool:

@@ -349,7 +349,7 @@ def sign_seen(conditions: Iterable[Conditions]) -> bool:
 
 def drive_velocity(record: Record, slider: Slider) -> float:
     """Return the drive velocity that a record states, else the rig's, with the rig's sign."""
-    velocity, stated = nominal_velocity(slider.motion), record.drive_velocity
+    velocity, stated = nominal_velocity(slider.motion), record.stated_velocity
     if stated is None or abs(stated / abs(velocity) - 1.0) <= SAME:
         return velocity
     return float(np.copysign(stated, velocity))

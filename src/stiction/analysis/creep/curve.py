@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import creep_end
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record, as_record, lacking_for_loading
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.peak_refinement import Pieces
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
@@ -185,11 +185,9 @@ def _position(record: Record) -> Floats:
     if record.position is not None:
         return np.asarray(record.position)
     if record.stiffness is None or record.drive_velocity is None:
-        known = {"stiffness": record.stiffness, "drive velocity": record.drive_velocity}
-        lacking = " and ".join(name for name, value in known.items() if value is None)
         raise ResultError(
-            f"creep needs the position of the mass, which the record lacks; give its {lacking}, "
-            "or its position"
+            "creep needs the position of the mass, which the record lacks; give its "
+            f"{lacking_for_loading(record)}, or its position"
         )
     return np.asarray(record.drive_velocity * record.time - record.force / record.stiffness)
 

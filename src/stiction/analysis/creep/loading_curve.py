@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.record import Record
+from stiction.analysis.record import Record, lacking_for_loading
 from stiction.analysis.signals.digitised import rounding_of_mean
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
@@ -51,7 +51,10 @@ def loading_curve(record: Record, cycles: xr.Dataset) -> LoadingCurve:
     peak, because the whole curve varies with the friction from cycle to cycle.
     """
     if not record.loading_rate:
-        raise ResultError("the record states no stiffness and drive_velocity; give both")
+        raise ResultError(
+            "the rate at which the spring is loaded is not known: give the record its "
+            f"{lacking_for_loading(record)}"
+        )
     peak, drop = (float(np.median(cycles[name].values)) for name in ("peak", "drop"))
     begin = float(np.quantile(cycles["start_force"].values, 0.8))
     low, high = begin + AFTER_TROUGH * drop, peak - BEFORE_SLIP * drop

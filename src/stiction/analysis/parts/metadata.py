@@ -33,6 +33,10 @@ WHY = {  # a value is a lower bound
         "mass creeps, the force rises more slowly."
     ),
 }
+MEASURED = (
+    "No drive velocity is stated: the slope of the drive's displacement, which is even, stands for "
+    "it everywhere."
+)
 SHOWABLE, NOT_SHOWN = "can be shown", "not shown"  # a frequency, by the record's samples
 UNSAID = ("", SHOWABLE, NOT_SHOWN)  # verdicts that neither agree nor contradict
 HEADINGS = ("quantity", "shown", "stated", "", "by the")
@@ -41,14 +45,19 @@ HEADINGS = ("quantity", "shown", "stated", "", "by the")
 def section(found: Analysis) -> Section | None:
     """Return them as a table, with a sentence on contradictory ones."""
     its: tuple[StatedQuantity, ...] = found.parts["metadata"]
-    if all(each.agrees is None for each in its):  # nothing is stated
+    measured = found.record.drive_velocity is not None and found.record.stated_velocity is None
+    if all(each.agrees is None for each in its) and not measured:  # nothing is stated
         return None
     known = {each.name: verdict(each) for each in its if verdict(each) not in UNSAID}
     lines = [_agreement(known)] if known else []
     lines += [_sentence(x) for x in its if x.agrees is False and x.quantity not in TOLD]
+    lines += [MEASURED] if measured else []
     bounds = dict.fromkeys(each.how for each in its if _is_shown_as_bound(each) and each.is_shown)
     lines += [WHY[how] for how in bounds]
-    return Section("What the record says of its apparatus", lines, Table(HEADINGS, _rows(its)))
+    rows: list[tuple[str, ...]] = [HEADINGS, *_rows(its)]
+    if not any(row[3] for row in rows):  # nothing is stated
+        rows = [(row[0], row[1], row[4]) for row in rows]
+    return Section("What the record says of its apparatus", lines, Table(rows[0], rows[1:]))
 
 
 def _is_shown_as_bound(each: StatedQuantity) -> bool:

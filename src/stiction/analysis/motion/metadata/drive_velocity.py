@@ -24,7 +24,7 @@ def drive_velocity(record: Record) -> StatedQuantity | None:
     """Compare the slope of the drive's displacement with the stated velocity."""
     if record.drive_position is None or len(record) < FEWEST_SAMPLES:
         return None
-    way, stated = line(record.time, record.drive_position), record.drive_velocity or nan
+    way, stated = line(record.time, record.drive_position), record.stated_velocity or nan
     error = standard_error(way.deviations(record.time, record.drive_position))
     whole = StatedQuantity(
         "drive velocity", "m/s", abs(way.slope), error / float(record.time.std()), stated,

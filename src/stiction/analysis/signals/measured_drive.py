@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.signals.correlated_noise import standard_error
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import StraightLine, line
@@ -31,6 +32,9 @@ SAME = 0.01  # of a velocity: a program has the same twice
 SAG = 0.1  # of the deviation that makes a bend: means of a part that spread by more are not a line
 CERTAIN = 6.0  # errors of a mean: eight means of noise spread by more once in a thousand
 BENT_SHARE = 0.3  # of the record: where more is bent the drive swings, and keeps to no velocity
+RESTS = 0.02  # of the speed of a drive: a slope that is less is that of noise
+GOES = 0.9  # of the reach of a displacement: a drive that goes less far on the whole is noise
+FEWEST_SAMPLES = 6  # of a motion, by fewer its speed is not known
 SAGS = 8  # means of a part that show it
 
 
@@ -75,6 +79,34 @@ def measured_stretches(time: Floats, position: Floats) -> Stretches:
         for end, speed, last in zip(ends, speeds, lasts, strict=True)
         if last
     )
+
+
+def even_velocity(time: Floats, position: Floats) -> float | None:
+    """Return the speed (m/s) of a drive that keeps to one; None if it does not.
+
+    It may rest before it starts, and after it stops, but not turn, pause or change its velocity.
+    Noise must leave its speed known.
+    """
+    try:
+        its = measured_stretches(time, position)
+    except ResultError:
+        return None
+    begins = [float(time[0]), *(end for end, _ in its[:-1])]
+    speeds = [abs(drive.velocity) for _, drive in its]
+    moves = [at for at, speed in enumerate(speeds) if speed > RESTS * max(speeds)]
+    if len(moves) != 1 or len(its) > 3:
+        return None
+    (at,) = moves
+    end = min(its[at][0], float(time[-1]))
+    inside = slice(*np.searchsorted(time, [begins[at], end]))
+    if inside.stop - inside.start < FEWEST_SAMPLES:
+        return None
+    way = line(time[inside], position[inside])
+    error = standard_error(way.deviations(time[inside], position[inside]))
+    speed = abs(way.slope)
+    known = error / float(time[inside].std()) < SAME * speed
+    goes = speed * (end - begins[at]) > GOES * float(np.ptp(position))
+    return speed if known and goes else None
 
 
 def _parts(time: Floats, position: Floats) -> list[_Part]:

@@ -10,7 +10,7 @@ from tests.drawn import SEED
 
 import stiction as st
 from stiction.analysis.protocols.friction_test import friction_test
-from stiction.analysis.protocols.measured_drive import measured_stretches
+from stiction.analysis.signals.measured_drive import even_velocity, measured_stretches
 
 p = st.protocols
 
@@ -202,3 +202,65 @@ def test_an_analysis_of_a_record_with_its_drive_begins_with_its_test():
     assert healing.hold == pytest.approx([10.0, 100.0], rel=1e-3)
     assert "Friction heals by" in str(found)
     assert st.analyse(record.model_copy(update={"drive_position": None})).parts["procedure"] is None
+
+
+@pytest.mark.parametrize("noise", [0.0, 1e-6, 2e-5])
+@pytest.mark.parametrize("way", [1.0, -1.0])
+def test_a_drive_is_even_if_it_rests_at_most_before_and_after_it_moves(noise, way):
+    time = np.arange(0.0, 20.0, 0.01)
+    white = noise * np.random.default_rng(4).standard_normal(len(time))
+    for begin, end in ((0.0, 20.0), (3.0, 20.0), (0.0, 15.0), (2.0, 18.0)):
+        travel = 5e-4 * (np.clip(time, begin, end) - begin)
+        assert even_velocity(time, way * travel + white) == pytest.approx(5e-4, rel=2e-3)
+    turns = 5e-4 * (10.0 - np.abs(10.0 - time))
+    pauses = 5e-4 * (time - np.clip(time - 8.0, 0.0, 4.0))
+    faster = 5e-4 * (time + 0.5 * np.maximum(time - 10.0, 0.0))
+    swings = 1e-3 * np.sin(time)
+    for position in (turns, pauses, faster, swings, np.zeros(len(time))):
+        assert even_velocity(time, way * position + white) is None
+
+
+@pytest.mark.parametrize("known", [{}, {"stiffness": "2 kN/m"}])
+def test_a_velocity_that_is_measured_counts_as_one_that_is_stated(known):
+    """ "Not seen: give its drive velocity" stood beside "drive velocity 500 um/s"."""
+    time = np.arange(0.0, 30.0, 2e-3)
+    noise = np.random.default_rng(9).standard_normal((2, len(time)))
+    cycle = time % 1.0
+    force = 1.0 + np.where(cycle < 0.98, cycle - 0.2 * cycle**4, 40.0 * (1.0 - cycle) - 0.02)
+    channels = {"time": time, "force": force + 1e-3 * noise[0], "normal_load": 4.0, **known}
+    channels["drive_position"] = 5e-4 * time + 1e-7 * noise[1]
+    measured, stated = (
+        st.Record(**channels, **said) for said in ({}, {"drive_velocity": "0.5 mm/s"})
+    )
+    found, usual = st.analyse(measured), st.analyse(stated)
+    assert found.record.drive_velocity == pytest.approx(5e-4, rel=1e-4)
+    assert (found.record.stated_velocity, usual.record.stated_velocity) == (None, 5e-4)
+    assert found.missing.keys() == usual.missing.keys()
+    for name in ("stiffness", "creep_distance"):
+        assert found.cycles[name].values == pytest.approx(
+            usual.cycles[name].values, rel=1e-3, nan_ok=True
+        )
+    assert "No drive velocity is stated" in str(found)
+    assert "No drive velocity is stated" not in str(usual)
+
+
+def test_only_the_number_that_is_lacking_is_asked_for():
+    """Without a velocity, "states no stiffness and drive_velocity; give both"."""
+    time = np.arange(0.0, 30.0, 2e-3)
+    force = 1.0 + 0.4 * (time % 1.0)
+    numbers = {"stiffness": "2 kN/m", "drive_velocity": "0.5 mm/s"}
+    for name, value in numbers.items():
+        (lacking,) = (each.replace("_", " ") for each in numbers if each != name)
+        why = st.analyse(st.Record(time=time, force=force, **{name: value})).missing
+        assert why["misalignment"].endswith(f"give the record its {lacking}")
+    why = st.analyse(st.Record(time=time, force=force)).missing["misalignment"]
+    assert why.endswith("give the record its stiffness and drive velocity")
+
+
+def test_a_measured_velocity_is_not_saved_as_a_stated_one(tmp_path):
+    time = np.arange(0.0, 30.0, 0.01)
+    record = st.Record(time=time, force=time % 1.0, drive_position=5e-4 * time)
+    analysed = st.analyse(record).record
+    assert analysed.drive_velocity == pytest.approx(5e-4)
+    stored = st.read_record(analysed.save(tmp_path / "record.nc"))
+    assert stored.drive_velocity is None
