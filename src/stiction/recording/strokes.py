@@ -11,8 +11,9 @@ import numpy as np
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.formats.table import number_of
+from stiction.recording.guess.choice import may_be_displacement
 from stiction.recording.measurement import Measurement
-from stiction.recording.origin import OriginOfStroke
+from stiction.recording.origin import Origin, OriginOfStroke, use_of
 from stiction.recording.part import part_of
 from stiction.text.suggestion import Suggestion
 
@@ -136,8 +137,20 @@ def _middle(force: Floats, parts: list[Stroke]) -> tuple[float, float] | tuple[N
     return 0.5 * float(forth.mean() + back.mean()), 0.5 * variance**0.5
 
 
-def by_strokes() -> str:
-    """Return how a record of a drive that goes to and fro is divided, for a message."""
+def by_strokes(origin: Origin | None = None) -> str:
+    """Return how a record of a drive that goes to and fro is divided, for a message.
+
+    Of a file with a column that may be the displacement of the drive, and is not used, that column
+    is named.
+    """
+    unused = (use for use in (origin.uses if origin else ()) if not use.channel and use.column)
+    use = next((use for use in unused if may_be_displacement(use.heading.split(" [")[0])), None)
+    if use is not None and origin is not None and use_of(origin, "drive_position") is None:
+        return (
+            f"the strokes by themselves: if column {use.column} '{use.heading}' is the "
+            f"displacement of the drive, say {Suggestion('drive_position', use.column, of='')} and "
+            f"{EACH}"
+        )
     return (
         "the strokes by themselves: where a file has the drive's displacement, "
         f"{Suggestion('stroke', 1)} reads the first, and {EACH} each of them"

@@ -21,6 +21,7 @@ from stiction.cli import main
 from stiction.plotting.analysis.overview import figures
 from stiction.text.columns import SHOWN_ROWS, rows_left_out
 from stiction.text.sections import first_clause
+from stiction.text.suggestion import as_option, suggest
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -506,3 +507,36 @@ def test_cycles_before_an_early_end_are_what_they_are():
     cut = replace(run, status=st.Status.TOO_MANY_STEPS)
     assert st.analyse(cut).regime == st.analyse(run).regime
     assert len(st.analyse(cut).warnings) == len(st.analyse(run).warnings) + 1
+
+
+def brief_of(record: st.Record) -> str:
+    """Return the answer in short as one text, as the command line writes it."""
+    with suggest(as_option):
+        return " ".join(" ".join(st.analyse(record).tables()[0].sentences).split())
+
+
+def test_the_brief_says_how_a_force_with_the_other_sign_is_read(tmp_path):
+    """The remedy stood under Motion alone, beside "the mass may not slide"."""
+    time = np.arange(0.0, 20.0, 0.01)
+    force = -1.0 - 0.4 * (time % 0.93) + 1e-3 * np.random.default_rng(1).standard_normal(len(time))
+    path = tmp_path / "negative.csv"
+    rows = "".join(f"{t:.2f},{f:.5f}\n" for t, f in zip(time, force, strict=True))
+    path.write_text(f"time [s],Fx [N]\n{rows}")
+    said = brief_of(st.read_record(path))
+    assert "Analyse the file with --force '2=-1 N'" in said
+    assert "Friction: not determined (the force seems to have the other sign)" in said
+
+
+def test_the_brief_names_the_column_by_which_strokes_are_read(tmp_path):
+    """The column was named in the last part alone."""
+    time = np.arange(0.0, 20.0, 0.01)
+    place = 2.0 - np.abs(2.0 - time % 4.0)
+    force = np.where(time % 4.0 < 2.0, 1.0, -1.0) * np.minimum(4.0 * (time % 2.0), 1.0)
+    path = tmp_path / "strokes.csv"
+    rows = (f"{t:.2f},{x:.4f},{f:.5f}\n" for t, x, f in zip(time, place, force, strict=True))
+    path.write_text("time [s],x [mm],Fx [N]\n" + "".join(rows))
+    said = brief_of(st.read_record(path))
+    assert "if column 2 'x [mm]' is the displacement of the drive, say --drive-position 2" in said
+    assert "--stroke all" in said
+    said = brief_of(st.read_record(path, drive_position="2"))
+    assert "--stroke 1 reads the first, and --stroke all each of them" in said

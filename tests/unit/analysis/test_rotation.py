@@ -194,6 +194,17 @@ def test_the_report_says_so(across, known, said):
     assert numbers["change"] is None or abs(numbers["change"]) < 1.0
 
 
+def test_the_brief_says_that_a_turn_is_not_determined_and_what_to_state():
+    """It was silent, as where no force across is measured."""
+    its = rotation_of(record_of(PARTLY, 1e-3, 6, 3.0, None), cycles_of())
+    analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}, "source": None})
+    (said,) = rotation.in_short(analysis)
+    assert said.startswith("Whether the force turns or grows is not determined; state the zero of")
+    assert 'zero = "0 +- 5 mN" under [sensors.force_across]' in said
+    analysis = type("Found", (), {"parts": {"rotation": None}, "missing": {}, "source": None})
+    assert rotation.in_short(analysis) == []
+
+
 def test_the_report_of_one_loading_leaves_out_a_drift_that_it_cannot_show():
     its = rotation_of(record_of(TURN, 1e-3, 6, 0.0, 0.02), cycles_of().isel(cycle=[0]))
     analysis = type("Found", (), {"parts": {"rotation": its}, "missing": {}, "source": None})

@@ -47,6 +47,7 @@ FALLS = 10.0  # standard deviations of noise, whose range over a million means i
 SHARP = 2e-3  # of the range of force: noise that is averaged away at the peak
 # Kinds of motion whose kinetic friction is the mean of peaks and troughs
 SWINGING = (STICK_SLIP, TRANSITIONAL, HARMONIC, TRANSVERSE, IRREGULAR)
+BACKWARD = 0.5  # of the cycles fall slowly and rise fast: the force has the other sign
 BLOCKS = 20  # means, whose scatter gives the standard error for correlated samples
 
 
@@ -196,6 +197,9 @@ def _kinetic(
         return None, "it is not determined whether the mass slides"
     if kind in (STEADY, SETTLING, TRANSVERSE) or (kind == UNDETERMINED and slid):
         return _sliding(record, slides, kind, relative), ""
+    against = "against" in regime.evidence or regime.evidence.get("backward", 0.0) > BACKWARD
+    if against and record.slider is None and float(record.force.mean()) <= 0.0:
+        return None, "the force seems to have the other sign"
     return None, f"the mass {'may' if kind == UNDETERMINED else 'does'} not slide"
 
 

@@ -15,6 +15,7 @@ from stiction.analysis.motion.changes.cycles import (
 )
 from stiction.analysis.motion.cycle_columns import mean_in_words, table_of
 from stiction.analysis.motion.doubts.warnings import turns_round
+from stiction.analysis.motion.friction import BACKWARD
 from stiction.analysis.motion.regime.evidence import TO_AND_FRO, Evidence
 from stiction.analysis.motion.regime.kinds import (
     HARMONIC,
@@ -113,7 +114,7 @@ def _describe_imposed_force(found: Analysis) -> str:
         )
     name = next((name for name in IMPOSED if name in evidence), None)
     loops = "Of a run, or with the position, st.analysis.hysteresis gives the loops."
-    remedy = f" Analyse {by_strokes()}. {loops}" if name in TO_AND_FRO else ""
+    remedy = f" Analyse {by_strokes(found.record.origin)}. {loops}" if name in TO_AND_FRO else ""
     return f"{IMPOSED[name] if name else ''}{remedy}"
 
 
@@ -179,7 +180,7 @@ def _describe_unclear_force(found: Analysis) -> str:
             f"{advice(evidence['rate_needed'], 'Hz')} or more."
         )
     against = found.regime.has("against")
-    if evidence.get("backward", 0.0) <= 0.5 and not against:
+    if evidence.get("backward", 0.0) <= BACKWARD and not against:
         return ""
     fast = "The force falls slowly and rises fast"
     if isinstance(found.source, Trajectory):

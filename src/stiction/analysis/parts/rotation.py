@@ -34,6 +34,10 @@ CLAUSES = {  # of the friction force
     BOTH: "grows and turns: the mass rests for a part of the loading and creeps for another, or "
     "friction differs with its direction",
 }
+STATE_ZERO = (
+    'state the zero of the force across with its uncertainty, such as zero = "0 +- 5 mN" under '
+    "[sensors.force_across] in a TOML file beside the record"
+)
 UNKNOWN = "Whether the force turns or grows is not determined."
 
 
@@ -62,10 +66,15 @@ def section(found: Analysis) -> Section | None:
 
 
 def in_short(found: Analysis) -> list[str]:
-    """Return whether the force turns in one sentence; nothing where that is not known."""
+    """Return whether the force turns in one sentence; nothing without a force across.
+
+    Where that is not determined, the remedy follows.
+    """
     its: Rotation | None = found.parts["rotation"]
-    if its is None or its.kind not in CLAUSES:
-        return []
+    if its is None:
+        return [UNKNOWN] if "rotation" in found.missing else []
+    if its.kind not in CLAUSES:
+        return [UNKNOWN if its.stated else f"{UNKNOWN[:-1]}; {STATE_ZERO}."]
     if isinstance(found.source, Trajectory):
         return [f"While the spring is loaded, the friction force {CLAUSES[its.kind]}."]
     return [f"By the force across, the friction force {CLAUSES[its.kind]}."]
@@ -112,7 +121,7 @@ def _conclusion(its: Rotation, *, measured: bool) -> str:
     elif its.kind == UNDETERMINED:
         said.append(
             "Neither an arc that ends at slip nor a straight line describes its path clearly "
-            "better; state the zero of the force across, with its uncertainty."
+            f"better; {STATE_ZERO}."
         )
     if its.kind == GROWING and not its.stated:
         said.append(

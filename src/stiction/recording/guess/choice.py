@@ -118,13 +118,18 @@ def choose_columns(path: object, table: FileTable, said: dict[str, str], *, time
         raise UnclearColumns(str(error), *lacking) from None
     notes += [x.note for x in found.values() if x.note]
     for column in table.columns:
-        if column not in taken and LENGTH.fullmatch(plain(column.name)):
+        if column not in taken and may_be_displacement(column.name):
             notes.append(
                 f"column {column} is not used: is it the displacement of the mass "
                 f"({Suggestion('position', column.number)}) or of the drive "
                 f"({Suggestion('drive_position', column.number)})?"
             )
     return Choice(found, tuple(notes))
+
+
+def may_be_displacement(name: str) -> bool:
+    """Return whether a column by this name may be a displacement, though no channel is sure."""
+    return LENGTH.fullmatch(plain(name)) is not None
 
 
 def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
