@@ -104,10 +104,10 @@ class Trajectory:
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
-        end, samples = (
-            float(self.samples["time"][-1]),
-            number_of(len(self.samples["time"]), "sample"),
-        )
+        end = float(self.samples["time"][-1])
+        if self.status.ok:  # a run may end between two samples
+            end = max(end, self.description.initial.time + self.description.run.duration)
+        samples = number_of(len(self.samples["time"]), "sample")
         sticks = number_of(self.statistics.stick_count, "stick")
         return f"<Trajectory to {end:g} s, {samples}, {sticks}, {self.status.name}>"
 
@@ -192,7 +192,20 @@ class Trajectory:
     def plot(
         self, axes: Any = None, *, window: Sequence[Quantity] | None = None
     ) -> dict[str, Axes]:
-        """Draw the run; see `stiction.plotting.plot_run`."""
+        """Draw the run; see `stiction.plotting.plot_run`.
+
+        Returns
+        -------
+        dict of str to Axes
+            The axes by their names, on one figure of pyplot.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> run = st.simulate(st.presets.nakano_popov_2020(), "50 ms", sample_rate="10 kHz")
+        >>> axes = run.plot()
+        >>> axes["force"].get_figure(root=True).savefig("run.png")
+        """
         drawn: dict[str, Axes] = draw("plot_run", self, axes, window=window)
         return drawn
 

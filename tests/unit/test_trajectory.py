@@ -409,3 +409,11 @@ def test_a_mass_that_slips_between_samples_slips(rate):
 def test_one_thing_is_not_several_things_of_it(slider):
     run = st.simulate(slider, "1 ms", times=[1e-3])
     assert repr(run) == "<Trajectory to 0.001 s, 1 sample, 1 stick, COMPLETED>"
+
+
+def test_the_line_of_a_run_ends_where_the_run_did():
+    """The last sample stood for the end: "to 1 s" of a run over 1.5 s."""
+    slider = st.presets.nakano_popov_2020()
+    assert "to 1.5 s, 2 samples" in repr(st.simulate(slider, "1.5 s", sample_rate="1 Hz"))
+    later = st.Initial(time="2 s")
+    assert "to 2.25 s" in repr(st.simulate(slider, "0.25 s", sample_rate="8 Hz", initial=later))

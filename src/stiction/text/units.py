@@ -33,7 +33,7 @@ from pydantic_core import PydanticCustomError
 from stiction.arguments import plain, whole
 from stiction.errors import echo
 from stiction.text.calendar import of_clock, span_in_seconds
-from stiction.text.quantity_text import DIGITS, MEASURABLE, angle_text, suited_unit
+from stiction.text.quantity_text import DIGITS, MEASURABLE, RIGID, angle_text, suited_unit
 from stiction.text.unit_text import UnitError, factor, short
 
 
@@ -233,6 +233,12 @@ def _parse(text: str, kind: Kind) -> float:
     found = QUANTITY.fullmatch(text)
     if not found:
         comma = " (the decimal sign is a point)" if "," in text else ""
+        if text.strip().lower() == RIGID and kind.unit == "N/m":
+            raise fault(
+                f"{echo(text)} is said of a spring in series with others, st.Spring(k_y='rigid'); "
+                "a single spring yields: write a stiffness far above the others, for example "
+                "'1 GN/m'"
+            )
         raise fault(
             f"{echo(text)} is not one number and its unit{comma}; write for example "
             f"{kind.example!r}"
@@ -259,6 +265,9 @@ def _parse(text: str, kind: Kind) -> float:
             f"{echo(text)} is not one number and its unit: {error}; write for example "
             f"{kind.example!r}"
         ) from error
+    if size is None and kind.unit == "N" and (mass := factor(unit, "kg")) is not None:
+        weight = f"{number * mass:.6g} kgf"
+        raise fault(f"{echo(text)} is a mass, not {kind.name}; write its weight: {weight!r}")
     if size is None:
         raise fault(
             f"{echo(text)} is in {short(unit) or 'no unit'}, not a unit of {kind.name}; "

@@ -322,3 +322,17 @@ def test_an_angle_is_a_number_everywhere_else():
     assert repr(phi) == repr(plain)
     found = [st.theory.creep_velocity(0.5, 1e-3, each, 1e-3) for each in (phi, plain)]
     assert found[0] == found[1]
+
+
+@pytest.mark.parametrize(("mass", "weight"), [("4kg", "4 kgf"), ("400 g", "0.4 kgf")])
+def test_a_mass_in_place_of_a_force_names_its_weight(mass, weight):
+    """ "4kg is not a unit of a force; write for example '10 N'" left the reader to find kgf."""
+    with pytest.raises(st.DescriptionError, match=f"is a mass, not a force.*'{weight}'"):
+        st.Record(time=[0.0, 1.0], force=[1.0, 2.0], normal_load=mass)
+    record = st.Record(time=[0.0, 1.0], force=[1.0, 2.0], normal_load=weight)
+    assert record.normal_load == pytest.approx(9.80665 * float(weight.split()[0]))
+
+
+def test_a_single_spring_that_is_rigid_names_the_way_out():
+    with pytest.raises(st.DescriptionError, match=r"springs? in series.*'1 GN/m'"):
+        st.presets.nakano_popov_2020().replace(k_y="rigid")
