@@ -52,8 +52,8 @@ Simulations = Annotated[
     Parameter(
         name=("--simulations", "-n"),
         help=(
-            "Number of simulated records to learn from: more give narrower intervals, and take "
-            "longer. Example: -n 8000."
+            "Number of simulated records to learn from, at least 300: more give narrower "
+            "intervals, and take longer. Example: -n 8000."
         ),
     ),
 ]

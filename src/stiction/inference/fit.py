@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from math import ceil
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,8 @@ from stiction.system.slider import Slider
 SMALLEST_ANGLE = 1e-9  # rad: a median of zero is off by rounding
 VARIED = "mu_0, mu_s, ... to vary from cycle to cycle"
 FEWEST_SIMULATIONS = 300  # simulations with cycles, below which nothing is learned
+USABLE = 0.5  # of the simulations, at least, have cycles where more of them are simulated
+MORE = 1.5  # times as many as lack on average
 
 
 @read_together
@@ -81,7 +84,8 @@ def fit(
     rig : Rig, str or Path
         The description with its priors; see `stiction.inference.priors`.
     simulations : int, optional
-        In the library; more sharpen the posterior.
+        In the library, at least 300; more sharpen the posterior. Where fewer than 300 have
+        cycles, and most do, further ones are simulated.
     library : str or Path, optional
         A folder in which libraries are kept: an interrupted fit continues, and a record under
         the same conditions needs no new simulation.
@@ -113,7 +117,7 @@ def fit(
     folder = None if place is None else place / f"{plan_of.key}-{seed}"
     whole = progress or silent
     refuse_early(plan_of, simulations, folder, seed)
-    simulated = build(plan_of, simulations, folder, seed=seed, progress=part(whole, 0, 10, of=7))
+    simulated = build_enough(plan_of, simulations, folder, seed, part(whole, 0, 10, of=7))
     found = compare(simulated, seen, folder, part(whole, 7, 10, of=3))
     whole(1.0)
     return found
@@ -124,8 +128,25 @@ def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int
     if simulations <= FIRST_SIMULATIONS:
         return
     first = build(plan_of, FIRST_SIMULATIONS, folder, seed=seed)
-    if will_be_too_few(len(first.scores), FIRST_SIMULATIONS, simulations, FEWEST_SIMULATIONS):
+    most = max(simulations, int(FEWEST_SIMULATIONS / USABLE))
+    if will_be_too_few(len(first.scores), FIRST_SIMULATIONS, most, FEWEST_SIMULATIONS):
         refuse_few_of(first)
+
+
+def build_enough(
+    plan_of: Plan, simulations: int, folder: Path | None, seed: int, progress: Progress
+) -> Library:
+    """Simulate a library, and more than are asked for where a few are lacking with cycles.
+
+    Where fewer than half of them have cycles, the priors are at fault: then it is left as it is.
+    """
+    library = build(plan_of, simulations, folder, seed=seed, progress=progress)
+    while USABLE * library.wanted <= len(library.scores) < FEWEST_SIMULATIONS:
+        share = len(library.scores) / library.wanted
+        lacking = FEWEST_SIMULATIONS - len(library.scores)
+        wanted = library.wanted + ceil(MORE * lacking / share)
+        library = build(plan_of, wanted, folder, seed=seed, progress=progress)
+    return library
 
 
 def refuse_few_of(library: Library) -> None:

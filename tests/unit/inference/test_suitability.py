@@ -20,6 +20,7 @@ from stiction.inference.priors import Normal, Uniform
 from stiction.inference.simulated.library import Library
 from stiction.inference.simulated.plan import plan
 from stiction.inference.suitability import dispute, explain_unlike, refuse_few
+from stiction.progress.report import silent
 
 RIG = st.Rig.from_toml(
     """
@@ -210,6 +211,23 @@ def test_too_few_simulations_are_refused_after_the_first(monkeypatch, usable, re
     assert asked == [fits.FIRST_SIMULATIONS]
     fits.refuse_early(of, fits.FIRST_SIMULATIONS, None, 0)
     assert asked == [fits.FIRST_SIMULATIONS]
+
+
+@pytest.mark.parametrize(("share", "enough"), [(0.997, True), (0.7, True), (0.3, False)])
+def test_a_few_simulations_that_lack_are_simulated(monkeypatch, share, enough):
+    """299 of the fewest that are accepted had cycles: the fit was refused when they were done."""
+
+    def build(of, count, *_, **__):
+        rows = np.zeros((int(share * count), 1))
+        return Library(of, rows, rows, count)
+
+    monkeypatch.setattr(fits, "build", build)
+    of = plan(RIG.slider, {}, [observe(record(*[CYCLE] * 20), RIG.slider).conditions])
+    library = fits.build_enough(of, fits.FEWEST_SIMULATIONS, None, 0, silent)
+    assert (len(library.scores) >= fits.FEWEST_SIMULATIONS) == enough
+    assert library.wanted < 1.7 * fits.FEWEST_SIMULATIONS
+    if enough:
+        fits.refuse_early(of, fits.FEWEST_SIMULATIONS, None, 0)
 
 
 @pytest.mark.parametrize(("theirs", "ours"), [(7, 5), (5, 7), (8, 5), (20, 15)])
