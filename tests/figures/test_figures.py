@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from io import BytesIO
 from itertools import pairwise
 from math import degrees, pi, radians
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib as mpl
@@ -1218,6 +1219,25 @@ def test_the_force_turns_on_its_arc_and_not_on_the_straight_line(
     assert ax.get_aspect() == 1.0
     assert "Rotation of the force" in turning.write_html(tmp_path / "a.html").read_text("utf-8")
     assert "each loading a line" in (tmp_path / "a.html").read_text("utf-8")
+
+
+def test_an_arc_about_an_unknown_zero_ends_where_the_loadings_do(
+    turning: st.analysis.Analysis,
+) -> None:
+    """A circle ran on beyond the data, and beside them, as if the fit was bad."""
+    its = turning.parts["rotation"]._replace(kind="not determined", stated=False)
+    figure = figure_of(st.plotting.plot_rotation, replace(turning, parts={"rotation": its}))
+    ax, _ = figure.axes
+    arc, straight = ax.get_lines()[:2]
+    x, y = np.transpose(arc.get_xydata())
+    (paths,) = ax.collections
+    shown = np.concatenate([each.vertices for each in paths.get_paths()])
+    assert shown[:, 1].min() < y.min() < y.max() < shown[:, 1].max()
+    middle = np.concatenate([each.vertices[20:60] for each in paths.get_paths()])
+    fits = np.hypot(*(middle[:, None] - np.transpose([x, y])[None]).T).min(axis=0)
+    assert fits.max() < 0.02 * np.hypot(x, y).max()
+    legend = [each.get_text() for each in ax.get_legend().get_texts()]
+    assert any(each.startswith("best arc (fitted zero, ") for each in legend)
 
 
 def test_colours_of_the_loadings_are_ordered_in_print() -> None:

@@ -80,6 +80,21 @@ def best_arc(its: MeanLoading, known: float = 0.0) -> Arc:
     return found._replace(**errors)
 
 
+def arc_path(
+    its: MeanLoading, arc: Arc, known: float = 0.0, *, even: bool = False, count: int = 200
+) -> Floats:
+    """Return points (count, 2), N, of the path that an arc describes, over the range of the data.
+
+    Its distance from (0, zero) is |F| = F_0 - d/sin^2 of the angle, as it was fitted; or F_0 alone,
+    if the path is `even`.
+    """
+    _, (F_0, *_), (d, *_) = _fits(its, np.array([arc.zero]), known, USUAL)
+    far = np.arctan2(its.y - arc.zero, its.x)
+    angle = np.linspace(float(far.min()), float(far.max()), count)
+    fall = 0.0 if even else d * np.maximum(np.abs(np.sin(angle)), SIDEWAYS) ** -USUAL.power
+    return np.column_stack([(F_0 - fall) * np.cos(angle), arc.zero + (F_0 - fall) * np.sin(angle)])
+
+
 def usual_arc(its: MeanLoading, known: float = 0.0, shape: ArcShape = USUAL) -> Arc:
     """Return the best arc with the errors of noise alone."""
     far = np.geomspace(1e-3, 1.0, GRID) * (RADII[1] * its.peak + np.ptp(its.y))

@@ -16,7 +16,7 @@ from matplotlib.colors import ListedColormap, Normalize
 
 from stiction.analysis.rotation.findings import TURNING, Rotation
 from stiction.analysis.rotation.loading import MeanLoading, loadings
-from stiction.analysis.rotation.path import best_arc
+from stiction.analysis.rotation.path import arc_path, best_arc
 from stiction.analysis.rotation.plane import with_both_forces
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
@@ -24,6 +24,7 @@ from stiction.errors import ResultError
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, RED, SKY, style
 from stiction.text.quantity_text import metric_prefix
+from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
@@ -37,7 +38,8 @@ TIMES = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.85, 256)), "times
 def plot_rotation(found: Analysis, ax: Axes | None = None) -> Axes:
     """Draw the force in the plane in each loading, and the arc and straight line that describe it.
 
-    A loading is a thin line whose colour is its time. Arrows are the mean force at its beginning
+    A loading is a thin line whose colour is its time. The arc is about the zero that the
+    legend names, over the range of the mean loading. Arrows are the mean force at its beginning
     and before slip, where the zero of the force across is known.
 
     Parameters
@@ -85,7 +87,7 @@ def plot_rotation(found: Analysis, ax: Axes | None = None) -> Axes:
         ax.autoscale_view()
         ax.set_xlabel(f"force along ({prefix}N)")
         ax.set_ylabel(f"force across{', from its zero' if known else ''} ({prefix}N)")
-        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=2)
+        ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0))
         if own and len(begins) > 1:
             ax.figure.colorbar(
                 ScalarMappable(lines.norm, TIMES), ax=ax, label="time of the loading (s)", pad=0.02
@@ -108,15 +110,20 @@ def _paths(time: Floats, forces: Floats, found: Analysis) -> tuple[Floats, list[
 
 
 def _draw_rivals(ax: Axes, its: Rotation, mean: MeanLoading, factor: float, zero: float) -> None:
-    """Draw the best arc and the best straight line."""
-    arc = best_arc(mean, its.zero_error if its.stated else 0.0)
-    middle = arc.zero - zero
-    far = np.arctan2(mean.y - arc.zero, mean.x)
-    low, high = min(float(far.min()), 0.0), max(float(far.max()), 0.0)
-    angle = np.linspace(low - 0.1 * (high - low), high + 0.1 * (high - low), 200)
+    """Draw the best arc and the best straight line, where the loadings are.
+
+    Where the force turns, the arc has the radius F_0, of which the report tells. Elsewhere it is
+    the path that was fitted, which the straight line was compared with.
+    """
+    known = its.zero_error if its.stated else 0.0
+    arc = best_arc(mean, known)
+    about = f"{'stated' if its.stated else 'fitted'} zero"
+    if not its.stated and its.kind != TURNING:  # which no axis shows
+        about += f", {in_words(arc.zero, 'N', 2)}"
+    along, across = arc_path(mean, arc, known, even=its.kind == TURNING).T
     ax.plot(
-        factor * arc.F_0 * np.cos(angle), factor * (middle + arc.F_0 * np.sin(angle)),
-        color=SKY, linewidth=3.0, zorder=1, label="best arc: turning",
+        factor * along, factor * (across - zero),
+        color=SKY, linewidth=3.0, zorder=1, label=f"best arc ({about}): turning",
     )  # fmt: skip
     straight = line(mean.x, mean.y)
     x = mean.x[[0, -1]] + np.array([-0.1, 0.1]) * np.ptp(mean.x)
