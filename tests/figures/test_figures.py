@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from io import BytesIO
 from itertools import pairwise
 from math import degrees, pi, radians
-from dataclasses import replace
 from pathlib import Path
 
 import matplotlib as mpl
@@ -1221,6 +1221,48 @@ def test_the_force_turns_on_its_arc_and_not_on_the_straight_line(
     assert "each loading a line" in (tmp_path / "a.html").read_text("utf-8")
 
 
+def noisy_stick_slip() -> st.Record:
+    """Return 19 cycles after a first loading, in noise of 0.4 % of the force."""
+    time = np.arange(0.0, 20.0, 1e-3)
+    cycle = (
+        1.4
+        + np.minimum((time - 2.0) % 0.93, 0.9)
+        - 30.0 * np.maximum((time - 2.0) % 0.93 - 0.9, 0.0)
+    )
+    force = np.where(time < 1.97, 2.3 * time / 1.97, np.where(time < 2.0, 1.4, cycle))
+    noise = 4e-3 * np.random.default_rng(6).standard_normal(len(time))
+    return st.Record(time=time, force=force + noise, normal_load=4.0)
+
+
+def test_the_peak_of_the_first_loading_is_marked_like_the_others() -> None:
+    """Its trough was marked alone, though the table begins with its break-away."""
+    record = noisy_stick_slip()
+    axes = plot_cycles(record)
+    found = st.analyse(record)
+    peaks, troughs = (
+        next(each for each in axes[0].lines if each.get_label() == name)
+        for name in ("peak", "trough")
+    )
+    assert len(peaks.get_xdata()) == len(troughs.get_xdata()) == 1 + found.cycles.sizes["cycle"]
+    assert peaks.get_xdata()[0] == pytest.approx(1.97, abs=0.01)
+    assert peaks.get_ydata()[0] == pytest.approx(found.friction.break_away.force, abs=0.02)
+    later = record.part(record.time > 2.2)  # a record that begins in a rise has its peak, too
+    (cut, *_), drawn = st.analyse(later).cycles["start"].values, plot_cycles(later)
+    first = next(each for each in drawn[0].lines if each.get_label() == "peak").get_xdata()[0]
+    assert first < cut
+
+
+def test_noise_on_slow_cycles_is_no_band_with_a_mean() -> None:
+    """The rises were braided of a band, its edges and a mean, as if there were two forces."""
+    axes = plot_cycles(noisy_stick_slip())
+    assert not any(ax.collections for ax in axes)
+    run = st.simulate(st.presets.nakano_popov_2020(), "5 s", sample_rate="10 kHz")
+    song = st.Record(time=run.samples["time"], force=run.samples["spring_y"])
+    ax = new_figure(4.0, 2.0).add_subplot()
+    draw_line(ax, song.time, song.force)
+    assert ax.collections
+
+
 def test_an_arc_about_an_unknown_zero_ends_where_the_loadings_do(
     turning: st.analysis.Analysis,
 ) -> None:
@@ -1228,7 +1270,7 @@ def test_an_arc_about_an_unknown_zero_ends_where_the_loadings_do(
     its = turning.parts["rotation"]._replace(kind="not determined", stated=False)
     figure = figure_of(st.plotting.plot_rotation, replace(turning, parts={"rotation": its}))
     ax, _ = figure.axes
-    arc, straight = ax.get_lines()[:2]
+    arc = ax.get_lines()[0]
     x, y = np.transpose(arc.get_xydata())
     (paths,) = ax.collections
     shown = np.concatenate([each.vertices for each in paths.get_paths()])

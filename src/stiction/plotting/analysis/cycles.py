@@ -7,12 +7,13 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.markers import CARETDOWN, CARETUP
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from stiction.analysis.motion.changes.mean_load import under_mean_load
 from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.robust import without_outliers
+from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.plotting.page.canvas import grid_of
@@ -24,6 +25,8 @@ from stiction.trajectory import Trajectory
 
 FEW_CYCLES = 12  # cycles that can be distinguished on a page's width
 SHOWN_CYCLES = 6  # cycles in the close-up
+NOISE = 0.05  # of the panel: a band so low is that of noise, and its edges would seem two forces
+CLEAR = 0.5  # of the usual drop, by which a peak before the first cycle is one
 SPAN, MARGIN = 2.0, 0.08  # wild samples may take as much room as the others; above and below them
 
 
@@ -68,7 +71,7 @@ def plot_motion(
     many = cycles.sizes["cycle"] > FEW_CYCLES
     with style():
         panels = grid_of(axes, (PAGE, 4.4 if many else 2.6), 2 if many else 1, 1)
-        draw_cycles(panels[0], steady, cycles)
+        draw_cycles(panels[0], steady, cycles, first_peak(steady, cycles))
         panels[0].set_title(kind.capitalize())
         if steady is not record:
             _draw_as_measured(panels[0], record)
@@ -79,16 +82,43 @@ def plot_motion(
     return np.array(panels, dtype=object)
 
 
-def draw_cycles(ax: Axes, record: Record, cycles: xr.Dataset) -> None:
-    """Draw the force of a record over time and mark peaks and troughs."""
+def first_peak(record: Record, cycles: xr.Dataset) -> tuple[Floats, Floats]:
+    """Return time and force of the peak before the first cycle, a value each; none if unclear.
+
+    It ends a first loading, or a cycle that the beginning of the record cuts.
+    """
+    before = int(np.searchsorted(record.time, cycles["start"].values[:1].sum()))
+    force = without_spikes(record.force[:before])
+    if not before:
+        return force, force
+    at = int(np.argmax(force))
+    least = CLEAR * float(np.median(cycles["drop"].values))
+    fallen = float(force[at]) - float(cycles["start_force"].values[0])
+    if not (at and fallen >= least and force[at] - force[:at].min() >= least):
+        return force[:0], force[:0]
+    return record.time[[at]], force[[at]]
+
+
+def draw_cycles(
+    ax: Axes,
+    record: Record,
+    cycles: xr.Dataset,
+    first: tuple[ArrayLike, ArrayLike] = ((), ()),
+) -> None:
+    """Draw the force of a record over time and mark peaks and troughs.
+
+    `first` are times, s, and forces, N, of peaks before the first cycle.
+    """
     factor, prefix = metric_prefix(record.force)
-    draw_line(ax, record.time, factor * record.force, GREY, 0.5)
+    draw_line(ax, record.time, factor * record.force, GREY, 0.5, thin=NOISE)
     size = float(np.clip(60.0 / max(cycles.sizes["cycle"], 1), 1.5, 4.0))  # pt: they must not touch
     low_time = np.append(cycles["start"].values[:1], cycles["trough_time"].values)
     low = np.append(cycles["start_force"].values[:1], cycles["trough"].values)
+    high_time = np.append(first[0], cycles["peak_time"].values)
+    high = np.append(first[1], cycles["peak"].values)
     for time, force, color, marker, name in (
         # the tips are at the force, so that a small drop shows between two rows of markers
-        (cycles["peak_time"].values, cycles["peak"].values, RED, CARETDOWN, "peak"),
+        (high_time, high, RED, CARETDOWN, "peak"),
         (low_time, low, BLUE, CARETUP, "trough"),
     ):
         if len(time):

@@ -132,11 +132,13 @@ def draw_line(
     color: str = BLACK,
     width: float = 0.7,
     window: tuple[float, float] | None = None,
+    thin: float = THIN,
 ) -> Line2D:
     """Draw values over time (s), thinned out by `envelope`.
 
     Where oscillations are too fast for a line of this width in this panel, the line is their mean,
-    and a pale band their range.
+    and a pale band their range; not of those lower than a share `thin` of the panel, which are
+    drawn as they are.
 
     The `window` is the time and range that the panel shows, by default those of the values; the
     figure has its size already.
@@ -147,7 +149,7 @@ def draw_line(
         span, height = window or (times[-1] - times[0], height)
         across = POINT * ax.get_window_extent().width / ax.figure.get_dpi()
         longest = LINES * width / across * span
-        found = oscillations(times, shown, longest, THIN * height)
+        found = oscillations(times, shown, longest, thin * height)
         if found:
             shown = _draw_range(ax, times, shown, found, color)
     (line,) = ax.plot(*envelope(times, shown), color=color, linewidth=width)
