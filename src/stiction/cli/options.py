@@ -238,6 +238,20 @@ def record_in(
     return as_record(source_in(path, measured, trust, rig_load))
 
 
+def records_in(
+    path: Path, measured: RecordOptions | None, trust: bool, rig_load: float | None = None
+) -> dict[str, Record]:
+    """Do as `record_in`, for each stroke of a record if all are asked for; by their names."""
+    from stiction.analysis.measurement.reading import read_parts
+    from stiction.analysis.record import as_record
+    from stiction.progress.display import show_progress
+
+    said = (measured or RecordOptions()).arguments()
+    with show_progress("reading"):
+        found = read_parts(path, trust=trust, rig_load=rig_load, **said)
+    return {name: as_record(each) for name, each in found.items()}
+
+
 def source_in(
     path: Path, measured: RecordOptions | None, trust: bool, rig_load: float | None = None
 ) -> Trajectory | Record:

@@ -59,7 +59,7 @@ def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
     if turns:
         raise ResultError(
             f"in {name} {turns}, and a fit takes a steady drive and a constant load; fit "
-            f"{by_strokes()}"
+            f"{by_strokes(record.origin)}"
         )
     if regime.kind in NO_CYCLES:
         raise ResultError(

@@ -267,3 +267,35 @@ def test_a_part_between_two_times_is_read(path, tmp_path, capsys):
         main(["import", str(path), "--begin", "6s", "--end", "10 s"])
     assert ended.value.code == 0
     assert "A part, from 6 s to 10 s." in capsys.readouterr().out
+
+
+def test_a_fit_takes_all_strokes_together(tmp_path, monkeypatch, capsys):
+    """It was advised, and refused."""
+    fitted = []
+
+    def infer(records, *_, **__):
+        fitted.extend(records)
+        raise st.ResultError("enough")
+
+    monkeypatch.setattr("stiction.inference.fit.fit", infer)
+    path = stick_slip_to_and_fro(tmp_path)
+    rig = tmp_path / "rig.toml"
+    rig.write_text(st.presets.nakano_popov_2020().to_toml())
+    output = ["-o", str(tmp_path / "fit.nc"), "--library", str(tmp_path / "library")]
+    with pytest.raises(SystemExit):
+        main(["fit", str(path), "--rig", str(rig), "--stroke", "all", *output])
+    assert "enough" in capsys.readouterr().err
+    assert [each.force.tolist() for each in fitted] == [
+        each.force.tolist() for each in st.read_records(path, stroke="all")
+    ]
+
+
+def test_an_audit_of_all_strokes_names_one_and_how_python_reads_all(tmp_path, capsys):
+    """It said that st.read_records(path) reads all, which returns the record as a whole."""
+    path, rig = stick_slip_to_and_fro(tmp_path), tmp_path / "rig.toml"
+    rig.write_text(st.presets.nakano_popov_2020().to_toml())
+    with pytest.raises(SystemExit):
+        main(["audit", str(rig), "--record", str(path), "--stroke", "all"])
+    said = " ".join(capsys.readouterr().err.split())
+    assert "say --stroke 1 for one of them" in said
+    assert "st.read_records(path, stroke='all') reads all" in said

@@ -122,6 +122,23 @@ def _only_record(
     rig_load: float | None = None,
 ) -> Record:
     """Return the only record of a file, or the requested one of several."""
+    strokes = _strokes(path, sidecar, said, rig_load)
+    if len(strokes) > 1:
+        raise ResultError(
+            f"{path}: has {len(strokes)} strokes, which are as many records: say "
+            f"{Suggestion('stroke', 1)} for one of them; in Python "
+            f"st.read_records(path, stroke={ALL!r}) reads all"
+        )
+    return strokes[0]
+
+
+def _strokes(
+    path: str | Path, sidecar: str | Path | None, said: dict[str, Any], rig_load: float | None
+) -> list[Record]:
+    """Return the record of a file that holds one block, or those of its strokes if all are asked.
+
+    `rig_load` is as of `read_source`.
+    """
     found = _measurements(path, sidecar, said, rig_load)
     if len(found) > 1:
         listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")
@@ -129,13 +146,32 @@ def _only_record(
             f"{path}: holds {len(found)} blocks: {listed}. Say {Suggestion('block', 1)} for one of "
             "them; st.read_records(path) reads all"
         )
-    strokes = _records(path, found[0])
-    if len(strokes) > 1:
-        raise ResultError(
-            f"{path}: has {len(strokes)} strokes, which are as many records: say "
-            f"{Suggestion('stroke', 1)} for one of them; st.read_records(path) reads all"
-        )
-    return strokes[0]
+    return _records(path, found[0])
+
+
+@suggest(as_argument_elsewhere)
+def read_parts(
+    path: str | Path,
+    *,
+    trust: bool = False,
+    rig_load: float | None = None,
+    sidecar: str | Path | None = None,
+    **said: Unpack[ReadArguments],
+) -> dict[str, Trajectory | Record]:
+    """Return the run or the record of a file, or all its strokes if they are asked for, by names.
+
+    Raises
+    ------
+    ResultError
+        As of `read_source`.
+    """
+    name = str(path)
+    if is_run(Path(path)):
+        return {name: read_source(path, trust=trust, sidecar=sidecar, **said)}
+    strokes = _strokes(path, sidecar, dict(said), rig_load)
+    if len(strokes) == 1:
+        return {name: strokes[0]}
+    return {f"{name}, stroke {number}": each for number, each in enumerate(strokes, 1)}
 
 
 @suggest(as_argument)

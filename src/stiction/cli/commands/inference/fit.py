@@ -18,7 +18,7 @@ from stiction.cli.options import (
     Trust,
     changes,
     library_or_cache,
-    record_in,
+    records_in,
 )
 from stiction.cli.terminal import say
 from stiction.errors import DescriptionError, Faults
@@ -65,6 +65,10 @@ def fit(
 
         stiction fit data.csv --time ms --force mN --rig rig.toml -o fit.nc
 
+    Of a drive that goes to and fro, each stroke is a record:
+
+        stiction fit data.csv --drive-position stage=mm --stroke all --rig rig.toml -o fit.nc
+
     With --mechanism, records are simulated by other mechanisms too: static friction in one
     dimension, rate and state, LuGre. The odds say which of them the measured ones are like, beside
     how often such odds are right; they say "undecided" rather than guess.
@@ -96,7 +100,8 @@ def fit(
     from stiction.progress.display import show_progress
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
-    faults, given, known = Faults(), [], None
+    faults, known = Faults(), None
+    read: dict[str, Record] = {}
     altered = changes(set, faults)
     with faults.of_part():
         placeable(output, NETCDF)
@@ -114,9 +119,10 @@ def fit(
     load = None if known is None else load_of_records(known)
     for path in records:
         with faults.of_part():
-            given.append(record_in(path, measured, trust, load))
+            read |= records_in(path, measured, trust, load)
     faults.refuse()
     assert known is not None
+    given, names = [*read.values()], [*read]
     kept = library_or_cache(library)
     with show_progress("simulating and learning") as report:
         found = infer(
@@ -132,14 +138,14 @@ def fit(
             )  # fmt: skip
         sections = [*sections, *odds.tables()]
         groups["mechanism"], plots["mechanism"] = odds.data, odds
-    sections = [*sections, *warnings(records, given), *origins(records, given)]
-    print_sections(", ".join(map(str, records)), sections)
+    sections = [*sections, *warnings(names, given), *origins(names, given)]
+    print_sections(", ".join(names), sections)
     say(f"wrote {found.save(output, **groups)}")
     if figures is not None:
         write_figures(plots, figures)
 
 
-def origins(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
+def origins(paths: Sequence[str], records: Sequence[Record]) -> list[Section]:
     """Return how records were read; of several, each with its name."""
     pairs = [(x, y.origin) for x, y in zip(paths, records, strict=True) if y.origin is not None]
     found = [(path, part) for path, origin in pairs for part in origin.tables()]
@@ -148,7 +154,7 @@ def origins(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
     return [part._replace(title=f"{path}: read as") for path, part in found]
 
 
-def warnings(paths: Sequence[Path], records: Sequence[Record]) -> list[Section]:
+def warnings(paths: Sequence[str], records: Sequence[Record]) -> list[Section]:
     """Return the warnings of the records' analyses, which a fit ignores."""
     from stiction.analysis.report import analyse
 
