@@ -39,7 +39,7 @@ from stiction.plotting.apparatus.shapes import drawn_misalignment
 from stiction.plotting.inference.posterior import ParameterAxis, draw_parameter, panels_of
 from stiction.plotting.maps import Side, draw_measure, draw_slice
 from stiction.plotting.page.canvas import canvas, figure_of, fix_ticks
-from stiction.plotting.page.parameter import Scale, label_decades
+from stiction.plotting.page.parameter import Scale, label_decades, use_scale
 from stiction.plotting.page.save import png, save, write
 from stiction.plotting.page.style import (
     BLACK,
@@ -1031,6 +1031,16 @@ def test_speeds_about_a_millimetre_a_second_are_labelled_alike() -> None:
     shown = {text.get_text() for text in ticks} - {""}
     assert len(shown) > 2
     assert all("10^{" in each for each in shown), shown
+
+
+def test_a_logarithmic_axis_of_a_decade_has_three_labels() -> None:
+    """The misalignment from 0.53 to 4.7 deg had the labels 1 and 2 alone."""
+    for low, high in ((0.53, 4.7), (0.21, 1.9), (1e-3, 0.04), (2.1, 19.0)):
+        ax = Figure().add_subplot()
+        use_scale(ax, "x", True)
+        ax.set_xlim(low, high)
+        draw(ax.figure)
+        assert sum(low <= tick <= high for tick in ax.get_xticks()) >= 3
 
 
 def test_a_notebook_that_turns_interactive_inside_the_style_stays_so() -> None:

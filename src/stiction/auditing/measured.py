@@ -335,8 +335,9 @@ def grounds(found: RecordComparison, fit: Fit) -> list[str]:
     conditions = fit.plan.conditions[0]
     channels = " and ".join(NAMES.get(name, name) for name in conditions.noise)
     lines = [
-        f"{conditions.cycles} cycles of {in_words(_length(found, conditions), 's')}, with "
-        f"{channels}, beside {fit.simulations} simulated records.",
+        f"The first {conditions.cycles} cycles of {in_words(_length(found, conditions), 's')}, "
+        f"with {channels}, beside {fit.simulations} simulated records. Their number is rounded "
+        "down, so that the same simulations serve records of other lengths.",
         curve(found.predictive),
         f"{percent(fit.farther)} of the simulated records are less like the others than the "
         f"measured one, by their features; below {percent(RARE)} it is unlike them.",

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from stiction.analysis.signals.correlated_noise import BOUNDS_95
 from stiction.arrays import Floats
 from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
-from stiction.plotting.page.parameter import use_scale
+from stiction.plotting.page.parameter import parameter_symbol, use_scale
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
 from stiction.text.paths import short_names
 from stiction.text.quantity_text import metric_prefix
@@ -84,6 +84,9 @@ def panels_of(axes: Sequence[Axes] | None, count: int, height: float) -> Sequenc
     return panels[:count]
 
 
+JITTERED = "jitter: spread of friction"
+
+
 class ParameterAxis(NamedTuple):
     """The axis of a parameter: its unit, its label, and whether it is logarithmic.
 
@@ -111,9 +114,14 @@ def axis_of(fit: Fit, name: str) -> ParameterAxis:
     log = getattr(prior, "scale", "") == "log"
     unit = str(values.attrs["units"])
     if unit in PLAIN:
-        return ParameterAxis(1.0, f"{name}{PLAIN[unit]}", log)
+        return ParameterAxis(1.0, f"{_label(name)}{PLAIN[unit]}", log)
     factor, prefix = metric_prefix(np.quantile(np.abs(values.values), 0.9))
-    return ParameterAxis(1.0 / factor, f"{name} ({prefix}{unit})", log)
+    return ParameterAxis(1.0 / factor, f"{_label(name)} ({prefix}{unit})", log)
+
+
+def _label(name: str) -> str:
+    """Return how a parameter is printed: its symbol, and of a jitter what it is."""
+    return JITTERED if name == "jitter" else parameter_symbol(name)
 
 
 def draw_parameter(

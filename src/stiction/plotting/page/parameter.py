@@ -19,6 +19,7 @@ SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: the units suit the values
 
 SMALL = 1e-3  # below it with a power of ten
+FEWEST_TICKS = 3  # by two labels, a logarithmic scale is hardly read
 SHORT = 5.0  # ratio of the ends of a logarithmic axis, below which its ticks are even
 FEW_DECADES = 30.0  # the ratio of the ends of an axis
 
@@ -90,7 +91,10 @@ class FewOnLog(LogLocator):
         """Return the places of ticks between two values."""
         if vmax < SHORT * vmin:
             return MaxNLocator(4, steps=[1, 2, 2.5, 5, 10]).tick_values(vmin, vmax)
-        return super().tick_values(vmin, vmax)
+        found = np.asarray(super().tick_values(vmin, vmax))
+        if np.count_nonzero((vmin <= found) & (found <= vmax)) >= FEWEST_TICKS:
+            return found
+        return LogLocator(subs=(1.0, 2.0, 3.0, 5.0, 7.0)).tick_values(vmin, vmax)
 
 
 def use_scale(ax: Axes, way: Literal["x", "y"], log: bool) -> None:
