@@ -13,8 +13,8 @@ from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import PydanticCustomError
 
+from stiction.analysis.drive.measured_drive import even_velocity
 from stiction.analysis.signals.digitised import first_of_each
-from stiction.analysis.signals.measured_drive import even_velocity
 from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arguments import with_article
 from stiction.arrays import Floats, Indices, xr
@@ -358,7 +358,7 @@ class Record(Described):
         measured = self.drive_velocity == self._measured_velocity
         return None if measured else self.drive_velocity
 
-    def stated(self) -> dict[str, float | None]:
+    def stated_numbers(self) -> dict[str, float | None]:
         """Return the numbers of the apparatus that were stated, by name; None of the others."""
         own = {"normal_load": self.stated_load, "drive_velocity": self.stated_velocity}
         return {name: getattr(self, name) for name in KNOWN} | own
@@ -505,7 +505,9 @@ class Record(Described):
         ResultError
             If the file cannot be written there.
         """
-        numbers = {name: value for name, value in self.stated().items() if value is not None}
+        numbers = {
+            name: value for name, value in self.stated_numbers().items() if value is not None
+        }
         channels = {"time": self.time, **self.channels()}
         return write_stored(path, channels, numbers, self.sensors or {}, self.origin)
 
@@ -554,7 +556,7 @@ class Record(Described):
     def _repr_html_(self) -> str:
         rows = [
             (name.replace("_", " "), in_words(value, KNOWN[name]))
-            for name, value in self.stated().items()
+            for name, value in self.stated_numbers().items()
             if value is not None
         ]
         sampled = f"{len(self)} samples over {in_words(self.duration, 's')}: "

@@ -267,7 +267,7 @@ def _parse(text: str, kind: Kind) -> float:
         ) from error
     if size is None and kind.unit == "N" and (mass := factor(unit, "kg")) is not None:
         weight = f"{number * mass:.6g} kgf"
-        raise fault(f"{echo(text)} is a mass, not {kind.name}; write its weight: {weight!r}")
+        raise fault(f"{echo(text)} is a mass, not {kind.name}; write its weight: {echo(weight)}")
     if size is None:
         raise fault(
             f"{echo(text)} is in {short(unit) or 'no unit'}, not a unit of {kind.name}; "

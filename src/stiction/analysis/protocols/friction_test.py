@@ -7,10 +7,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.drive.measured_drive import measured_stretches
 from stiction.analysis.protocols.settling import SETTLED, STILL_LOADED, has_settled
 from stiction.analysis.record import Record, as_record
 from stiction.analysis.signals.digitised import resolution
-from stiction.analysis.signals.measured_drive import measured_stretches
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats, Indices
 from stiction.drive import (

@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.drive.measured_drive import measured_stretches
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.record import Record
-from stiction.analysis.signals.measured_drive import measured_stretches
 from stiction.arrays import Floats, Indices
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion

@@ -9,8 +9,8 @@ from benchmarks.state_laws import velocity_steps as drawn
 from tests.drawn import SEED
 
 import stiction as st
+from stiction.analysis.drive.measured_drive import even_velocity, measured_stretches
 from stiction.analysis.protocols.friction_test import friction_test
-from stiction.analysis.signals.measured_drive import even_velocity, measured_stretches
 
 p = st.protocols
 

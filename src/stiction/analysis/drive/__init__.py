@@ -1,0 +1,1 @@
+"""The drive of a record, as its measured displacement shows it."""
