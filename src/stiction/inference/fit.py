@@ -156,7 +156,7 @@ def refuse_few_of(library: Library) -> None:
 
 
 def refuse_few(what: str, usable: int, simulated: int, fewest: int, recorded: bool = True) -> None:
-    """Refuse simulations of which fewer have cycles; say what decides how many have.
+    """Refuse simulations of which fewer have cycles, and name the priors that decide it.
 
     They are compared with those of a record, or else with that of the rig in the middle of its
     priors.

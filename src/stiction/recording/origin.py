@@ -26,7 +26,7 @@ class Use:
 
 @dataclass(frozen=True)
 class OriginOfStroke:
-    """Which way a stroke goes in its file, and what the file's strokes show of the zero.
+    """Direction of a stroke in its file, and the zero that the file's strokes show.
 
     Parameters
     ----------

@@ -29,7 +29,7 @@ NOISE = 4.3  # standard deviations of a sample: three of a difference of two
 # Fewer rises are not compared; the quantile of their beginnings, from which up to `BEFORE_SLIP`
 # there are so many levels
 FEWEST_RISES, LOWER, LEVELS = 4, 0.8, 10
-# Of a bin: a rest that takes more is no stick of the transverse oscillation; and of the velocity
+# Of a bin: sticks of the transverse oscillation take less than a rest does; and of the velocity
 # in the next bin, which by Eq. (7) is 1.1 to 1.2 times as large: less is partly rest
 PARTLY, MOSTLY = 0.25, 0.88
 OTHERS = 0.1  # of the phases: where more are at rest in a bin, others may be so in parts of it

@@ -87,7 +87,7 @@ class Departure(NamedTuple):
 
 
 class Conflict(NamedTuple):
-    """How far a value is from the middle of what is stated of it.
+    """Distance of a value from the median of its stated distribution.
 
     Parameters
     ----------

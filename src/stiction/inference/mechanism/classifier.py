@@ -165,7 +165,7 @@ def refuse_few_of_all(usable: Mapping[str, tuple[int, int]]) -> None:
 
 
 def place_of(plan: Plan, folder: Path | None, seed: int) -> Path | None:
-    """Return where the simulations of a plan are kept; None where nothing is."""
+    """Return the folder of a plan's simulations; None where nothing is stored."""
     return None if folder is None else folder / f"{plan.key}-{seed}"
 
 

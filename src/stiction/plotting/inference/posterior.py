@@ -120,7 +120,7 @@ def axis_of(fit: Fit, name: str) -> ParameterAxis:
 
 
 def _label(name: str) -> str:
-    """Return how a parameter is printed: its symbol, and of a jitter what it is."""
+    """Return the label of a parameter: its symbol, and for a jitter an explanation."""
     return JITTERED if name == "jitter" else parameter_symbol(name)
 
 

@@ -102,7 +102,7 @@ class Store(NamedTuple):
         return claim(self.path / STATUS / f"{CLAIM}{task}")
 
     def drop_claims(self) -> None:
-        """Remove what killed sweeps have left of their claims."""
+        """Remove the claims of killed sweeps."""
         for each in (self.path / STATUS).glob(f"{CLAIM}*"):
             with claim(each):
                 pass
