@@ -140,6 +140,26 @@ def test_one_store_is_refined_for_several_kinds(found, tmp_path):
     assert st.check(path).ok
 
 
+def test_refinements_of_one_store_at_the_same_time(found, tmp_path, monkeypatch):
+    """Another one makes a store of its own runs just before this one makes one there."""
+    study, path, changes = found
+    path, make, made = shutil.copytree(path, tmp_path / "a.zarr"), refine.create, []
+    shutil.rmtree(path / "refined")
+
+    def late(part, store):
+        if not made:
+            made.append(store)
+            st.refine(study, path, "phi", "0.4 deg")
+        return make(part, store)
+
+    monkeypatch.setattr(refine, "create", late)
+    again = st.refine(study, path, "phi", "0.4 deg", apart=CALM)
+    assert (np.abs(again["phi"] - changes["phi"]) <= again["half_width"]).all()
+    assert made == [path / "refined" / "phi" / "1.zarr"]
+    assert made[0].with_name("1-2.zarr").exists()  # of this one, whose intervals are others
+    assert st.check(path).ok
+
+
 def test_along_another_axis_with_one_zipped_to_it(tmp_path):
     axes = {
         "phi": st.Values(["3 deg"]),

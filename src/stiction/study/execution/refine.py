@@ -9,6 +9,7 @@ these fail too.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -17,7 +18,7 @@ import numpy as np
 from pydantic_core import PydanticCustomError
 
 from stiction.arrays import Floats, xr
-from stiction.errors import DescriptionError, Fault, echo
+from stiction.errors import DescriptionError, Fault, ResultError, echo
 from stiction.names import by_new_names
 from stiction.progress.audience import with_progress
 from stiction.storage.files import place, workshop
@@ -26,6 +27,7 @@ from stiction.study.execution.sweep import Tally, sweep, told_by
 from stiction.study.plan.axes import Values
 from stiction.study.plan.coordinates import ascending, number
 from stiction.study.plan.study import Study, study_of
+from stiction.study.store.creation import create
 from stiction.study.store.kept import UNKNOWN, flag_attributes
 from stiction.study.store.seal import seal
 from stiction.study.store.store import errors_as_message, group_at, open_study
@@ -201,17 +203,23 @@ def refine(
 
 
 def _store_of(part: Study, folder: Path, level: int) -> Path:
-    """Return the store of a level's runs: the first that has them, or is not there yet.
+    """Return the store of a level's runs: the first that has them, or is made for them.
 
     Intervals depend on the kinds that are compared: one level may have several sets of runs.
+    Another refinement may make one of them meanwhile.
     """
     paths = (folder / f"{level}{f'-{n}' if n > 1 else ''}.zarr" for n in count(1))
     wanted = part.to_json()
-    return next(
-        each
-        for each in paths
-        if not each.exists() or group_at(each, "r").attrs.get("description") == wanted
-    )
+    for path in paths:
+        if not path.exists():
+            try:
+                create(part, path)
+            except ResultError:
+                if not path.exists():  # otherwise another refinement was faster
+                    raise
+        if group_at(path, "r").attrs.get("description") == wanted:
+            break
+    return path
 
 
 def request(
@@ -233,9 +241,15 @@ def _keep(changes: xr.Dataset, target: Path) -> None:
     with errors_as_message(target), workshop(target.parent) as room:
         changes.to_zarr(room / CHANGES, zarr_format=3, consolidated=False)
         seal(room / CHANGES)
-        if target.exists():
-            target.replace(room / "earlier")
-        place({room / CHANGES: target})
+        for turn in count():
+            with suppress(FileNotFoundError):
+                target.replace(room / f"earlier-{turn}")
+            try:
+                place({room / CHANGES: target})
+                break
+            except OSError:
+                if not target.exists():  # otherwise another refinement was faster
+                    raise
 
 
 def _requested_width(study: Study, along: str, to: Quantity) -> float:
