@@ -17,6 +17,7 @@ from stiction import cli
 from stiction.result import file as result_file
 from stiction.result.file import DamageError
 from stiction.result.table import as_table
+from stiction.study.execution import repair
 
 SEED, DAMAGES = 1, 32  # of a result, and as many of a store
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="10 ms"))
@@ -237,6 +238,21 @@ def test_without_its_consolidated_metadata_a_store_is_damaged(store, tmp_path):
     (path / "zarr.json").write_text(json.dumps(root))
     assert st.check(path).damaged == ["zarr.json"]
     assert st.check(path, repair=True).repaired
+    assert st.open_study(path).load().identical(xr.open_zarr(store).load())
+
+
+def test_repairs_of_one_store_at_the_same_time(store, tmp_path, monkeypatch):
+    """Another one has begun with the damaged block."""
+    path, damage_of = shutil.copytree(store, tmp_path / "a.zarr"), repair.damage_of
+    flip(path / "peak_force" / "c" / "1" / "0")
+
+    def late(each):
+        found = damage_of(each)
+        (path / "status" / "c" / "1" / "0").unlink()
+        return found
+
+    monkeypatch.setattr(repair, "damage_of", late)
+    assert repair.restore(path) == ["peak_force/c/1/0"]
     assert st.open_study(path).load().identical(xr.open_zarr(store).load())
 
 

@@ -103,7 +103,7 @@ def _restore_head(study: Study, path: Path, names: Sequence[str]) -> None:
 def _restore_blocks(study: Study, store: Store, tasks: Sequence[int]) -> None:
     """Compute blocks again."""
     for task in tasks:
-        store.mark(store.layout.region(task)).unlink()
+        store.mark(store.layout.region(task)).unlink(missing_ok=True)  # as of another repair
     do(study, store, tasks, None, None)
 
 
