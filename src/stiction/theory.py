@@ -414,7 +414,6 @@ def damping_number(
 
 
 @name_arguments
-@_units
 def damping_number_of(
     slider: Slider | Description | str | Path, V: Quantity, phi: Quantity | None = None
 ) -> float:
@@ -437,7 +436,8 @@ def damping_number_of(
 
 
 def _one_number(name: str, value: Any) -> float:
-    """Return a quantity in SI, whose unit was read before."""
+    """Return a single quantity in SI."""
+    value = _in_si(name, value) if isinstance(value, str) else value
     if not isinstance(value, bool | np.bool_) and is_numeric(value) and np.ndim(value) == 0:
         return float(value)
     raise DescriptionError.of(name, f"must be one number, or one with its unit, is {echo(value)}")

@@ -562,17 +562,17 @@ def test_summary_is_mean_and_spread(paper: st.Record) -> None:
 
 def test_the_figure_marks_every_cycle_and_names_the_regime(paper: st.Record) -> None:
     time = np.arange(60_000) * 1e-3
-    for record, count, panels in (
-        (paper, 3, 1),
-        (st.Record(time=time, force=saw(time)), 28, 2),
-        (st.Record(time=time, force=np.ones(60_000)), 0, 1),
+    for record, count, before, panels in (
+        (paper, 3, 1, 1),  # the peak of the first loading
+        (st.Record(time=time, force=saw(time)), 28, 1, 2),  # of a cycle that the beginning cuts
+        (st.Record(time=time, force=np.ones(60_000)), 0, 0, 1),
     ):
         fig = figure_of(plot_cycles, record)
         fig.set_dpi(60)
         fig.draw_without_rendering()
         assert len(fig.axes) == panels
         marks = [len(np.asarray(line.get_xdata())) for line in fig.axes[0].lines[1:]]
-        assert marks == ([count, count + 1] if count else [])
+        assert marks == ([count + before, count + 1] if count else [])
         assert st.analysis.classify(record).kind in fig.axes[0].get_title(loc="left").lower()
         assert "N)" in fig.axes[0].get_ylabel()
 

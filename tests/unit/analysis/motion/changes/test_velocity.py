@@ -66,6 +66,10 @@ def test_a_report_of_velocity_steps_begins_with_them():
     assert "The force rises and falls after jumps of the drive's velocity" in str(found)
 
 
+# Columns that need the velocity of the drive: an even displacement shows it
+BY_VELOCITY = "stiffness", "creep_distance", "slip_distance", "peak_slip_speed"
+
+
 def drive(kind, time, draw, noise):
     """Return the displacement (m) of a drive over a unit time, by some 1 mm."""
     errs = draw.between(2.0, 40.0)
@@ -94,7 +98,8 @@ def test_stick_slip_is_the_same_whatever_the_measured_drive_does(kind):
         force = 1.0 + 0.3 * np.minimum(phase / 0.95, (1.0 - phase) / 0.05) + 3e-3 * noise
         record = st.Record(time=time, force=force, drive_position=drive(kind, time, draw, drives))
         alone = record.model_copy(update={"drive_position": None})
-        assert st.analysis.find_cycles(record).equals(st.analysis.find_cycles(alone)), number
+        both = (st.analysis.find_cycles(each).drop_vars(BY_VELOCITY) for each in (record, alone))
+        assert next(both).equals(next(both)), number
 
 
 def test_a_jump_has_a_time_an_end_and_a_sign():
