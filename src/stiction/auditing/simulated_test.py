@@ -113,7 +113,7 @@ class SimulatedTest:
 
     @cached_property
     def settled(self) -> float:
-        """The time after which the speed stays within 2 % of the drive's, s: steady sliding.
+        """The time of steady sliding, s, after which the speed stays within 2 % of the drive's.
 
         NaN where that takes longer than the test.
         """

@@ -355,7 +355,7 @@ class Fit(Report):
 
     @property
     def meaningless(self) -> bool:
-        """Whether the values mean nothing: disputed cycles, unlike or contradictory records."""
+        """Whether disputed cycles, unlike or contradictory records make the values mean nothing."""
         return bool(self.disputed) or self.farther < RARE or self.contradictory
 
     @property

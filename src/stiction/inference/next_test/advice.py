@@ -73,7 +73,7 @@ class Advice(Report):
 
     @property
     def best(self) -> Expected | None:
-        """The recommended test: the best of those that are clearly better than the present one.
+        """The recommended test, the best of those that are clearly better than the present one.
 
         It is the one that tells most, or a simpler one that may tell as much.
         """

@@ -26,8 +26,8 @@ Evidence = Literal[
     "unloaded", "turned", "rests", "change", "span", "scatter", "loads_on", "wanders",
     "falls_at", "falls_by", "slips_at", "slips_by", "slips_by_error", "slips_within",
     "ends_falling_from", "ends_falling_by", "stops", "ended_early", "across", "late_share",
-    "one_way", "rate_kept", "rate_over_drive", "hump", "hump_height", "fading", "fades_to", "hidden",
-    "hidden_height", "quick_falls", "quick_fall", "gaps", "few_periods", "late_sticks",
+    "one_way", "rate_kept", "rate_over_drive", "hump", "hump_height", "fading", "fades_to",
+    "hidden", "hidden_height", "quick_falls", "quick_fall", "gaps", "few_periods", "late_sticks",
     "samples_per_cycle", "rate_needed", "samples", "unchanging", "forth", "back",
 ]
 # fmt: on
