@@ -139,9 +139,8 @@ def begin(
     found: dict[str, tuple[Floats, Floats]] = {}
     usable = {}
     for rival in rivals:
-        some = BLOCK * ceil(
-            FIRST_SIMULATIONS / (BLOCK * len(rival.plans))
-        )  # by each plan, whole blocks
+        # whole blocks by each plan
+        some = BLOCK * ceil(FIRST_SIMULATIONS / (BLOCK * len(rival.plans)))
         its = []
         for plan in rival.plans:
             report, place = part(progress, len(found), total), place_of(plan, folder, seed)
