@@ -335,7 +335,7 @@ def limit(found: Alignment) -> str:
     if not isnan(found.angle):
         angle, first = round_down(degrees(found.angle)), round_down(degrees(found.first))
         said = f"Align to better than {angle:g} deg to keep the error of mu_static below {share}."
-        single = f" That is a mean: single tests are off by more from {first:g} deg on."
+        single = f" That is a mean: of the tests tried, some are off by more from {first:g} deg on."
         rare = (
             f" None of {found.nearer} tests at smaller angles is off by more, which does not "
             "exclude a narrow range in which it is."
@@ -352,7 +352,7 @@ def limit(found: Alignment) -> str:
     if isnan(found.first):
         return f"{said}."
     first = round_down(degrees(found.first))
-    return f"{said} on average; single tests are off by more from {first:g} deg on."
+    return f"{said} on average; of the tests tried, some are off by more from {first:g} deg on."
 
 
 def _interval(found: Budget, at: int, unit: str) -> str:

@@ -142,13 +142,13 @@ def test_single_tests_that_scatter_are_said():
     text = limit(Alignment(radians(2.24), radians(2.9), 0.001, radians(1.61)))
     assert text == (
         "Align to better than 2.2 deg to keep the error of mu_static below 2 %. "
-        "That is a mean: single tests are off by more from 1.6 deg on."
+        "That is a mean: of the tests tried, some are off by more from 1.6 deg on."
     )
     plain = limit(Alignment(0.04, 0.05, 0.001, 0.0401))
     assert plain == "Align to better than 2.2 deg to keep the error of mu_static below 2 %."
     assert limit(Alignment(nan, radians(30.0), 0.001, radians(3.0))) == (
-        "An error of mu_static of 2 % is not reached up to 30 deg on average; single tests are off "
-        "by more from 3 deg on."
+        "An error of mu_static of 2 % is not reached up to 30 deg on average; of the tests tried, "
+        "some are off by more from 3 deg on."
     )
 
 
