@@ -186,7 +186,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
     _, found, regime = classify_record(record, run)
-    if found.load is not None:
+    if found.load is not None:  # friction is force over load at the same instant, as measured
         found = found._replace(force=found.force + found.load.share)
     missing: dict[str, str] = {}
     dataset = cache(CycleTable.as_dataset)  # some of the tables are one and the same

@@ -68,7 +68,7 @@ def section(found: Analysis) -> Section:
         why = found.missing["creep"]
         said = why if why.startswith("not determined") else f"not seen: {why}"
         return Section("Creep", [f"{said[0].upper()}{said[1:]}."])
-    creep, waits = _while_it_creeps(found)
+    creep, waits = _mean_after_rest(found)
     counts = creep["phases"].values
     usual = _usual(creep)
     far, near = (creep.isel(bin=at) for at in (usual, 0))
@@ -127,7 +127,7 @@ def _usual(creep: xr.Dataset) -> int:
     return int(np.flatnonzero(counts >= USUAL * counts[0])[-1])
 
 
-def _while_it_creeps(found: Analysis) -> tuple[xr.Dataset, str]:
+def _mean_after_rest(found: Analysis) -> tuple[xr.Dataset, str]:
     """Return the mean creep without bins of rest before it, and words on that; all if none is left.
 
     A bin in which some phases rest still, or begin to creep, has the velocity of neither.

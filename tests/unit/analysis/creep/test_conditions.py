@@ -5,6 +5,7 @@ from math import degrees, radians
 
 import numpy as np
 import pytest
+from tests.rigs import PIN_ON_PLATE
 
 import stiction as st
 from stiction.analysis.creep.conditions import (
@@ -320,20 +321,8 @@ def test_of_a_drive_that_speeds_up_only_phases_at_its_velocity_count():
 
 @pytest.fixture(scope="module", params=["1 kHz", "5 kHz", "20 kHz"])
 def resting_run(request):
-    """Return a run of a rig whose mass rests for a part of each loading that no bin is as long as.
-
-    Its spring across is 390 times as stiff as that along, and half as stiff as Eq. (7) supposes.
-    """
-    slider = st.Slider(
-        mass="80 g",
-        k_x="2.3 kN/m",
-        k_y="0.9 MN/m",
-        phi="2 deg",
-        normal_load="4 N",
-        friction=st.ExponentialWeakening(mu_0=0.6, mu_inf=0.45, v_f="10 mm/s"),
-        drive=st.ConstantVelocity("0.5 mm/s"),
-    )
-    return st.simulate(slider, "20 s", sample_rate=request.param)
+    """Return a run whose mass rests in each loading for less than a bin of its creep curve."""
+    return st.simulate(PIN_ON_PLATE, "20 s", sample_rate=request.param)
 
 
 def test_bins_of_rest_are_no_creep(resting_run):
