@@ -6,9 +6,9 @@ from math import isfinite
 from typing import TYPE_CHECKING
 
 from stiction.analysis.motion.friction import without_loading
-from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.analysis.parts import rotation
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
+from stiction.analysis.parts.motion import other_reading
 from stiction.analysis.parts.procedure import name_of
 from stiction.text.sections import Section, first_clause, first_sentence
 from stiction.text.units import with_error
@@ -34,7 +34,7 @@ def section(found: Analysis) -> Section:
         *([] if test is None else [f"A test of {name_of(test).replace('-', ' ')}, as below."]),
         f"{kind[0].upper()}{kind[1:]}.",
         first_sentence(found.parts["motion"]),
-        *_other_reading(found),
+        *filter(None, [other_reading(found)]),
         *rotation.in_short(found),
         _friction(found),
         *_misalignment(found),
@@ -42,14 +42,6 @@ def section(found: Analysis) -> Section:
         *_open_questions(found),
     ]
     return Section("In short", lines)
-
-
-def _other_reading(found: Analysis) -> list[str]:
-    """Return how the file should be analysed instead, if its motion is undetermined."""
-    said: str = found.parts["motion"]
-    more = first_sentence(said.removeprefix(first_sentence(said)).strip())
-    asks = found.regime.kind == UNDETERMINED and more.startswith("Analyse ")
-    return [more] if asks else []
 
 
 def _friction(found: Analysis) -> str:

@@ -100,7 +100,7 @@ def numbers(found: Analysis) -> dict[str, Any]:
 def _describe_imposed_force(found: Analysis) -> str:
     """Describe a force that something other than friction shapes or changes; '' for others."""
     evidence, kind = found.regime.evidence, found.regime.kind
-    if isinstance(found.source, Trajectory) and turns_round(found.source):
+    if _drive_turns_round(found):
         return "The drive goes back and forth, and the force with it."
     if (mains := evidence.get("mains")) is not None:
         return (
@@ -113,9 +113,32 @@ def _describe_imposed_force(found: Analysis) -> str:
             f"{found.regime.runner_up}. Analyse each by itself: means over both mean little."
         )
     name = next((name for name in IMPOSED if name in evidence), None)
-    loops = "Of a run, or with the position, st.analysis.hysteresis gives the loops."
-    remedy = f" Analyse {by_strokes(found.record.origin)}. {loops}" if name in TO_AND_FRO else ""
-    return f"{IMPOSED[name] if name else ''}{remedy}"
+    if name in TO_AND_FRO:
+        loops = "Of a run, or with the position, st.analysis.hysteresis gives the loops."
+        return f"{IMPOSED[name]} {other_reading(found)} {loops}"
+    return IMPOSED[name] if name else ""
+
+
+def other_reading(found: Analysis) -> str:
+    """Return how the file should be analysed instead, where its force asks for that; else ''."""
+    if found.regime.has(*TO_AND_FRO) and not _drive_turns_round(found):
+        return f"Analyse {by_strokes(found.record.origin)}."
+    if _seems_reversed(found):
+        return f"Analyse {_with_other_sign(found)}."
+    return ""
+
+
+def _drive_turns_round(found: Analysis) -> bool:
+    """Return whether the drive of a run goes back and forth."""
+    return isinstance(found.source, Trajectory) and turns_round(found.source)
+
+
+def _seems_reversed(found: Analysis) -> bool:
+    """Return whether a record's force has the other sign, in all likelihood."""
+    if isinstance(found.source, Trajectory):
+        return False
+    backward = found.regime.evidence.get("backward", 0.0) > BACKWARD
+    return found.regime.has("against") or (backward and float(found.record.force.mean()) <= 0.0)
 
 
 def _describe_cycles(found: Analysis) -> str:
@@ -185,11 +208,10 @@ def _describe_unclear_force(found: Analysis) -> str:
     fast = "The force falls slowly and rises fast"
     if isinstance(found.source, Trajectory):
         return f"{fast}, as where the drive pauses or changes its velocity."
-    if against or float(found.record.force.mean()) <= 0.0:
+    if _seems_reversed(found):
         its = "The force is against the drive in all cycles" if against else fast
         return (
-            f"{its}: it is recorded with the other sign, in all likelihood. Analyse "
-            f"{_with_other_sign(found)}."
+            f"{its}: it is recorded with the other sign, in all likelihood. {other_reading(found)}"
         )
     return (
         f"{fast}: as where holds interrupt the sliding, or it is recorded with the other sign "
