@@ -1,5 +1,6 @@
 """``stiction import`` and ``stiction analyse`` on measured records."""
 
+import gzip
 import json
 import re
 from html import unescape
@@ -39,6 +40,24 @@ def test_analyse_takes_a_record_with_its_units(data, capsys):
     assert "sticks and slips" in said
     numbers = json.loads((data.parent / "data-analysis" / "analysis.json").read_text())
     assert numbers["friction"]["static"]["coefficient"] == pytest.approx(0.24, abs=0.001)
+
+
+@pytest.mark.parametrize(
+    ("name", "folder"),
+    [
+        ("steel.dry.csv", "steel.dry-analysis"),
+        ("0.5N.csv", "0.5N-analysis"),
+        ("data.csv.gz", "data-analysis"),
+        ("a.html.csv", "a.html-analysis"),
+    ],
+)
+def test_a_file_may_have_dots_in_its_name(data, name, folder):
+    """A dot made the folder beside it one of an unknown format, and nothing was analysed."""
+    path, content = data.with_name(name), data.read_bytes()
+    path.write_bytes(gzip.compress(content) if name.endswith(".gz") else content)
+    data.unlink()
+    assert inside("analyse", path, *UNITS) == 0
+    assert (path.parent / folder / "report.txt").exists()
 
 
 UNITS = ("--time", "ms", "--force", "mN")

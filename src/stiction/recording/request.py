@@ -11,6 +11,7 @@ from pydantic import BeforeValidator, Field, ValidatorFunctionWrapHandler, WrapV
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.formats.channels import CHANNELS
 from stiction.recording.sensor import Sensor
+from stiction.storage.files import without_compression
 from stiction.text.toml import read_toml
 from stiction.text.units import (
     LENGTH,
@@ -206,8 +207,7 @@ def _read(
 
 def _beside(path: Path) -> Path | None:
     """Return the TOML file beside a file, if it is one about a record."""
-    own = path.with_suffix("").with_suffix(".toml") if path.suffix == ".gz" else path
-    own = own.with_suffix(".toml")
+    own = without_compression(path).with_suffix(".toml")
     if own == path or not own.is_file():
         return None
     return None if "slider" in read_toml(own) else own

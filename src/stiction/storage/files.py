@@ -82,6 +82,15 @@ def usable_folder(folder: Path) -> None:
     _refuse_unwritable(folder, folder if folder.exists() else folder.parent)
 
 
+def without_compression(path: Path) -> Path:
+    """Return a path without the suffix of its compression.
+
+    >>> without_compression(Path("data.csv.gz")).name, without_compression(Path("data.csv")).name
+    ('data.csv', 'data.csv')
+    """
+    return path.with_suffix("") if path.suffix.lower() == ".gz" else path
+
+
 def folder_or_file(path: Path, suffixes: Collection[str]) -> Path:
     """Return a path to which either a folder or a file with one of some suffixes can be written.
 

@@ -69,13 +69,17 @@ def analyse(
     from stiction.cli.tables import as_file, print_sections
     from stiction.plotting.page.html import SUFFIXES
     from stiction.progress.display import show_progress
-    from stiction.storage.files import folder_or_file
+    from stiction.storage.files import folder_or_file, usable_folder, without_compression
 
     if results or (measured is not None and measured.stroke == "all"):
         _analyse_several([result, *results], output, trust, measured)
         return
     source = source_in(result, measured, trust)
-    target = folder_or_file(output or result.with_name(f"{result.stem}-analysis"), SUFFIXES)
+    if output is None:  # any name of a folder will do: that of the file may have more dots
+        target = result.with_name(f"{without_compression(result).stem}-analysis")
+        usable_folder(target)
+    else:
+        target = folder_or_file(output, SUFFIXES)
     with show_progress("analysing"):
         found = understand(source)
         parts = full_report(found)
