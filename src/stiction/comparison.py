@@ -26,9 +26,10 @@ from stiction.simulation import MOST_STEPS, automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.text.quantity.wording import in_words
 from stiction.text.sections import Report, Section, Table
 from stiction.text.toml import read_toml
-from stiction.text.units import Quantity, in_words
+from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
 from stiction.trajectory import Trajectory
 

@@ -25,8 +25,9 @@ from stiction.storage.version import own_version
 from stiction.system.description import STAND_IN, Description, description_of, system_and_start
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.text.quantity.wording import in_words
 from stiction.text.samples import as_numbers, samples_to_si
-from stiction.text.units import TIME, Quantity, in_words, unit_on
+from stiction.text.units import TIME, Quantity, unit_on
 from stiction.trajectory import Statistics, Trajectory
 
 PAPERS = Initial()

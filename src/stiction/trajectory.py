@@ -36,8 +36,9 @@ from stiction.system.description import Description
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
 from stiction.system.writing import parameter_table, slider_tables
+from stiction.text.quantity.wording import in_words
 from stiction.text.sections import Section, Table, as_html
-from stiction.text.units import Quantity, in_words
+from stiction.text.units import Quantity
 from stiction.text.validation import read_arguments
 
 if TYPE_CHECKING:

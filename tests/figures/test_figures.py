@@ -64,7 +64,7 @@ from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep, zero_slip
 from stiction.reproduction.figures import figure3, figure4, figure5, schematic
 from stiction.reproduction.first_look import first_look
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 
 
 def draw(fig: Figure) -> Figure:

@@ -15,8 +15,8 @@ from stiction.result.peak import UNSEEN, largest_spring_force
 from stiction.result.rest import rest_in_words
 from stiction.result.table import VARIABLES
 from stiction.simulation import automatic_times
+from stiction.text.quantity.wording import in_words
 from stiction.text.sections import join_units
-from stiction.text.units import in_words
 
 PAPER = st.presets.nakano_popov_2020()
 STIFF = st.laws.LuGre(0.15, 0.2, "10 mm/s", sigma_0="1 EN/m", sigma_1="1 N s/m")

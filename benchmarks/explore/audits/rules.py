@@ -12,7 +12,7 @@ from stiction.auditing import Audit
 from stiction.auditing.simulated_test import OSCILLATES, SLIDES, final_state
 from stiction.auditing.words.stick import VIBRATES
 from stiction.linear_stability.linear import STABLE, UNSTABLE
-from stiction.text.unit_text import registry
+from stiction.text.quantity.unit import registry
 
 OFF = 0.5  # of a number that theory states without a doubt, by which the simulation may differ
 SWINGS, FINE = 10.0, 200.0  # counted at first, and samples of each

@@ -25,7 +25,8 @@ from stiction.names import draw
 from stiction.system.description import Description
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider, slider_of
-from stiction.text.units import Quantities, with_error
+from stiction.text.quantity.wording import with_error
+from stiction.text.units import Quantities
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -14,7 +14,7 @@ from stiction.analysis.signals.ridge import follow_ridge
 from stiction.analysis.signals.spectrum import even_rate, rate_spectrogram
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
-from stiction.text.units import advice, in_words
+from stiction.text.quantity.wording import advice, in_words
 from stiction.trajectory import Trajectory
 
 Rows = dict[str, tuple[Any, str, str]]  # name: values, unit, long name

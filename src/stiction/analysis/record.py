@@ -32,6 +32,7 @@ from stiction.storage.table_files import write_tables
 from stiction.system.load_cell import cell_axis, stiffness_of_cell
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
+from stiction.text.quantity.wording import in_words
 from stiction.text.samples import as_numbers, samples_to_si
 from stiction.text.sections import Section, Table, as_html
 from stiction.text.units import (
@@ -44,7 +45,6 @@ from stiction.text.units import (
     Mass,
     PositiveSpeed,
     Stiffness,
-    in_words,
     unit_on,
 )
 from stiction.text.validation import Described, faulty, unknown_name

@@ -15,8 +15,8 @@ from stiction.analysis.parts.friction import coefficient_in_words, force_in_word
 from stiction.analysis.report import Analysis
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.arrays import xr
+from stiction.text.quantity.wording import with_error
 from stiction.text.sections import Section, Table
-from stiction.text.units import with_error
 
 FRICTIONS = ("static", "kinetic")
 MEANS = {"drop": "N", "period": "s"}  # over the cycles

@@ -15,8 +15,7 @@ from stiction.auditing.prediction import Prediction, creep_distance, swing_of_sl
 from stiction.friction import Anisotropic, has_state
 from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words, percent
 
 # of the time until the slip: Eq. (7) supposes a shorter first stick
 SHORT = 0.1

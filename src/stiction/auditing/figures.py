@@ -29,7 +29,7 @@ from stiction.plotting.inference.posterior import (
 from stiction.plotting.page.canvas import figure_of
 from stiction.plotting.stability.boundary import plot_boundary
 from stiction.reproduction.figures import figure5
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

@@ -32,9 +32,8 @@ from stiction.progress.report import silent
 from stiction.system.load_cell import stiffness_of_cell
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, interval, percent
 from stiction.text.sections import Section
-from stiction.text.units import in_words, interval
 
 DESCRIBED = (
     "The sections after the fit are of the apparatus as it is described, with uncertain values in "

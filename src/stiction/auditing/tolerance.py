@@ -23,9 +23,8 @@ from stiction.progress.report import Progress, silent
 from stiction.study.execution.cores import Cores
 from stiction.system.parameter import change_parameters, quantity
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words
 
 ALLOWED = 0.02  # error of the static coefficient
 DRAWS = 64  # of the priors, a power of 2 for Sobol's sequence

@@ -29,7 +29,7 @@ from stiction.media.sound import RATE, SHORTEST_SOUND, audible_speed, rate_at
 from stiction.presets import PRESETS, find
 from stiction.system.description import Description
 from stiction.system.parameter import change_unchecked
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 if TYPE_CHECKING:
     from stiction.study.view.view import View

@@ -31,7 +31,7 @@ from stiction.solver.integrate import Solution
 from stiction.system.description import Description
 from stiction.system.slider import Slider
 from stiction.system.tensors import dampers_askew
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 CURVES = ("spring_x", "spring_y", "friction", "psi", "X", "V_X", "slip_speed", "v_y", "normal_load")
 TRACK = ("u_x", "u_y", "slip_x", "slip_y", "friction", "theta", "X", "V_X", "normal_load")

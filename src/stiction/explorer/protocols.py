@@ -20,7 +20,7 @@ from stiction.drive.procedures import (
 )
 from stiction.errors import StictionError, echo
 from stiction.system.description import Description
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 SPEED = 1e-3  # m/s, where the drive stands
 LONGEST = 1e3  # durations of the run in which the drive must load its spring

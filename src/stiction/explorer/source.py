@@ -21,8 +21,8 @@ from stiction.presets import nakano_popov_2020
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
+from stiction.text.quantity.wording import in_words
 from stiction.text.toml import tame
-from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

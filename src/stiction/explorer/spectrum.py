@@ -12,7 +12,7 @@ from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.explorer.motion import Check, Reply, simulate, span
 from stiction.system.description import Description
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 # Of the highest frequency: what is shown, and the rate of samples
 SHOWN_BAND, SAMPLED_RATE = 2.0, 8.0

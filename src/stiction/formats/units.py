@@ -7,7 +7,7 @@ from math import isclose
 from typing import NamedTuple
 
 from stiction.formats.channels import CHANNELS, plain
-from stiction.text.unit_text import UnitError, factor
+from stiction.text.quantity.unit import UnitError, factor
 
 GRAVITY = 9.80665  # m/s^2, the standard acceleration of gravity (CGPM 1901): gram-force
 MEGA, MEGANEWTONS = 1e6, "meganewtons, a million newtons each; millinewtons are mN"

@@ -40,7 +40,7 @@ from stiction.recording.noise import ROUNDING_SPREAD, lattice, resolved_noise
 from stiction.recording.part import begin_and_end
 from stiction.recording.sensor import LowPass
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 from stiction.trajectory import Trajectory
 
 Source = Record | Trajectory | str | Path  # of a record: a run is taken as if measured

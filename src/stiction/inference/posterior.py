@@ -35,10 +35,9 @@ from stiction.names import draw
 from stiction.result.fit_file import write_fit
 from stiction.system.parameter import unit
 from stiction.text.paths import last_part, short_names
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, interval, percent, span, to_error, with_error
 from stiction.text.sections import Report, Section, Table
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words, interval, span, to_error, with_error
 
 DRAWS = 4000  # equally weighted, of the posterior and of the prior
 INTERVAL = 0.95

@@ -24,7 +24,7 @@ import numpy as np
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
 from stiction.errors import echo
-from stiction.text.quantity_text import quantity_text
+from stiction.text.quantity.exact import quantity_text
 from stiction.text.units import NORMAL, QUANTITY, UNIFORM, Kind, to_si
 
 SCALES = ("linear", "log")

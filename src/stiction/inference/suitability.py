@@ -27,8 +27,8 @@ from stiction.inference.cycles import LEAST_CYCLES, Cycles
 from stiction.recording.part import begin_and_end
 from stiction.recording.strokes import by_strokes
 from stiction.system.slider import Slider
+from stiction.text.quantity.wording import in_words
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words
 
 ANALYSE = Instruction("stiction analyse", "st.analyse")
 NO_CYCLES = (SETTLING, STEADY, STUCK)  # kinds of motion without stick-slip

@@ -11,7 +11,7 @@ from stiction.errors import DescriptionError, Faults, echo
 from stiction.system.parameter import change_parameter, change_unchecked, read, unit
 from stiction.system.slider import Slider
 from stiction.text.paths import canonical_path
-from stiction.text.quantity_text import angle_text
+from stiction.text.quantity.exact import angle_text
 from stiction.text.units import Quantity
 
 DECADES = 3.0  # in both directions from a parameter's own value, the default range

@@ -27,8 +27,9 @@ from stiction.linear_stability.roots import Critical, critical
 from stiction.names import draw, old_attributes
 from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
+from stiction.text.quantity.wording import in_words
 from stiction.text.sections import Report, Section, Table
-from stiction.text.units import Quantity, in_words
+from stiction.text.units import Quantity
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -20,7 +20,8 @@ from stiction.linear_stability.eigenvalues import (
 from stiction.linear_stability.linear import BOUNDARY, disturbance, leading_mode, steady_sliding
 from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
-from stiction.text.units import Quantity, in_words
+from stiction.text.quantity.wording import in_words
+from stiction.text.units import Quantity
 from stiction.text.validation import equal
 
 POINTS = 65  # in the first scan of a range

@@ -30,8 +30,9 @@ from stiction.result.window import time_in, window_of
 from stiction.simulation import automatic_times, solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
-from stiction.text.quantity_text import metric_prefix
-from stiction.text.units import Duration, Quantity, in_words
+from stiction.text.quantity.prefix import metric_prefix
+from stiction.text.quantity.wording import in_words
+from stiction.text.units import Duration, Quantity
 from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory, run_of
 

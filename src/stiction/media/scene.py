@@ -32,7 +32,7 @@ from stiction.plotting.run.time_series import DEEPEST
 from stiction.result.table import ColumnTable
 from stiction.system.slider import Slider
 from stiction.system.tensors import dampers_askew
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 ROOM = (7.2, 4.2)  # of the picture: its unit is the side of the mass
 BEHIND = {"facecolor": FLOOR, "edgecolor": "none", "alpha": 0.8, "pad": 1.0}  # words

@@ -22,7 +22,8 @@ from stiction.result.window import window_of
 from stiction.simulation import solve_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
-from stiction.text.units import Quantity, in_words
+from stiction.text.quantity.wording import in_words
+from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, run_of
 
 WAV = (".wav",)

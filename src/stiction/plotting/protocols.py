@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, BLUE, GREY, LINES, RED, style
-from stiction.text.units import in_words, with_error
+from stiction.text.quantity.wording import in_words, with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.protocols.healing import Healing

@@ -39,9 +39,8 @@ from stiction.recording.request import (
     request,
 )
 from stiction.recording.sensor import Sensor
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words
 
 T = TypeVar("T")
 FORCES = {"force", "force_across"}

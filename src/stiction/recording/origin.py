@@ -7,9 +7,9 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from stiction.formats.channels import CHANNELS
+from stiction.text.quantity.wording import in_words
 from stiction.text.sections import Report, Section, Table
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from stiction.formats.table import number_of
 from stiction.recording.guess.clock import rate_of
 from stiction.recording.measurement import FEWEST_SAMPLES, Measurement
 from stiction.recording.request import KnownApparatus
+from stiction.text.quantity.wording import in_words
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words
 
 DIRECTED = ("force", "force_across", "position", "drive_position")  # channels with a sign
 

@@ -25,7 +25,7 @@ from stiction.plotting.page.style import (
     new_figure,
     style,
 )
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 from stiction.trajectory import Trajectory
 
 THEORIES = (

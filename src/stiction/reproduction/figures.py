@@ -38,7 +38,7 @@ from stiction.plotting.stability.damping import (
     place_clear,
 )
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 from stiction.trajectory import Trajectory
 
 # places of a word, shares of width and height, the best first

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 if TYPE_CHECKING:
     from stiction.result.table import ColumnTable

@@ -20,7 +20,7 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.system.tensors import ROUND, principal
 from stiction.text.paths import slug
-from stiction.text.quantity_text import RIGID, angle_text
+from stiction.text.quantity.exact import RIGID, angle_text
 from stiction.text.units import Angle, Kind, Mass, Radians, Read, fault, reader, to_si
 from stiction.text.validation import faulty, make, validate
 

@@ -10,7 +10,7 @@ from stiction.drive.pieces import DRIVE_PIECES, LEVELS, LOAD_PIECES
 from stiction.drive.recorded.piece import RECORDS
 from stiction.drive.recorded.reading import checksum
 from stiction.friction import Anisotropic, law_table
-from stiction.text.quantity_text import quantity_text
+from stiction.text.quantity.exact import quantity_text
 from stiction.text.sections import Table
 from stiction.text.units import FORCE, VELOCITY, Kind, hints_of, kind_of
 

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from stiction.text.quantity_text import DIGITS, MEASURABLE, SI, thousands
+from stiction.text.quantity.prefix import DIGITS, SI, thousands
+from stiction.text.quantity.wording import MEASURABLE
 from stiction.text.sections import Table
 
 SHOWN_ROWS = 8  # rows in the terminal; tables that are exported hold all

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from math import inf, isnan
 
-from stiction.text.units import first_decimal
+from stiction.text.quantity.wording import first_decimal
 
 LISTED = 3  # texts that a sentence lists
 DECIMALS = 4  # of a coefficient, at most

@@ -11,7 +11,7 @@ import numpy as np
 
 from stiction.arrays import Floats
 from stiction.storage.checksums import bytes_of, crc
-from stiction.text.calendar import of_clock, seconds
+from stiction.text.quantity.calendar import of_clock, seconds
 from stiction.text.units import Kind, to_si
 
 _whole: ContextVar[bool] = ContextVar("_whole", default=False)

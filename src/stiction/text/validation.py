@@ -37,7 +37,7 @@ from pydantic_core import ErrorDetails, PydanticCustomError
 from stiction.arguments import with_article
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.names import public_names, session_name
-from stiction.text.quantity_text import RIGID, angle_text
+from stiction.text.quantity.exact import RIGID, angle_text
 from stiction.text.units import (
     QUANTITY,
     SMALLEST_NUMBER,

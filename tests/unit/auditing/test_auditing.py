@@ -56,9 +56,8 @@ from stiction.cli import main
 from stiction.inference.mechanism.rest import Rest
 from stiction.linear_stability import Critical, critical, steady_sliding
 from stiction.progress.report import silent
-from stiction.text.quantity_text import percent
-from stiction.text.unit_text import registry
-from stiction.text.units import in_words
+from stiction.text.quantity.unit import registry
+from stiction.text.quantity.wording import in_words, percent
 
 PAPER = st.presets.nakano_popov_2020()
 

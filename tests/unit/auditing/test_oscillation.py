@@ -11,7 +11,7 @@ from stiction.auditing.oscillation import oscillation_of, theoretical_oscillatio
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import coarse_rate, simulate_test
 from stiction.linear_stability import steady_sliding
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 PAPER = st.presets.nakano_popov_2020()
 

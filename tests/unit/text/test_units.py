@@ -10,19 +10,10 @@ import pytest
 import xarray as xr
 
 import stiction as st
-from stiction.text.quantity_text import percent, quantity_text
-from stiction.text.unit_text import COMMON, LONGEST_UNIT, UnitError, factor, short
-from stiction.text.units import (
-    FORCE,
-    VELOCITY,
-    Kind,
-    PydanticCustomError,
-    in_digits,
-    in_words,
-    to_error,
-    to_si,
-    with_error,
-)
+from stiction.text.quantity.exact import quantity_text
+from stiction.text.quantity.unit import COMMON, LONGEST_UNIT, UnitError, factor, short
+from stiction.text.quantity.wording import in_digits, in_words, percent, to_error, with_error
+from stiction.text.units import FORCE, VELOCITY, Kind, PydanticCustomError, to_si
 
 DAMPING = Kind("a damping constant", "N*s/m", "0.5 N*s/m")
 ANGLE = Kind("an angle", "rad", "1 deg")

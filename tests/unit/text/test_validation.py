@@ -5,7 +5,7 @@ import pytest
 from tests.drawn import all_over
 
 import stiction as st
-from stiction.text.unit_text import registry
+from stiction.text.quantity.unit import registry
 
 N = np.arange(10.0)
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="1 s"))

@@ -12,7 +12,7 @@ from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
 from stiction.recording.noise import white_noise
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 from stiction.trajectory import Trajectory
 
 # Of a stick phase, over each of which the load is averaged: their changes are its own

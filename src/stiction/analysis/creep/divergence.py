@@ -9,7 +9,7 @@ import numpy as np
 from stiction.analysis.creep.least_squares import UNLIKE, best_fit, used_bins
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
-from stiction.text.units import with_error
+from stiction.text.quantity.wording import with_error
 
 EDGE = 0.01  # an exponent so near to the end of its range is none
 LAG = 1e-3  # of the loading time: a typical delay of the divergence after the slip

@@ -40,8 +40,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import Floats, Indices, xr
 from stiction.errors import ResultError, StictionError
-from stiction.text.quantity_text import percent
-from stiction.text.units import times
+from stiction.text.quantity.wording import percent, times
 from stiction.trajectory import Trajectory
 
 T = TypeVar("T")

@@ -15,8 +15,8 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import error_of_few
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
-from stiction.text.quantity_text import percent
-from stiction.text.units import Radians, times
+from stiction.text.quantity.wording import percent, times
+from stiction.text.units import Radians
 
 GRID = 400  # angles at which the closed form is tabled
 MODEL = 1e-4  # of the drop: least error of Eq. (7) with the terms below

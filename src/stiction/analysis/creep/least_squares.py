@@ -11,7 +11,7 @@ import numpy as np
 from stiction.analysis.creep.curve import CURVES, Bins
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 FEWEST_USED = 5  # bins of a fit, which has two or three unknowns
 UNLIKE = "not determined: the creep curve does not have the shape that is fitted"

@@ -14,7 +14,7 @@ from stiction.analysis.signals.digitised import resolution
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
 from stiction.recording.noise import ROUNDING_SPREAD, rounding_error
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 TWO_CODES = 0.25  # steps^2: so much may peaks of one height vary, read as either of two codes
 COARSE = 0.01  # of the force's range: steps that hide creep

@@ -15,7 +15,8 @@ from stiction.analysis.creep.presliding import fit_presliding
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import TINY, Floats, xr
 from stiction.errors import ResultError
-from stiction.text.units import Radians, with_error
+from stiction.text.quantity.wording import with_error
+from stiction.text.units import Radians
 
 # Starts of fits: phi, rad, and excess over the peak
 STARTS: tuple[tuple[float, float], ...] = (0.02, 0.02), (0.05, 0.005), (0.01, 0.1)

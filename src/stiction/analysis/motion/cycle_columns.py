@@ -15,8 +15,7 @@ from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, Indices, xr
 from stiction.result.table import UNSEEN_PEAK, mean_speeds
-from stiction.text.quantity_text import percent
-from stiction.text.units import in_digits, to_error
+from stiction.text.quantity.wording import in_digits, percent, to_error
 
 # name: (unit, long name), as CF attributes
 COLUMNS = {

@@ -30,8 +30,7 @@ from stiction.analysis.signals.robust import MEANS_OF_RECORD, part_means, part_s
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import TINY, Floats
 from stiction.recording.noise import rounding_error, white_noise
-from stiction.text.quantity_text import percent
-from stiction.text.units import with_error
+from stiction.text.quantity.wording import percent, with_error
 
 LOADING_MEANS = 16  # at least, before the first cycle: a shorter loading is not resolved
 FEWEST_SAMPLES = COURSE_PARTS  # with fewer the kind of motion is not known, either

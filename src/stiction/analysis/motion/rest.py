@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike
 
 from stiction.arrays import TINY, Floats, Indices
 from stiction.drive import Drive
-from stiction.text.quantity_text import MEASURABLE
+from stiction.text.quantity.wording import MEASURABLE
 
 STICKING = 0.75  # of a cycle at rest, or in creep: stick-slip; a vibration rests for less
 ANGLES = np.geomspace(1e-4, np.pi / 2, 2000)[::-1]  # beta; linear between them, to 1e-5 in share

@@ -10,8 +10,8 @@ from stiction.analysis.parts import rotation
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
 from stiction.analysis.parts.motion import other_reading
 from stiction.analysis.parts.procedure import name_of
+from stiction.text.quantity.wording import with_error
 from stiction.text.sections import Section, first_clause, first_sentence
-from stiction.text.units import with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis

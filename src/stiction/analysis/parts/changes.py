@@ -15,8 +15,8 @@ from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.arrays import Floats, xr
 from stiction.storage.table_files import number
+from stiction.text.quantity.wording import in_words, with_error
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -19,9 +19,8 @@ from stiction.analysis.signals.robust import without_outliers
 from stiction.arrays import xr
 from stiction.friction import states
 from stiction.storage.table_files import number
-from stiction.text.quantity_text import MEASURABLE, SLIGHT
+from stiction.text.quantity.wording import MEASURABLE, SLIGHT, in_words, times, with_error
 from stiction.text.sections import Section
-from stiction.text.units import in_words, times, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -14,9 +14,8 @@ from stiction.analysis.motion.regime.evidence import TO_AND_FRO
 from stiction.arrays import xr
 from stiction.storage.table_files import number
 from stiction.text.columns import SHOWN_ROWS, Quantity, grid
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent, with_error
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words, with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis

@@ -9,9 +9,8 @@ import numpy as np
 from stiction.arrays import xr
 from stiction.errors import ResultError
 from stiction.text.columns import SHOWN_ROWS, Quantity, grid, rows_left_out
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent
 from stiction.text.sections import Section
-from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -13,9 +13,8 @@ from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.arrays import xr
 from stiction.recording.noise import white_noise
 from stiction.storage.table_files import number
-from stiction.text.quantity_text import SLIGHT
+from stiction.text.quantity.wording import SLIGHT, in_words, with_error
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

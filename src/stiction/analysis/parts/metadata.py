@@ -11,8 +11,8 @@ from stiction.analysis.motion.metadata.quantity import ALIKE_VALUES, StatedQuant
 from stiction.analysis.motion.metadata.stiffness_over_mass import BY_SLIPS, SWING
 from stiction.arrays import xr
 from stiction.storage.table_files import number
+from stiction.text.quantity.wording import at_least, in_words, times, with_error
 from stiction.text.sections import Section, Table
-from stiction.text.units import at_least, in_words, times, with_error
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis

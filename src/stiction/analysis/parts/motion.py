@@ -38,10 +38,9 @@ from stiction.recording.origin import in_unit, use_of
 from stiction.recording.strokes import by_strokes
 from stiction.result.rest import longer
 from stiction.storage.table_files import number
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import advice, in_words, percent, times, to_error, with_error
 from stiction.text.sections import Section, first_sentence
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import advice, in_words, times, to_error, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

@@ -19,8 +19,8 @@ from stiction.analysis.rotation.plane import with_both_forces
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.errors import ResultError
 from stiction.storage.table_files import number
+from stiction.text.quantity.wording import in_words, with_error
 from stiction.text.sections import Section
-from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:

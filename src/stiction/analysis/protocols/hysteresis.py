@@ -16,8 +16,8 @@ from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion
 from stiction.text.lists import in_list, number_text
+from stiction.text.quantity.wording import in_words
 from stiction.text.sections import Section, SectionReport, Table
-from stiction.text.units import in_words
 from stiction.trajectory import Trajectory
 
 NO_WAY = 1e-9  # of a drive's travel: no way there and back

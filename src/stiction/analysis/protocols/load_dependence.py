@@ -22,8 +22,8 @@ from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
 from stiction.errors import ResultError
 from stiction.text.lists import say_left_out
+from stiction.text.quantity.wording import in_words, with_error
 from stiction.text.sections import Section, SectionReport, Table
-from stiction.text.units import in_words, with_error
 from stiction.trajectory import Trajectory
 
 

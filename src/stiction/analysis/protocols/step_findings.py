@@ -15,8 +15,8 @@ from stiction.analysis.protocols.steady_levels import TravelTrend
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import Floats
 from stiction.text.lists import coefficient_texts, in_list
+from stiction.text.quantity.wording import in_words, to_error, with_error
 from stiction.text.sections import Section, SectionReport, Table
-from stiction.text.units import in_words, to_error, with_error
 
 # k D_c/(b W): below it the spring takes up a hundredth of a jump, b W/(k D_c), or more
 STIFF = 100.0

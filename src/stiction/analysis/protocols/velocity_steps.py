@@ -24,7 +24,7 @@ from stiction.analysis.record import Record
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.lists import in_list, say_left_out
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 from stiction.trajectory import Trajectory
 
 Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]

@@ -11,7 +11,7 @@ from stiction.analysis.signals.digitised import rounding_of_mean
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 
 BINS = 10  # of each loading
 RINGING, SLIPPING = 0.1, 0.04  # of a loading: left out where the slip rings, and where it begins

@@ -19,7 +19,7 @@ from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats, compute_once
 from stiction.recording.guess.clock import ONE_MISSING
 from stiction.recording.part import begin_and_end
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 
 ON_GRID = 0.1  # of a step: how far a sample may lie off the grid to count as on it
 OWN = 0.4  # of a step: samples so close to their own times leave none out, which one lies 0.5 off

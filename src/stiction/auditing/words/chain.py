@@ -12,9 +12,8 @@ from stiction.auditing.words.numbers import apparent_stiffness, peak
 from stiction.auditing.words.verdict import final_motion, motion_and_travel
 from stiction.errors import echo
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent
 from stiction.text.sections import Section, Table
-from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

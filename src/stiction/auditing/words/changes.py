@@ -21,9 +21,8 @@ from stiction.auditing.words.verdict import (
     travel,
     where,
 )
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent
 from stiction.text.sections import Table
-from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

@@ -12,8 +12,7 @@ from stiction.auditing.words.numbers import kinetic, peak
 from stiction.friction import Anisotropic
 from stiction.friction.law import static_coefficient
 from stiction.system.load_cell import ACROSS, cell_axis
-from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words, percent
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

@@ -17,8 +17,8 @@ from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
+from stiction.text.quantity.wording import in_words, to_error
 from stiction.text.sections import Table
-from stiction.text.units import in_words, to_error
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

@@ -18,8 +18,7 @@ from stiction.auditing.simulated_test import (
     relative_speed,
 )
 from stiction.friction import has_state
-from stiction.text.quantity_text import percent
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words, percent
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

@@ -18,9 +18,8 @@ from stiction.auditing.prediction import SEEN
 from stiction.auditing.simulated_test import SLIDES
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import advice, in_words, percent, span
 from stiction.text.sections import Table
-from stiction.text.units import advice, in_words, span
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

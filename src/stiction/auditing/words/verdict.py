@@ -21,7 +21,7 @@ from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.system.load_cell import ACROSS
-from stiction.text.units import in_words, to_error, with_error
+from stiction.text.quantity.wording import in_words, to_error, with_error
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit

@@ -16,7 +16,7 @@ from stiction.cli.options import (
 )
 from stiction.cli.terminal import say
 from stiction.errors import Faults, argument
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 
 if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
@@ -93,7 +93,7 @@ def report_lines(result: Trajectory, output: Path) -> list[str]:
     from stiction.friction.law import implausible
     from stiction.result.peak import largest_spring_force
     from stiction.result.rest import rest_in_words
-    from stiction.text.units import in_words
+    from stiction.text.quantity.wording import in_words
 
     statistics = result.statistics
     lines = []

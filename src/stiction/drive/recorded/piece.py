@@ -12,6 +12,7 @@ from stiction.arrays import Floats
 from stiction.drive.recorded.resolution import advice, roughness
 from stiction.drive.recorded.spline import Recording, recording, spline
 from stiction.errors import echo
+from stiction.text.quantity.wording import in_words
 from stiction.text.samples import FrozenColumn, as_numbers, samples_to_si
 from stiction.text.units import (
     FORCE,
@@ -22,7 +23,6 @@ from stiction.text.units import (
     Kind,
     Number,
     fault,
-    in_words,
     unit_on,
 )
 from stiction.text.validation import validate

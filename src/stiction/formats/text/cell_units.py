@@ -13,7 +13,7 @@ from typing import NamedTuple
 from stiction.errors import ResultError
 from stiction.formats.text.dialect import MISSING, SAMPLE, Dialect
 from stiction.formats.units import is_electric, is_unit, size_of, spell
-from stiction.text.unit_text import UnitError, factor
+from stiction.text.quantity.unit import UnitError, factor
 
 NUMBER = r"[+−-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][+-]?\d+)?"
 # powers have a sign, ^ or small digits: 1.5D-3 is a number

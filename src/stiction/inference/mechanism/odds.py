@@ -24,7 +24,7 @@ from stiction.inference.observation import TREND
 from stiction.inference.posterior import RARE, STATE_DRIFT, friction_drifts
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.names import draw
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 from stiction.text.sections import Report, Section, Table
 
 CLAIM = 0.9  # probability from which on a mechanism is claimed

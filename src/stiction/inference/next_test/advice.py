@@ -15,9 +15,8 @@ from stiction.inference.posterior import unit_of
 from stiction.inference.simulated.plan import Plan
 from stiction.names import draw
 from stiction.text.paths import short_names
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent
 from stiction.text.sections import Report, Section, Table
-from stiction.text.units import in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -63,8 +63,8 @@ from stiction.inference.suitability import explain_unlike
 from stiction.progress.audience import with_progress
 from stiction.progress.report import Progress, part, silent
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import percent
-from stiction.text.units import Quantity, in_words
+from stiction.text.quantity.wording import in_words, percent
+from stiction.text.units import Quantity
 
 DRAWN = "rigs drawn from the priors"
 NOT_COMPARED = "Whether the record is like those of the rig as described is not known: "

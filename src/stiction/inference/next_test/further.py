@@ -15,7 +15,8 @@ from stiction.inference.observation import PER_CYCLE, Conditions, Noise
 from stiction.inference.simulated.jitter import Jitter, move
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.system.slider import Slider
-from stiction.text.units import Angle, Force, PositiveLength, PositiveSpeed, Whole, in_words
+from stiction.text.quantity.wording import in_words
+from stiction.text.units import Angle, Force, PositiveLength, PositiveSpeed, Whole
 from stiction.text.validation import Described
 
 ANGLES = ("2 deg", "5 deg")

@@ -16,7 +16,7 @@ from stiction.inference.posterior import OWN_UNITS
 from stiction.inference.rig import Rig, load_of_records, rig_of, stated_names
 from stiction.inference.simulated.plan import Plan
 from stiction.text.paths import canonical, last_part
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 from stiction.text.validation import read_arguments
 
 ALWAYS = "jitter"  # of the parameters that no description has, the one that every fit estimates

@@ -20,7 +20,7 @@ from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLUE, GREY, ORANGE, PAGE, PALE, RED, style
 from stiction.plotting.run.lines import draw_line
 from stiction.plotting.run.time_series import name_time
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 from stiction.trajectory import Trajectory
 
 FEW_CYCLES = 12  # cycles that can be distinguished on a page's width

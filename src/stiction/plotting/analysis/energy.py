@@ -24,7 +24,7 @@ from stiction.plotting.page.style import (
     style,
 )
 from stiction.plotting.run.time_series import name_time
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 
 # terms of the budget: label, colour, hatch, whether dissipated
 ENERGY_TERMS = {

@@ -23,8 +23,8 @@ from stiction.arrays import Floats
 from stiction.errors import ResultError
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import BLACK, RED, SKY, style
-from stiction.text.quantity_text import metric_prefix
-from stiction.text.units import in_words
+from stiction.text.quantity.prefix import metric_prefix
+from stiction.text.quantity.wording import in_words
 
 if TYPE_CHECKING:
     from stiction.analysis.report import Analysis

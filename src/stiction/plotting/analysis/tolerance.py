@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.parameter import in_unit, use_scale
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, style
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 
 if TYPE_CHECKING:
     from stiction.auditing.tolerance import Budget

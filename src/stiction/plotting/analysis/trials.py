@@ -19,7 +19,7 @@ from stiction.plotting.page.style import BLUE, GREY, PAGE, PALE, style
 from stiction.plotting.page.words import symbol
 from stiction.plotting.run.lines import draw_line
 from stiction.plotting.run.time_series import name_time
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 from stiction.text.sections import SYMBOL
 
 TITLE = 48  # characters of a line above a panel

@@ -14,7 +14,7 @@ from stiction.analysis.signals.correlated_noise import interval_95
 from stiction.arrays import Floats
 from stiction.plotting.page.canvas import grid_of
 from stiction.plotting.page.style import BLACK, BLUE, GREY, LINES, PAGE, style
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import percent
 
 if TYPE_CHECKING:
     from stiction.inference.mechanism.odds import Odds

@@ -18,7 +18,7 @@ from stiction.plotting.page.canvas import canvas, fix_ticks, grid_of
 from stiction.plotting.page.parameter import parameter_symbol, use_scale
 from stiction.plotting.page.style import BLACK, BLUE, GREY, PAGE, PALE, SKY, style
 from stiction.text.paths import short_names
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 
 if TYPE_CHECKING:
     from stiction.auditing.measured import RecordComparison

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from stiction.arrays import Floats
 from stiction.plotting.page.words import symbol
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 
 SYMBOLS = {"phi": r"$\varphi$", "drive.velocity": "$V$", "normal_load": "$W$", "mass": "$m$"}
 PLAIN = FuncFormatter(lambda value, _: f"{value:g}")  # 0.1, 1, 10: the units suit the values

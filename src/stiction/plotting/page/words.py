@@ -16,8 +16,9 @@ from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
 from stiction.drive.recorded.piece import RECORDS, Recorded, RecordedLoad
 from stiction.friction import Anisotropic, name_of, states
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import DIGITS, percent
-from stiction.text.units import hints_of, in_words, unit_of
+from stiction.text.quantity.prefix import DIGITS
+from stiction.text.quantity.wording import in_words, percent
+from stiction.text.units import hints_of, unit_of
 from stiction.trajectory import Trajectory
 
 LETTERS = {"mu": r"\mu", "sigma": r"\sigma", "omega": r"\omega", "theta": r"\theta"}

@@ -15,7 +15,7 @@ from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, PURPLE, RED
 from stiction.plotting.run.lines import draw_line
 from stiction.plotting.run.time_series import DEEPEST, average_slip, fastest_drive, say_only, stays
 from stiction.system.slider import Slider
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 from stiction.trajectory import Trajectory
 
 COLOURS = (BLACK, RED, BLUE, GREEN, ORANGE, SKY, PURPLE)

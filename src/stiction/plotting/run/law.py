@@ -14,7 +14,7 @@ from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import PURPLE, style
 from stiction.system.description import Description
 from stiction.system.slider import Slider, slider_of
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 from stiction.text.units import VELOCITY, Quantity
 from stiction.text.validation import read_number
 

@@ -24,7 +24,7 @@ from stiction.plotting.run import time_series
 from stiction.plotting.run.excerpt import excerpt
 from stiction.plotting.run.law import draw_law
 from stiction.plotting.run.lines import BAND, draw_line
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
 

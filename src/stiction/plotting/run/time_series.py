@@ -17,7 +17,8 @@ from stiction.arrays import Floats
 from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.plotting.run.lines import BAND, EDGE, FEW_SAMPLES, draw_line, mean_course
-from stiction.text.quantity_text import metric_prefix, percent
+from stiction.text.quantity.prefix import metric_prefix
+from stiction.text.quantity.wording import percent
 from stiction.trajectory import Trajectory
 
 PARTS_OF_TIME = 500  # of the time: finer than a printed line shows

@@ -13,7 +13,7 @@ from stiction.arrays import Floats
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.parameter import PLAIN, scale_of
 from stiction.plotting.page.style import BLUE, GREY, PALE, RED, style
-from stiction.text.quantity_text import metric_prefix
+from stiction.text.quantity.prefix import metric_prefix
 
 LOOKS: dict[str, dict[str, Any]] = {
     "up": {"color": BLUE, "marker": "^", "markersize": 4.0},

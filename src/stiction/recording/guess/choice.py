@@ -12,8 +12,8 @@ from stiction.errors import Faults, ResultError, echo
 from stiction.formats.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.formats.table import FileColumn, FileTable
 from stiction.formats.units import is_electric, is_ratio, size_of, split_unit
+from stiction.text.quantity.wording import in_words
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words
 
 DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
 SHOWN_COLUMNS = 3  # columns that a message suggests

@@ -9,8 +9,8 @@ import numpy as np
 from stiction.arrays import Floats, Indices, compute_once
 from stiction.errors import Faults, ResultError
 from stiction.formats.table import FileTable, number_of
+from stiction.text.quantity.wording import in_words
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words
 
 ALIKE_INTERVALS = 1e-3  # relative: intervals, of which the file rounds one
 AGAIN = 0.05  # of a block's duration: a time so near its first begins the next block

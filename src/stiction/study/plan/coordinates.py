@@ -17,7 +17,8 @@ from stiction.study.variables.measures import FORMERLY, MEASURES, TRACES, trace_
 from stiction.system import parameter
 from stiction.system.description import Description
 from stiction.text.paths import canonical_path
-from stiction.text.units import Kind, bare, in_words, span, to_si
+from stiction.text.quantity.wording import in_words, span
+from stiction.text.units import Kind, bare, to_si
 from stiction.text.validation import unknown_name
 
 # reserved names in a store; an old name is read as its new one

@@ -19,8 +19,8 @@ from stiction.own_code.loading import (
     split,
 )
 from stiction.own_code.source import member, missing_names, text_of
+from stiction.text.quantity.unit import UnitError, factor
 from stiction.text.suggestion import TRUST
-from stiction.text.unit_text import UnitError, factor
 from stiction.text.units import ONE
 from stiction.text.validation import unknown_name
 

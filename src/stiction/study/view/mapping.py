@@ -32,7 +32,8 @@ from stiction.study.plan.coordinates import ascending, path_along, values_at
 from stiction.study.plan.layout import Index
 from stiction.study.view.boundaries import Plane, plane
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
-from stiction.text.units import Quantity, in_words
+from stiction.text.quantity.wording import in_words
+from stiction.text.units import Quantity
 from stiction.theory import damping_number_of
 
 if TYPE_CHECKING:

@@ -33,7 +33,7 @@ from stiction.arrays import xr
 from stiction.plotting.analysis.cycles import plot_cycles
 from stiction.plotting.page.canvas import figure_of
 from stiction.study.variables.observed_run import observe_run
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 Floats = NDArray[np.float64]
 

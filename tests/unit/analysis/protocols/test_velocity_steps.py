@@ -25,7 +25,7 @@ from stiction.analysis.protocols.step_findings import (
     common_value,
 )
 from stiction.presets.preset import on_a_line
-from stiction.text.units import with_error
+from stiction.text.quantity.wording import with_error
 
 A, B, D, W, MU = 0.008, 0.012, 5e-6, 12.5e3, 0.6
 SOFT = 4.0 * (B - A) * W / D

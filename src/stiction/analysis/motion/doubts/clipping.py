@@ -14,7 +14,7 @@ from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.digitised import resolution
 from stiction.recording.noise import white_noise
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 FEW_CYCLES = 0.05  # of the cycles: if fewer are cut off, means over all of them hardly change
 # Of samples at the end of a range in noise: so many, so many times as dense as those below, in so

@@ -13,7 +13,7 @@ from stiction.analysis.motion.metadata.loading_rate import rate_of_drift
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.recording.noise import white_noise
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 # Standard deviations of noise, by which the force seems to rise too far while the spring is loaded
 ON_BOTH_ENDS = 2.0

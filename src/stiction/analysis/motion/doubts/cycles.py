@@ -19,8 +19,7 @@ from stiction.analysis.motion.regime.kinds import HARMONIC
 from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import uniform_mean
 from stiction.recording.noise import white_noise
-from stiction.text.quantity_text import percent
-from stiction.text.units import in_words, times
+from stiction.text.quantity.wording import in_words, percent, times
 
 QUIET_SHARE = 0.15  # of the record
 # By how much drops of a vibration differ from those of a sine of the same variance, and noise over

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.load_cell.swings import CellSwings
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 
 def doubt_ringing(its: CellSwings | None) -> Iterator[str]:

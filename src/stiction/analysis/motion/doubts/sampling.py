@@ -19,8 +19,7 @@ from stiction.arrays import Floats
 from stiction.recording.noise import white_noise
 from stiction.recording.sensor import LowPass, low_pass
 from stiction.result.table import mean_speeds
-from stiction.text.quantity_text import percent
-from stiction.text.units import advice, in_words
+from stiction.text.quantity.wording import advice, in_words, percent
 
 SLOWLY = 1e3  # s between samples
 # Samples in a fall as they are seen, about one more than it lasts, and by which share the largest

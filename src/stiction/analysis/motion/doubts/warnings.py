@@ -57,9 +57,8 @@ from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.hum import Line, of_mains
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.system.load_cell import ACROSS
-from stiction.text.quantity_text import percent
+from stiction.text.quantity.wording import in_words, percent, times
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words, times
 from stiction.trajectory import Trajectory
 
 NEAR_MASS = log10(5.0) / 6.0  # k/m within a factor of 5 of a million is that of another unit

@@ -19,8 +19,8 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.analysis.signals.robust import largest_magnitude
 from stiction.recording.origin import OriginOfStroke
+from stiction.text.quantity.wording import in_words, to_error
 from stiction.text.suggestion import Suggestion
-from stiction.text.units import in_words, to_error
 
 ZERO = Suggestion("zero", of="")
 ABOUT_ZERO = 0.05  # of half the drop: so far from zero the middle of a swing may lie

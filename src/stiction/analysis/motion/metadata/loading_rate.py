@@ -20,7 +20,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 LOADING_RATE, BY_RISE = "stiffness times drive velocity", "rate at which the force rises"
 SLOWER = 0.5  # rate of loading over stiffness times drive velocity, where the mass creeps

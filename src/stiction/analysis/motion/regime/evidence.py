@@ -13,8 +13,7 @@ from stiction.analysis.motion.regime.kinds import (
     TRANSVERSE,
     UNDETERMINED,
 )
-from stiction.text.quantity_text import percent
-from stiction.text.units import advice, in_words
+from stiction.text.quantity.wording import advice, in_words, percent
 
 # Names of evidence: a checker finds one that is misspelt where others look for it
 # fmt: off

@@ -12,7 +12,7 @@ from stiction.analysis.protocols.inversion.spring_slider import Law
 from stiction.analysis.protocols.inversion.step import StepData
 from stiction.friction.laws import RateStateAgeing2, RateStateSlip2
 from stiction.text.lists import in_list
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 CERTAIN = 13.8  # difference of sums of squares, in variances: likelihoods differ by a thousand
 LAWS: dict[str, Law] = {

@@ -12,7 +12,7 @@ from stiction.analysis.protocols.inversion.fit import Inversion
 from stiction.analysis.protocols.inversion.step import StepData, has_changed, onset
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.text.lists import in_list, number_text
-from stiction.text.units import in_words
+from stiction.text.quantity.wording import in_words
 
 ALIKE_STIFFNESSES = log(1.02)  # stiffnesses that are so near to each other are not worth a sentence
 
