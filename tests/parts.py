@@ -5,9 +5,9 @@ from __future__ import annotations
 import stiction as st
 from stiction.analysis.assessment import Assessment, assess_record, assess_run
 from stiction.analysis.creep.findings import CreepFound, find_creep
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.regime.classify import regime_of
-from stiction.analysis.record import as_record
 
 
 def assess(record: st.Record) -> Assessment:

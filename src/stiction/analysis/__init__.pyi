@@ -5,6 +5,7 @@ from stiction.analysis.creep.force_curve import misalignment_from_force as misal
 from stiction.analysis.creep.misalignment import fit_misalignment as fit_misalignment
 from stiction.analysis.energy import energy_budget as energy_budget
 from stiction.analysis.measured_line import strongest_line as strongest_line
+from stiction.analysis.measurement.run_record import record_of as record_of
 from stiction.analysis.motion.cycle_columns import summary as summary
 from stiction.analysis.motion.cycles import find_cycles as find_cycles
 from stiction.analysis.motion.drift import detrend as detrend
@@ -18,7 +19,6 @@ from stiction.analysis.protocols.hysteresis import hysteresis as hysteresis
 from stiction.analysis.protocols.load_dependence import load_dependence as load_dependence
 from stiction.analysis.protocols.velocity_steps import velocity_steps as velocity_steps
 from stiction.analysis.protocols.yaw import apparent_friction as apparent_friction
-from stiction.analysis.record import record_of as record_of
 from stiction.analysis.report import Analysis as Analysis
 from stiction.analysis.several import mean_over as mean_over
 from stiction.analysis.several import side_by_side as side_by_side

@@ -16,22 +16,18 @@ from pydantic_core import PydanticCustomError
 from stiction.analysis.drive.measured_drive import even_velocity
 from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
-from stiction.arguments import with_article
 from stiction.arrays import Floats, Indices, xr
-from stiction.drive import ConstantVelocity
-from stiction.errors import Fault, ResultError, echo
+from stiction.errors import Fault, echo
 from stiction.formats.table import number_of
 from stiction.names import draw, own_picture
-from stiction.recording.guess.clock import rate_of
+from stiction.recording.guess.clock import rate_of, spread_evenly
 from stiction.recording.noise import ORDER, difference_gain, white_noise
 from stiction.recording.origin import Origin
 from stiction.recording.request import KNOWN, SignedForce
 from stiction.recording.sensor import Sensor
 from stiction.recording.stored import write_stored
 from stiction.storage.table_files import write_tables
-from stiction.system.load_cell import cell_axis, stiffness_of_cell
 from stiction.system.slider import Slider
-from stiction.system.tensors import ROUND
 from stiction.text.quantity.wording import in_words
 from stiction.text.samples import as_numbers, samples_to_si
 from stiction.text.sections import Section, Table, as_html
@@ -48,7 +44,6 @@ from stiction.text.units import (
     unit_on,
 )
 from stiction.text.validation import Described, faulty, unknown_name
-from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -81,19 +76,6 @@ def _samples(values: Any) -> Floats:
     samples[np.abs(samples) < SMALLEST] = 0.0
     samples.setflags(write=False)
     return samples
-
-
-def _spread(time: Floats) -> Floats:
-    """Return increasing times; samples with equal times are spread evenly up to the next time."""
-    first = np.flatnonzero(np.diff(time, prepend=time[0] - 1.0))
-    count = np.diff(first, append=len(time))
-    ends = time[first]  # a copy
-    typical = float(np.median(np.diff(ends))) / float(np.median(count[:-1]))
-    length = np.append(np.diff(ends), typical * count[-1])
-    if typical * count[0] < length[0]:  # the record begins within a tick of its clock
-        ends[0], length[0] = ends[0] + length[0] - typical * count[0], typical * count[0]
-    number = np.arange(len(time)) - np.repeat(first, count)
-    return np.asarray(np.repeat(ends, count) + number * np.repeat(length / count, count))
 
 
 A_FORCE, A_LENGTH = FORCE._replace(example="mN"), LENGTH._replace(example="um")
@@ -304,7 +286,7 @@ class Record(Described):
                 raise ValueError(
                     f"time must increase; all {len(self.time)} samples are at {self.time[0]:g} s"
                 )
-            time = _spread(self.time)
+            time = spread_evenly(self.time)
             time.setflags(write=False)
             self.__dict__.update(time=time)
             self._same_time += same
@@ -571,92 +553,7 @@ class Record(Described):
         return drawn
 
 
-def as_record(source: Trajectory | Record) -> Record:
-    """Return the record of a run, or a record in which a slow sensor's repeated values stand once.
-
-    A drive velocity that is not stated is that which an even displacement of the drive shows.
-
-    Raises
-    ------
-    ResultError
-        If `source` is neither.
-    """
-    if isinstance(source, Record):
-        return source.each_value_once().with_measured_velocity()
-    if isinstance(source, Trajectory):
-        return record_of(source)
-    what = with_article(type(source).__name__)
-    is_rig = isinstance(getattr(source, "slider", source), Slider)
-    remedy = "st.simulate(...)" if is_rig else "st.Record(time=..., force=...)"
-    raise ResultError(f"{what} is neither a run nor a record; make one with {remedy}")
-
-
 def lacking_for_loading(record: Record) -> str:
     """Return which numbers of the rate of loading a record does not know, for a message."""
     known = {"stiffness": record.stiffness, "drive velocity": record.drive_velocity}
     return " and ".join(name for name, value in known.items() if value is None)
-
-
-def across_force(run: Trajectory, record: Record) -> bool:
-    """Return whether springs carry a force that the load cell, across it, does not measure."""
-    samples = run.samples
-    carried = any(np.nanmax(np.abs(samples[name])) > 0.0 for name in ("spring_x", "spring_y"))
-    return carried and not record.force.any()
-
-
-def _along_cell(x: float, y: float, f_x: Floats, f_y: Floats) -> Floats:
-    """Return the part of a force along (x, y): zero where it stands across, but for rounding."""
-    force = f_x if y == 0.0 else x * f_x + y * f_y
-    whole = max(np.abs(f_x).max(), np.abs(f_y).max())
-    return force if np.abs(force).max() > ROUND * whole else np.zeros_like(force)
-
-
-def apparatus(slider: Slider) -> dict[str, Any]:
-    """Return the apparatus of a slider by the fields of a record."""
-    return {
-        "normal_load": slider.normal_load,
-        "stiffness": stiffness_of_cell(slider, slider.k_y),
-        "drive_velocity": abs(cell_axis(slider).velocity) or None,
-        "mass": slider.masses[0],
-    }
-
-
-def record_of(run: Trajectory) -> Record:
-    """Return a run as its load cell records it, with position, slip speed and stick intervals.
-
-    The force is k_x u_x, or that along the cell's own axis where the slider has a `cell_angle`.
-
-    The force is positive where the spring pulls along the drive. NaN samples at the end of a failed
-    run are left out.
-
-    Examples
-    --------
-    >>> import stiction as st
-    >>> run = st.simulate(st.presets.nakano_popov_2020(), "1 s", sample_rate="1 kHz")
-    >>> st.analysis.record_of(run).sample_rate
-    1000.0
-    """
-    slider, samples = run.slider, run.samples
-    cell = cell_axis(slider)
-    c, s = slider.direction
-    x, y, way = cell.x, cell.y, cell.way
-    stiffer = ("v_x", "v_y")[slider.stiffer_axis]
-    names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", stiffer)
-    columns = np.stack([samples[name] for name in names])
-    time, f_x, f_y, X, slip_speed, load, rate = columns[:, np.isfinite(columns).all(axis=0)]
-    if not len(time):
-        raise ResultError("no sample of the run is a number; simulate it again")
-    record = Record(
-        time=time,
-        force=way * _along_cell(x, y, f_x, f_y),
-        **apparatus(slider),
-        position=way * X,
-        slip_speed=slip_speed,
-        load=None if slider.load is None else load,
-    )
-    travel = None
-    if not isinstance(slider.motion, ConstantVelocity):
-        d_X, d_Y = slider.motion.travel(time[0], time - time[0])
-        travel = way * (cell.share * d_X + (y * c - x * s) * d_Y)
-    record._of_run = OfRun(slider, run.stick_intervals, time, rate, travel)
-    return record

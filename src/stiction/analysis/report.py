@@ -18,6 +18,7 @@ from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.cycle_columns import CycleTable, summary
 from stiction.analysis.motion.doubts.warnings import subtracted_lines
 from stiction.analysis.motion.friction import Friction
@@ -25,7 +26,7 @@ from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import apart, oscillation_by_phase, transverse_oscillation
 from stiction.analysis.parts import functions
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.analysis.rotation.findings import GROWING
 from stiction.arrays import TINY, xr
 from stiction.formats.table import number_of

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from stiction.analysis.record import Record, apparatus
+from stiction.analysis.measurement.run_record import apparatus
+from stiction.analysis.record import Record
 from stiction.analysis.report import analyse
 from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.arrays import Floats

@@ -11,13 +11,14 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import first_slip_time, slips_at_once
 from stiction.analysis.limit_cycle import KICK
+from stiction.analysis.measurement.run_record import across_force, record_of
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, own_swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import SLOWER, Evidence, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
 from stiction.analysis.motion.rest import stuck_share
-from stiction.analysis.record import Record, across_force, record_of
+from stiction.analysis.record import Record
 from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.linear_stability import Linearisation, growth_rate

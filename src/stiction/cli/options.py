@@ -233,7 +233,7 @@ def record_in(
     path: Path, measured: RecordOptions | None, trust: bool, rig_load: float | None = None
 ) -> Record:
     """Read a measured record, or a run as if it was measured; see `read_source` for `rig_load`."""
-    from stiction.analysis.record import as_record
+    from stiction.analysis.measurement.run_record import as_record
 
     return as_record(source_in(path, measured, trust, rig_load))
 
@@ -243,7 +243,7 @@ def records_in(
 ) -> dict[str, Record]:
     """Do as `record_in`, for each stroke of a record if all are asked for; by their names."""
     from stiction.analysis.measurement.reading import read_parts
-    from stiction.analysis.record import as_record
+    from stiction.analysis.measurement.run_record import as_record
     from stiction.progress.display import show_progress
 
     said = (measured or RecordOptions()).arguments()

@@ -10,10 +10,11 @@ from typing import NamedTuple, Self
 import numpy as np
 
 from stiction.analysis.measurement.reading import read_source
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.cycles import OWN_HARMONICS, Swings
 from stiction.analysis.motion.load_cell.free_swings import RingingCell
 from stiction.analysis.motion.regime.classify import classify_record
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.even_grid import MOST_MISSING, EvenGrid, even_grid
 from stiction.analysis.signals.hum import Band, lines_like, without_bands

@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.analysis.record import Record, record_of
+from stiction.analysis.measurement.run_record import record_of
+from stiction.analysis.record import Record
 from stiction.cli import main
 from stiction.errors import ResultError
 

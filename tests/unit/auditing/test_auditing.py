@@ -16,10 +16,10 @@ from tests.rigs import NEARLY_ISOTROPIC, SOFT_TESTER, STIFF_PRESS, TURNED_A_LOT
 
 import stiction as st
 from stiction import theory
+from stiction.analysis.measurement.run_record import record_of
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.regime.kinds import HARMONIC, SETTLING, STICK_SLIP
 from stiction.analysis.motion.rest import HELD
-from stiction.analysis.record import record_of
 from stiction.analysis.signals.reversals import extrema
 from stiction.auditing import advice, figures, report, simulated_test
 from stiction.auditing.advice import advise, advise_one, limits, nearest

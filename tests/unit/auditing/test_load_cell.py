@@ -5,7 +5,7 @@ import pytest
 from tests.rigs import MICROSCOPE, TURNED_A_LOT
 
 import stiction as st
-from stiction.analysis.record import record_of
+from stiction.analysis.measurement.run_record import record_of
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import SimulatedTest, coarse_rate, simulate_test
 from stiction.auditing.words.load_cell import _largest, _readings, _sliding, largest_force

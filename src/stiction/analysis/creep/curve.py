@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import creep_end
-from stiction.analysis.record import Record, as_record, lacking_for_loading
+from stiction.analysis.measurement.run_record import as_record
+from stiction.analysis.record import Record, lacking_for_loading
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.peak_refinement import Pieces
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from stiction.analysis.record import Record, record_of
+from stiction.analysis.measurement.run_record import record_of
+from stiction.analysis.record import Record
 from stiction.analysis.signals.spectrum import even_rate
 from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.changes.few_slips import FEW_SLIPS, few_slips
 from stiction.analysis.motion.changes.mean_load import FollowedLoad, under_mean_load
@@ -37,7 +38,7 @@ from stiction.analysis.motion.load_cell.free_swings import (
     without_free_swings,
 )
 from stiction.analysis.motion.rest import STICKING, rest_share
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import fall_by_rounding, rounding_line
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.hum import (

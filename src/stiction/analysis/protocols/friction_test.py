@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.drive.measured_drive import measured_stretches
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.protocols.settling import SETTLED, STILL_LOADED, has_settled
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats, Indices

@@ -7,6 +7,7 @@ from math import inf, nan
 
 import numpy as np
 
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.protocols.friction_test import (
     ConstantStretch,
     FrictionTest,
@@ -15,7 +16,7 @@ from stiction.analysis.protocols.friction_test import (
     of_run,
     without_harmonics,
 )
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.analysis.signals.straight_line import line_of_few
 from stiction.arrays import Floats

@@ -9,9 +9,10 @@ from matplotlib.axes import Axes
 from matplotlib.markers import CARETDOWN, CARETUP
 from numpy.typing import ArrayLike, NDArray
 
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.changes.mean_load import under_mean_load
 from stiction.analysis.motion.regime.classify import classify_record
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.analysis.signals.robust import without_outliers
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, xr

@@ -139,3 +139,16 @@ def check_stated(time: Floats, interval: float | None, stated: str) -> list[str]
         f"the file states an interval of {stated}, and its times are {in_words(usual, 's')} apart: "
         "the times are used"
     ]
+
+
+def spread_evenly(time: Floats) -> Floats:
+    """Return increasing times; samples with equal times are spread evenly up to the next time."""
+    first = np.flatnonzero(np.diff(time, prepend=time[0] - 1.0))
+    count = np.diff(first, append=len(time))
+    ends = time[first]  # a copy
+    typical = float(np.median(np.diff(ends))) / float(np.median(count[:-1]))
+    length = np.append(np.diff(ends), typical * count[-1])
+    if typical * count[0] < length[0]:  # the record begins within a tick of its clock
+        ends[0], length[0] = ends[0] + length[0] - typical * count[0], typical * count[0]
+    number = np.arange(len(time)) - np.repeat(first, count)
+    return np.asarray(np.repeat(ends, count) + number * np.repeat(length / count, count))

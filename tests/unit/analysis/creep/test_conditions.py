@@ -15,7 +15,7 @@ from stiction.analysis.creep.conditions import (
     typical_load,
 )
 from stiction.analysis.creep.curve import stick_phases
-from stiction.analysis.record import record_of
+from stiction.analysis.measurement.run_record import record_of
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 
 PAPER = st.presets.nakano_popov_2020()

@@ -26,9 +26,9 @@ from stiction.analysis.creep.misalignment import (
     implied_velocity,
     turning_creep,
 )
+from stiction.analysis.measurement.run_record import record_of
 from stiction.analysis.parts import creep as creep_part
 from stiction.analysis.parts.creep import EXCLUDED
-from stiction.analysis.record import record_of
 from stiction.analysis.signals.robust import trimmed_mean, trimmed_means
 from stiction.plotting.analysis.creep_curve import creep_theory, plot_creep
 from stiction.plotting.analysis.overview import _creep_lines, figures

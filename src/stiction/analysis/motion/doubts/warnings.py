@@ -7,6 +7,7 @@ from math import log10, pi
 
 import numpy as np
 
+from stiction.analysis.measurement.run_record import across_force
 from stiction.analysis.motion.changes.initial_rest import InitialRest
 from stiction.analysis.motion.changes.mean_load import followed_load
 from stiction.analysis.motion.changes.ringing import Ringing
@@ -51,7 +52,7 @@ from stiction.analysis.motion.regime.kinds import (
     STICK_SLIP,
     TRANSITIONAL,
 )
-from stiction.analysis.record import Record, across_force
+from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import FlatEnd
 from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.hum import Line, of_mains

@@ -6,6 +6,7 @@ from math import hypot
 
 import numpy as np
 
+from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.changes.cycles import BELOW
 from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.mean_load import followed_load
@@ -44,7 +45,7 @@ from stiction.analysis.motion.vibration import (
     OWN_PERIODS,
     FastOscillation,
 )
-from stiction.analysis.record import Record, as_record
+from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
