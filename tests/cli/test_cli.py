@@ -555,6 +555,12 @@ def test_compilation_is_no_measure_of_the_time_left():
     assert later == "simulating: 52 % after 10 s, about 5 s left"
 
 
+def test_the_first_steps_are_no_measure_of_the_time_left():
+    """A run of 48 s was said to take 1.3 h, until a map took its cycles."""
+    assert progress.line("simulating", 0.007, 35.0) == "simulating: 1 % after 35 s"
+    assert progress.line("simulating", 0.02, 35.0).endswith("about 29 min left")
+
+
 def test_a_suggested_command_quotes_a_path_with_blanks(config, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "my rigs"

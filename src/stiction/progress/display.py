@@ -14,6 +14,7 @@ from stiction.progress.report import Progress
 PATIENCE = 1.0  # seconds of silence before a bar appears
 FIRST_LINE, EVERY = 5.0, 60.0  # seconds before the first line, and at most between lines
 WATCHED = 0.1  # of the time so far: the pace of a shorter while says little of the time left
+BEGUN = 0.02  # of the work: runs begin slowly, in steps, until a map takes cycles at once
 told: list[str] = []  # work whose progress is told; what is a part of it tells none of its own
 
 
@@ -122,8 +123,8 @@ def line(
 ) -> str:
     """Return the progress in words; the time left is that at the pace since a fraction and a time.
 
-    What comes before the first fraction, such as compilation, comes once. Without a time left where
-    that pace is known for a short while only.
+    What comes before the first fraction, such as compilation, comes once. The time left is not said
+    where that pace is known for a short while only, or little is done.
 
     Examples
     --------
@@ -135,7 +136,7 @@ def line(
     if fraction <= 0.0:
         return f"{title}: begun {in_time(seconds)} ago"
     done, spent = fraction - since[0], seconds - since[1]
-    known = done > 0.0 and spent > WATCHED * seconds
+    known = fraction >= BEGUN and done > 0.0 and spent > WATCHED * seconds
     left = f", about {in_time(spent * (1.0 - fraction) / done)} left" if known else ""
     return f"{title}: {100 * fraction:.0f} % after {in_time(seconds)}{left}"
 
