@@ -21,6 +21,7 @@ from stiction.arrays import TINY, Complex, Floats, median
 from stiction.recording.noise import white_noise
 
 PER_PERIOD = 12  # means of a period: the amplitude needs no more
+AWAY, HIGHEST = 3.0, 0.25  # how many times off a guess may be, and most turns from mean to mean
 WINDOW = 1.5  # periods over which an amplitude is measured
 PASSES = 4  # in which frequency and factor are found ever more exactly
 NEAR, SAME = 0.3, 0.1  # of the amplitude: factors that count, and that are one and the same
@@ -93,7 +94,10 @@ def _free_swing(even: Floats, step: float, period: float) -> FreeSwing | None:
     """Return the free swing whose period is near a given one, from values a step (s) apart."""
     block = max(int(period / step / PER_PERIOD), 1)
     means, step = block_means(even, block), block * step
-    turns, factor, share, lag = step / period, 1.0 + 0.0j, 0.0, 1  # turns: from mean to mean
+    guess = step / period  # turns from mean to mean
+    if not guess < AWAY * HIGHEST:
+        return None  # nothing near it can be found; at whole turns a swing looks like a constant
+    turns, factor, share, lag = guess, 1.0 + 0.0j, 0.0, 1
     for _ in range(PASSES):
         lag = max(round(1.0 / turns), 1)
         amplitude = _amplitude(means, turns) if 4.0 / turns < len(means) else np.zeros(0)
@@ -106,7 +110,7 @@ def _free_swing(even: Floats, step: float, period: float) -> FreeSwing | None:
         factor = _usual(factors)
         share = float(np.mean(np.abs(factors - factor) < SAME))
         now = (float(np.angle(factor)) / (2.0 * pi) + round(lag * turns)) / lag
-        if not step / (3.0 * period) < now < min(3.0 * step / period, 0.25):
+        if not guess / AWAY < now < min(AWAY * guess, HIGHEST):
             return None
         turns = now
     fading = -log(max(abs(factor), TINY))

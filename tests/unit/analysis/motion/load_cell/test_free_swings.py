@@ -143,3 +143,9 @@ def test_steps_of_a_converter_are_an_error_where_a_cell_rings_too():
     coarse = known.record.with_force(step * np.rint(known.record.force / step))
     fine, found = (assess(each).friction.static for each in (known.record, coarse))
     assert found.error > fine.error
+
+
+@pytest.mark.parametrize("samples", [1, 2, 3, 4])
+def test_slips_of_a_few_samples_show_no_swing(samples):
+    """A swing of one turn a sample looks like a constant: `analyse` ended in a singular matrix."""
+    assert free_swing(GRID, slips([1.0] * 40), [samples * GRID.step]) is None
