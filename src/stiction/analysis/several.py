@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Mapping
 from math import isfinite, nan
@@ -13,9 +14,15 @@ from stiction.analysis.motion.friction import Measured
 from stiction.analysis.parts.brief import warnings_in_short
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
 from stiction.analysis.report import Analysis
-from stiction.analysis.signals.correlated_noise import statistics
-from stiction.arrays import xr
-from stiction.text.quantity.wording import with_error
+from stiction.analysis.signals.correlated_noise import (
+    correlation_time,
+    error_of_few,
+    statistics,
+)
+from stiction.arrays import Floats, xr
+from stiction.formats.table import number_of
+from stiction.recording.origin import OriginOfStroke
+from stiction.text.quantity.wording import in_words, with_error
 from stiction.text.sections import Section, Table
 
 FRICTIONS = ("static", "kinetic")
@@ -24,6 +31,7 @@ COLUMNS = (
     *("record", "motion", "cycles", "static friction", "kinetic friction", "force drop"),
     *("period", "misalignment φ", "warnings"),
 )
+NUMBER = re.compile(r"[-+]?\d[\d.]*")
 UNKNOWN = Measured(nan, nan, nan, nan, nan, nan)
 
 
@@ -91,11 +99,7 @@ def section(found: Mapping[str, Analysis]) -> Section:
     kept = [at for at in range(len(COLUMNS)) if any(row[at] for row in rows)]
     kinds = Counter(each.regime.kind for each in found.values())
     lines = [f"{len(found)} records: {', '.join(f'{k} ({n})' for k, n in kinds.most_common())}."]
-    lines += [
-        f"{name}: {warning}"
-        for name, each in found.items()
-        for warning in warnings_in_short(each.warnings)
-    ]
+    lines += _warnings(found)
     table = Table(
         tuple(COLUMNS[at] for at in kept), [tuple(row[at] or "none" for at in kept) for row in rows]
     )
@@ -103,9 +107,11 @@ def section(found: Mapping[str, Analysis]) -> Section:
 
 
 def mean_over(found: Mapping[str, Analysis]) -> Section:
-    """Return the mean friction of the strokes of one test, equally weighted, with its error.
+    """Return the mean friction of the strokes of one test, with its error.
 
-    The error is that by their scatter: a zero that is off shifts the ways forth and back apart.
+    The ways forth and back weigh equally, so that a zero that is off cancels: it shifts them apart.
+    The error is that by the scatter of the strokes of each way; of records that are not known to be
+    such strokes, by the scatter of all.
 
     Parameters
     ----------
@@ -123,22 +129,71 @@ def mean_over(found: Mapping[str, Analysis]) -> Section:
     >>> print(st.analysis.mean_over(found).table.rows[0][:2])
     ('static', '2')
     """
+    origins = [x.record.origin for x in found.values()]
+    strokes = [None if origin is None else origin.stroke for origin in origins]
+    ways = np.array([0.0 if stroke is None else stroke.way for stroke in strokes])
     rows = []
     for name in FRICTIONS:
-        known = [each for x in found.values() if (each := getattr(x.friction, name)) is not None]
-        if len(known) < 2:
+        its = [getattr(x.friction, name) for x in found.values()]
+        known = np.array([each is not None for each in its])
+        if np.count_nonzero(known) < 2:
             continue
-        of_load = all(isfinite(each.coefficient) for each in known)
-        values = np.array([each.coefficient if of_load else each.force for each in known])
-        mean, error, spread = statistics(values)
+        measured = [each for each in its if each is not None]
+        of_load = all(isfinite(each.coefficient) for each in measured)
+        values = np.array([each.coefficient if of_load else each.force for each in measured])
+        mean, error, spread = _mean_of_ways(values, ways[known])
         unit = "1" if of_load else "N"
-        shown = with_error(mean, error, unit)
-        rows.append((name, f"{len(known)}", shown, with_spread(spread, mean, unit)))
+        shown = with_error(mean, error, unit) if isfinite(error) else in_words(mean, unit)
+        rows.append((name, f"{len(values)}", shown, with_spread(spread, mean, unit)))
     if not rows:
         return Section("Mean of the strokes", ["Fewer than two of them have a friction."])
     headings = ("friction", "strokes", "mean", "standard deviation")
-    lines = ["The error of the mean is that by the scatter of the strokes, each as telling."]
-    return Section("Mean of the strokes", lines, Table(headings, rows))
+    return Section("Mean of the strokes", _on_error(ways, strokes), Table(headings, rows))
+
+
+def _mean_of_ways(values: Floats, ways: Floats) -> tuple[float, float, float]:
+    """Return mean, standard error and spread of strokes; the ways forth and back weigh equally.
+
+    Error and spread are those of the strokes about the mean of their way; NaN with one each way.
+    Where a way is not known (0), all count alike.
+    """
+    forth = ways > 0.0
+    if not (forth.any() and (ways < 0.0).any() and ways.all()):
+        return statistics(values)
+    means = np.where(forth, values[forth].mean(), values[~forth].mean())
+    mean, left = 0.5 * (values[forth].mean() + values[~forth].mean()), values - means
+    freedom = len(values) - 2
+    if not freedom:
+        return float(mean), nan, nan
+    alike, spread = correlation_time(left), float(np.sqrt(left @ left / freedom))
+    shares = 1.0 / np.count_nonzero(forth) + 1.0 / np.count_nonzero(~forth)
+    error = float(0.5 * spread * np.sqrt(alike * shares))
+    return float(mean), error_of_few(error, len(values) / alike - 2.0), spread
+
+
+def _on_error(ways: Floats, strokes: list[OriginOfStroke | None]) -> list[str]:
+    """Return what the error of a mean is, and which zero cancels in it."""
+    if not (ways.all() and np.ptp(ways)):
+        return ["The error of the mean is that by the scatter of the strokes, each as telling."]
+    zero = next((each.middle for each in strokes if each and each.middle is not None), None)
+    its = "" if zero is None else f", here {in_words(zero, 'N')},"
+    lines = [f"The ways forth and back weigh equally, so that the zero of the force{its} cancels."]
+    if len(ways) == 2:
+        return [*lines, "The error is not determined: one stroke each way shows no scatter."]
+    return [*lines, "The error is that by the scatter of the strokes of each way."]
+
+
+def _warnings(found: Mapping[str, Analysis]) -> list[str]:
+    """Return the warnings in short, those that differ in their numbers alone said once."""
+    alike: dict[str, list[tuple[str, str]]] = {}
+    for name, each in found.items():
+        for warning in warnings_in_short(each.warnings):
+            alike.setdefault(NUMBER.sub("", warning), []).append((name, warning))
+    lines = []
+    for (name, warning), *others in alike.values():
+        too = f" ({number_of(len(others), 'other')} alike)" if others else ""
+        lines.append(f"{name}{too}: {warning}")
+    return lines
 
 
 def _row(name: str, found: Analysis) -> tuple[str, ...]:
