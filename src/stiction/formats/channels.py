@@ -38,7 +38,8 @@ CHANNELS = {
         r"(friction(al)?|tangential|shear|spring|pull(ing)?|drag|horizontal|x) force( x)?|"
         r"force( x)?|"
         r"f|f ?[xtrf]|f ?fr(ic)?|ft?|kraft|kraft x|reib(ungs)?kraft|zugkraft|tangentialkraft|"
-        r"force along.*|load ?cell|spring x|friction(al)?|fuerza|force de frottement",
+        r"force along.*|load ?cell|spring x|friction(al)?|fuerza|forza|force de frottement|"
+        r"(force|effort) tangentiel(le)?|f(ue|o)rza (tangen[cz]iale?|de fricci[oó]n|di attrito)",
     ),
     "force_across": _channel(
         "force across the drive",
@@ -51,7 +52,8 @@ CHANNELS = {
         "N",
         "N",
         r"f ?[nz]|(normal|vertical|z|contact) (force|load)|force z|normal|kraft z|"
-        r"normal(kraft|last)|load|last|w",
+        r"normal(kraft|last)|load|last|w|(force|effort|charge) normale?|f(ue|o)rza normale?|"
+        r"carga|carico",
     ),
     "position": _channel(
         "displacement of the mass",
@@ -77,7 +79,8 @@ RATIO = re.compile(
 # a length that may be either displacement: it is used only where the user says which
 LENGTH = re.compile(
     r"x|pos|position|((shear|slip|horizontal|lateral|tangential|total) )?(disp|displ|displacement)|"
-    r"travel|stroke|weg|verschiebung|course|lvdt( \d+)?|slip"
+    r"travel|stroke|weg|verschiebung|course|d[eé]placement|desplazamiento|spostamento|"
+    r"lvdt( \d+)?|slip"
 )
 
 

@@ -169,8 +169,8 @@ def split_unit(heading: str) -> tuple[str, str]:
     --------
     >>> split_unit("Force [mN]"), split_unit("t/s"), split_unit("time_ms"), split_unit("F_N")
     (('Force', 'mN'), ('t', 's'), ('time', 'ms'), ('F_N', ''))
-    >>> split_unit("Kraft N"), split_unit("F N")
-    (('Kraft', 'N'), ('F N', ''))
+    >>> split_unit("Kraft N"), split_unit("F N"), split_unit("force.N"), split_unit("t_s")
+    (('Kraft', 'N'), ('F N', ''), ('force', 'N'), ('t', 's'))
     """
     heading = heading.strip().strip('"').strip()
     found = NAMED.fullmatch(heading)
@@ -181,13 +181,15 @@ def split_unit(heading: str) -> tuple[str, str]:
         name, at, unit = heading.rpartition(mark)
         name, unit = name.strip(), unit.strip()
         weight = mark == "/" and unit in ("mg", "W", "g")  # F/mg is a coefficient
-        symbol = mark == "_" and len(name) == 1 and len(unit) == 1  # F_N is the normal force
+        short = mark == "_" and len(name) == 1 and len(unit) == 1
+        symbol = short and (name, unit) != ("t", "s")  # F_N is the normal force
         plain = bool(at and name and unit) and not weight and not symbol and not is_ratio(unit)
         if plain and (len(unit) <= 4 or unit.lower() in SPELLED) and is_unit(unit):
             return name, spell(unit)
-    name, _, unit = heading.rpartition(" ")
-    if is_channel(name, unit) and not is_channel(heading):
-        return name.strip(), spell(unit)
+    for mark in (" ", "."):
+        name, _, unit = heading.rpartition(mark)
+        if is_channel(name, unit) and not is_channel(heading):
+            return name.strip(), spell(unit)
     return heading, SPELLED.get(heading.lower(), "")
 
 

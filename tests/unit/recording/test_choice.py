@@ -60,3 +60,30 @@ def test_a_displacement_that_may_be_either_is_asked_about(tmp_path, head):
     record = st.read_record(path)
     assert record.position is record.drive_position is None
     assert "is it the displacement of the mass (position=3" in str(record.origin)
+
+
+@pytest.mark.parametrize(
+    "heads",
+    [
+        "temps (s);Force tangentielle (N);Force normale (N)",
+        "Temps [s];Effort tangentiel [N];Effort normal [N]",
+        "tiempo (s);fuerza de fricción (N);carga (N)",
+        "tempo (s);forza tangenziale (N);forza normale (N)",
+        "time.s;force.N;load.N",
+        "t_s;F_t [N];F_N [N]",
+    ],
+)
+def test_heads_of_other_languages_and_marks_are_understood(tmp_path, heads):
+    """ "Force normale" was offered as the force along the drive."""
+    path = tmp_path / "data.csv"
+    rows = [f"{t:g};{t % 7:g};{10 + t % 3:g}" for t in NUMBERS]
+    path.write_text("\n".join([heads, *rows]), "utf-8")
+    record = st.read_record(path)
+    assert record.force.max() == 6.0
+    assert record.load.max() == 12.0
+    assert record.duration == NUMBERS[-1]
+
+
+def test_a_head_that_may_be_a_displacement_in_french_is_asked_about(tmp_path):
+    path = table(tmp_path, "temps [s];force [N];deplacement [mm]", NUMBERS, NUMBERS % 7, NUMBERS)
+    assert "is it the displacement of the mass (position=3" in str(st.read_record(path).origin)
