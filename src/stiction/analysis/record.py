@@ -17,7 +17,7 @@ from stiction.analysis.drive.measured_drive import even_velocity
 from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arrays import Floats, Indices, xr
-from stiction.errors import Fault, echo
+from stiction.errors import DescriptionError, Fault, echo
 from stiction.formats.table import number_of
 from stiction.names import draw, own_picture
 from stiction.recording.guess.clock import rate_of, spread_evenly
@@ -41,6 +41,7 @@ from stiction.text.units import (
     Mass,
     PositiveSpeed,
     Stiffness,
+    split_uncertain,
     unit_on,
 )
 from stiction.text.validation import Described, faulty, unknown_name
@@ -137,6 +138,7 @@ class Record(Described):
         (n,), displacement of the drive, m, if it was measured.
     zero : float or str, optional
         N, reading of the load cell without load; it is subtracted from the force, then set to 0.
+        With its standard uncertainty, ``"0.8 +- 0.1 N"``, which the sensor of the force then has.
     turned : float or str, optional
         Angle, rad, by which the rig was turned on purpose for this record: a fit adds it to the
         misalignment of the rig's description.
@@ -230,6 +232,14 @@ class Record(Described):
                 wrong.append(Fault(name if unit else key, error.message()))
             except ValueError as error:
                 wrong.append(Fault(name, str(error)))
+        if (split := split_uncertain(read.get("zero"))) is not None:
+            read["zero"], uncertainty = split
+            sensors = read.get("sensors") or {}
+            own = sensors.get("force", Sensor())
+            try:
+                read["sensors"] = {**sensors, "force": own.replace(zero_uncertainty=uncertainty)}
+            except DescriptionError as unread:
+                wrong += [Fault("zero", each.message) for each in unread.faults]
         if wrong:
             raise faulty(wrong)
         return read

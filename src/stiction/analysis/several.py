@@ -172,7 +172,7 @@ def _mean_of_ways(values: Floats, ways: Floats) -> tuple[float, float, float]:
 
 
 def _on_error(ways: Floats, strokes: list[OriginOfStroke | None]) -> list[str]:
-    """Return what the error of a mean is, and which zero cancels in it."""
+    """Return the meaning of the error of a mean, and the zero that cancels in it."""
     if not (ways.all() and np.ptp(ways)):
         return ["The error of the mean is that by the scatter of the strokes, each as telling."]
     zero = next((each.middle for each in strokes if each and each.middle is not None), None)

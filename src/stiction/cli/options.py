@@ -136,8 +136,8 @@ class RecordOptions:
     mass
         Sliding mass m. Example: --mass "250 g".
     zero
-        Reading of the load cell without load, which is subtracted from the force. Example: --zero
-        "3 mN".
+        Reading of the load cell without load, which is subtracted from the force, with its
+        standard uncertainty if that is known. Example: --zero "3 +- 1 mN".
     turned
         Angle by which the rig was turned on purpose for this record; a fit adds it to the
         misalignment of the rig's description. Example: --turned "2 deg". Of one record alone.

@@ -25,6 +25,7 @@ from stiction.text.units import (
     Whole,
     fault,
     reader,
+    split_uncertain,
     to_si,
 )
 from stiction.text.validation import Described, unknown_name
@@ -177,6 +178,9 @@ def request(path: Path, given: Mapping[str, Any], sidecar: Path | None) -> Reque
     places = {name: f"{own}: {section}" for section, table in stated.items() for name in table}
     places = {name: f"{place}.{name}" for name, place in places.items()} | {x: x for x in said}
     known = stated["record"] | {name: value for name, value in said.items() if name in KNOWN}
+    if (split := split_uncertain(known.get("zero"))) is not None:
+        known["zero"], error = split
+        sensors = sensors | {"force": {**sensors.get("force", {}), "zero_uncertainty": error}}
     options = {*ReadingOptions.model_fields, *KNOWN}
     wrong = [Fault(name, unknown_name("argument", name, options)) for name in {*said} - options]
     read = {name: value for name, value in said.items() if name in options - {*KNOWN}}
@@ -185,6 +189,8 @@ def request(path: Path, given: Mapping[str, Any], sidecar: Path | None) -> Reque
     of_channels = {}
     for name, table in sensors.items():
         at = {key: f"{own}: sensors.{name}.{key}" for key in table}
+        if split is not None and name == "force":
+            at["zero_uncertainty"] = places["zero"]
         its = {"unit": CHANNELS[name].unit, **table}
         of_channels[name] = _read(Sensor, its, at, wrong)
     if wrong:

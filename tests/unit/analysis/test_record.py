@@ -144,6 +144,28 @@ def test_the_zero_of_a_load_cell_is_taken_off() -> None:
     assert not record.force.flags.writeable
 
 
+def test_a_zero_may_have_its_uncertainty(tmp_path):
+    """`analyse` refused it, and named three other commands."""
+    time = np.arange(0.0, 20.0, 0.01)
+    force = 1.0 + 0.1 * (time % 1.0)
+    made = st.Record(time=time, force=force, zero="200 +- 50 mN", normal_load=5.0)
+    path = tmp_path / "data.csv"
+    np.savetxt(path, np.column_stack([time, force]), delimiter=",", header="t [s],F [N]")
+    read = st.read_record(path, zero="200 +- 50 mN", normal_load="5 N")
+    for record in (made, read):
+        assert record.force[0] == pytest.approx(0.8)
+        assert record.sensors["force"].zero_uncertainty == pytest.approx(0.05)
+        assert st.analyse(record).friction.static.error == pytest.approx(0.05, rel=0.1)
+    for wrong in ("0.2 +- 0.1 kg", "0.2 kg +- 0.1 N", "0.2 +- -0.1 N"):
+        for read_or_make in (
+            lambda zero: st.Record(time=time, force=force, zero=zero),
+            lambda zero: st.read_record(path, zero=zero),
+        ):
+            with pytest.raises(st.DescriptionError, match="zero: ") as refused:
+                read_or_make(wrong)
+            assert "None" not in str(refused.value)
+
+
 def test_a_record_made_again_of_its_own_fields_is_the_same() -> None:
     record = Record(
         time=[0.0, 1.0], force=[500.0, 800.0], time_unit="ms", force_unit="mN", zero="100 mN"
