@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from stiction.analysis.creep.conditions import CHANGED, load_change, refuse_change, typical_load
-from stiction.analysis.creep.loading_curve import LoadingCurve, loading_curve
+from stiction.analysis.creep.loading_curve import LEVELS, LoadingCurve, loading_curve
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.record import Record
@@ -37,6 +37,8 @@ EXCESS, PEAK = 0.5, 0.01
 # itself (`findings`), whose theory is better
 KNOWN = 2.0 * AT_BEST
 EARLY = 0.5  # F_0 above the peak by this share
+SOFTER = 9.0  # sum of squares, in standard errors, by which a softening spring must fit worse
+SOFTENING = 1e-3, 0.99  # b of such a spring, times the largest force of a rise
 SURELY = 20.0  # deg: a smaller upper limit is worth a word
 LOWEST = (1e-5, log(1e-5), -0.1, log(1e-6), log(1e-5))
 HIGHEST = (0.3, 0.0, 0.1, log(0.1), 0.0)
@@ -99,6 +101,7 @@ def misalignment_from_force(record: Record, cycles: xr.Dataset | None = None) ->
     error = max(float(covariance[0, 0]) ** 0.5, apart, _over_cycles(curve, gain))
     error = float(np.hypot(error, AT_BEST * phi))
     _refuse(phi, error, excess, misfit, off)
+    _refuse_softening(curve, misfit)
     peak = curve.peak / typical_load(record, table["peak_time"].values)
     F_0 = peak * (1.0 + excess)
     over = excess * float(np.hypot(covariance[1, 1] ** 0.5, EXCESS))
@@ -194,6 +197,36 @@ def _fit(curve: LoadingCurve, tails: Floats) -> _Fit:
         other.append(float(best_from(np.array([*best.x[:3], middle[1], best.x[4]])).x[0]))
     return _Fit(
         best.x, covariance, gain, misfit, float(np.mean(np.subtract(other, best.x[0]) ** 2) ** 0.5)
+    )
+
+
+def _refuse_softening(curve: LoadingCurve, misfit: float) -> None:
+    """Refuse an angle if a spring that softens bends the rises as well as friction that turns.
+
+    Such a spring carries F = k u (1 - u/u_1), whose stiffness is k (1 - b F)^1/2, b = 4/(k u_1). A
+    drive of constant velocity loads it in a time that is linear in that root, over all of its rise.
+    Friction that turns bends the rise late.
+    """
+    from scipy.optimize import minimize_scalar
+
+    time = curve.crept + curve.force  # times the rate of loading
+    share = curve.force / curve.force[-1]
+
+    def misses(softening: float) -> float:
+        stiffness = np.sqrt(1.0 - softening * share)
+        line = np.polyfit(stiffness, time, 1)
+        return float(np.mean((time - np.polyval(line, stiffness)) ** 2))
+
+    minimised: Any = minimize_scalar
+    best = minimised(misses, bounds=SOFTENING, method="bounded")
+    left, stiffness = float(best.fun), np.sqrt(1.0 - best.x * share)
+    excess = left - float(np.mean(curve.error**2)) - (misfit * curve.drop) ** 2
+    if LEVELS * excess > SOFTER * np.hypot(float(curve.error.mean()), MODEL * curve.drop) ** 2:
+        return
+    raise ResultError(
+        "not determined: a spring whose stiffness falls by "
+        f"{percent(1.0 - float(stiffness[-1] / stiffness[0]))} in the rise of the force would bend "
+        "that so without any misalignment"
     )
 
 

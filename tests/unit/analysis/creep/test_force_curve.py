@@ -97,3 +97,33 @@ def test_a_rate_that_an_angle_refuses_is_not_said_to_contradict_what_is_stated()
         "times stiffness times drive velocity as stated, and an angle needs that to within" in said
     )
     assert "The record contradicts" not in said
+
+
+def softening(share: float, begin: float, number: int) -> st.Record:
+    """Return the record of a mass that rests between slips, behind a spring that softens.
+
+    Its stiffness falls by a share up to the peak, and is stated as it is at a smaller force.
+    """
+    random = np.random.default_rng(number)
+    k, top, V = 2e4, 12.0, 1e-3
+    a = k**2 * (1.0 - (1.0 - share) ** 2) / (4.0 * top)  # F = k u - a u²
+    force = begin * top + (1.0 - begin) * top * np.linspace(0.0, 1.0, 4000)
+    elongation = (k - np.sqrt(k**2 - 4.0 * a * force)) / (2.0 * a)
+    lasts = (elongation[-1] - elongation[0]) / V
+    time = np.arange(0.0, 40.0 * lasts, lasts / 500)
+    reached = elongation[0] + V * (time % lasts)
+    seen = k * reached - a * reached**2 + 0.05 * random.normal(size=len(time))
+    stated = np.sqrt(k**2 - 4.0 * a * random.uniform(0.6, 1.0) * begin * top)
+    return st.Record(time=time, force=seen, stiffness=stated, drive_velocity=V)
+
+
+@pytest.mark.parametrize("number", range(5))
+def test_a_spring_that_softens_is_no_misalignment(number: int) -> None:
+    """A leaf spring, without any creep, gave 14 ± 3 deg; and so did 35 of 80 of these."""
+    random, reasons = np.random.default_rng([41, number]), []
+    for at in range(8):
+        record = softening(random.uniform(0.2, 0.6), random.uniform(0.3, 0.6), 8 * number + at)
+        with pytest.raises(st.ResultError, match="not determined") as refused:
+            st.analysis.misalignment_from_force(record)
+        reasons.append(str(refused.value))
+    assert any("a spring whose stiffness falls by" in reason for reason in reasons)
