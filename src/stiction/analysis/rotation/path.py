@@ -159,7 +159,7 @@ def _with_errors(its: MeanLoading, zero: float, known: float, shape: ArcShape) -
     normal[2, 2] += _prior(its, q)[0]
     normal[0, 0] += known**-2 if known else 0.0
     excess = max(1.0, misfit / (np.count_nonzero(weight[0]) - 2.0))
-    errors = np.sqrt(np.maximum(np.diag(np.linalg.inv(normal)), 0.0) * excess)
+    errors = np.sqrt(_variances(normal) * excess)
     rise = q[0, -1] - q[0, 0]
     first = F_0 - d * q[0, 0]
     zero_error, F_error, d_error = map(float, errors)
@@ -167,3 +167,14 @@ def _with_errors(its: MeanLoading, zero: float, known: float, shape: ArcShape) -
         float(misfit), zero, float(F_0), float(-d * rise / first), zero_error, F_error,
         float(abs(rise) * d_error / first), float(abs(d) * q[0, 0]),
     )  # fmt: skip
+
+
+def _variances(normal: Floats) -> Floats:
+    """Return the variances of the unknowns of a fit with a normal matrix.
+
+    They are large of what nothing shows, as of the zero of a force across that is nowhere else than
+    at zero: the matrix is singular then.
+    """
+    values, vectors = np.linalg.eigh(normal)
+    least = np.finfo(float).eps * values[-1]
+    return np.asarray(vectors**2 @ (1.0 / np.maximum(values, least)))
