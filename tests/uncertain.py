@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import stiction as st
-from stiction.inference.mechanism.comparison import SHARE
+from stiction.inference.mechanism.odds import SHARE
 from stiction.inference.next_test import further
 from stiction.inference.simulated.jitter import Jitter, move
 
@@ -35,7 +35,7 @@ v_f = "10 mm/s"
 velocity = "0.5 mm/s"
 """
 
-SIMULATIONS = 384  # whole blocks, enough for a fit
+SIMULATIONS = 512  # whole blocks, enough for a fit, and a quarter of them for each mechanism
 BOTH = ("force", "force_across")
 CYCLES = 6  # of each record of a design: few, to see that it works
 ASKED = {"angles": ["3 deg"], "velocities": ["1 m/s"], "loads": ["1 kN"], "simulations": 200}

@@ -37,11 +37,10 @@ from stiction.inference.mechanism.classifier import (
     place_of,
     simulate,
 )
-from stiction.inference.mechanism.comparison import CLAIMED
 from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import CLAIM, surely
 from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest, shares_at_rest
-from stiction.inference.mechanism.rivals import Levels, Mechanism, levels, mechanisms
+from stiction.inference.mechanism.rivals import CLAIMED, Levels, Mechanism, levels, mechanisms
 from stiction.inference.mechanism.static_check import StaticCheck
 from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE

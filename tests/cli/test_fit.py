@@ -14,6 +14,7 @@ from stiction.auditing.page import DRAWN
 from stiction.auditing.words.verdict import RECORD
 from stiction.cli import main
 from stiction.cli.commands.inference.fit import origins
+from stiction.errors import ResultError
 from stiction.inference.next_test import further
 
 
@@ -129,6 +130,31 @@ def test_an_audit_of_a_record_without_priors_is_refused(tmp_path, capsys):
     command = ("audit", rig, "--record", data, "--time", "t=ms", "--force", "F=mN")
     assert inside(*command) == 2
     assert "nothing is uncertain" in capsys.readouterr().err
+
+
+def test_odds_that_cannot_be_given_are_refused_before_the_fit(
+    record_file, libraries, tmp_path, capsys, monkeypatch
+):
+    """They were refused after all simulations, and the fit was lost with them."""
+    (tmp_path / "rig.toml").write_text(TEXT)
+    units = ("--time", "t=ms", "--force", "F=mN")
+    output, library = tmp_path / "fit.nc", ("--library", libraries)
+    command = ("fit", record_file, *units, "--rig", tmp_path / "rig.toml", "-o", output, *library)
+    with monkeypatch.context() as patch:
+        patch.setattr("stiction.inference.fit.fit", None)
+        assert inside(*command, "--mechanism", "-n", 300) == 2
+        said = " ".join(capsys.readouterr().err.split())
+        assert "must be at least 100, is 75; write -n 400 or more" in said
+        assert inside(*command, "--mechanism", "--set", "phi=0deg", "-n", 400) == 2
+        assert "nothing rotates" in capsys.readouterr().err
+
+    def refuse(*_, **__):
+        raise ResultError("only by one")
+
+    monkeypatch.setattr("stiction.inference.mechanism.comparison.mechanism", refuse)
+    assert inside(*command, "--mechanism", "-n", SIMULATIONS) == 0
+    assert "Not compared: only by one." in capsys.readouterr().out
+    assert set(xr.open_dataset(output)) == {"phi", "k_x", "k_y", "mu_0", "mu_inf", "jitter"}
 
 
 def test_a_design_says_what_to_measure_next(designed, tmp_path, capsys, monkeypatch):

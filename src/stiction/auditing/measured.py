@@ -18,9 +18,9 @@ from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
-from stiction.inference.mechanism.comparison import SHARE, mechanism
+from stiction.inference.mechanism.comparison import mechanism
 from stiction.inference.mechanism.likeness import BENT
-from stiction.inference.mechanism.odds import TURNING, UNDECIDED, Odds, near_one
+from stiction.inference.mechanism.odds import SHARE, TURNING, UNDECIDED, Odds, near_one
 from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
 from stiction.inference.posterior import RARE, Estimate, Fit, middle

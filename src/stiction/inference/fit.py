@@ -32,11 +32,11 @@ from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
 from stiction.inference.simulated.library import (
-    FIRST_SIMULATIONS,
     Library,
     build,
     library_folder,
     refuse_too_few,
+    telling,
     will_be_too_few,
 )
 from stiction.inference.simulated.plan import Plan, plan
@@ -125,11 +125,12 @@ def fit(
 
 def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int) -> None:
     """Refuse a number of simulations once the first show that too few will have cycles."""
-    if simulations <= FIRST_SIMULATIONS:
-        return
-    first = build(plan_of, FIRST_SIMULATIONS, folder, seed=seed)
     most = max(simulations, int(FEWEST_SIMULATIONS / USABLE))
-    if will_be_too_few(len(first.scores), FIRST_SIMULATIONS, most, FEWEST_SIMULATIONS):
+    number = telling(most, FEWEST_SIMULATIONS)
+    if simulations <= number:
+        return
+    first = build(plan_of, number, folder, seed=seed)
+    if will_be_too_few(len(first.scores), number, most, FEWEST_SIMULATIONS):
         refuse_few_of(first)
 
 

@@ -11,7 +11,7 @@ from tests.uncertain import record_of
 
 import stiction as st
 from stiction.analysis.motion.rest import HELD
-from stiction.errors import DescriptionError, ResultError
+from stiction.errors import DescriptionError, ResultError, in_terminal
 from stiction.friction.laws import Anisotropic, Coulomb, LuGre, RateStateAgeing
 from stiction.inference.columns import bend_features
 from stiction.inference.cycles import Cycles, slip_cycles
@@ -34,7 +34,7 @@ from stiction.inference.mechanism.classifier import (
     simulate,
 )
 from stiction.inference.mechanism.comparison import confusion
-from stiction.inference.mechanism.likeness import CURVES, Likeness
+from stiction.inference.mechanism.likeness import BENT, CURVES, Likeness
 from stiction.inference.mechanism.odds import UNDECIDED, Odds
 from stiction.inference.mechanism.rest import Rest, share_at_rest, shares_at_rest
 from stiction.inference.mechanism.rivals import (
@@ -54,7 +54,7 @@ from stiction.inference.simulated.synthetic import Synthetic, draw
 from stiction.plotting import plot_mechanism
 from stiction.recording.sensor import LowPass
 
-SIMULATIONS = 96  # of each mechanism: enough to tell these records apart
+SIMULATIONS = 128  # of each mechanism: enough to tell these records apart
 STILL = Jitter(0.0, 0.0)
 
 
@@ -185,6 +185,29 @@ def test_a_mechanism_that_never_slips_is_left_out_and_named(rig, rotating):
     rivals = mechanisms(rig, [conditions])[1:2]
     with pytest.raises(ResultError, match="by no mechanism"):
         simulate(rivals, 64, None)
+
+
+@pytest.mark.parametrize("left", [(ROTATION,), (MISALIGNED_STATIC,), (ROTATION, STATIC)])
+def test_what_cannot_be_compared_is_refused_after_the_first_simulations(
+    rig, rotating, monkeypatch, left
+):
+    """`only by X` was said after all simulations, and after those of a fit."""
+    rivals = mechanisms(rig, [observe(rotating, rig.slider).conditions])
+    mine = {plan.key for each in rivals if each.name in left for plan in each.plans}
+    asked = []
+
+    def simulate_all(plan, count, *_, **__):
+        asked.append(count)
+        rows = np.full((count, 3), 1.0 if plan.key in mine else np.nan)
+        return np.zeros((count, len(plan.priors))), rows
+
+    monkeypatch.setattr(classifier, "simulate_all", simulate_all)
+    if len(left) > 1:
+        assert simulate(rivals, 1000, None).names == left
+        return
+    with pytest.raises(ResultError, match=f"^only by {left[0]} do simulated records have cycles"):
+        simulate(rivals, 1000, None)
+    assert sum(asked) < 0.25 * 1000 * len(rivals)
 
 
 @pytest.mark.parametrize("law", [
@@ -733,6 +756,7 @@ def test_rest_is_that_of_simulations_with_the_parameters_of_the_record(rig, rota
 # what is claimed
 
 USUAL = Likeness(0.5, np.zeros((CURVES, len(EDGES) - 1)), 0.5)
+FEW = {"likeness": (USUAL._replace(bends=USUAL.bends[:60]), USUAL, USUAL), "counts": (60, 99, 99)}
 
 
 def odds_with(**changes):
@@ -757,6 +781,7 @@ def test_a_claim_needs_every_part_to_agree():
         ({"likeness": (bent, USUAL, USUAL)}, "loading curve is not like"),
         ({"steady": 1e-3}, "Friction drifts"),
         ({"beside_static": 0.7}, f"Beside {MISALIGNED_STATIC}, which may look the same"),
+        (FEW, "Only 60 of 1000 simulated records of rotation of the friction vector have cycles"),
     ):
         found = odds_with(**change)
         assert found.decision == UNDECIDED
@@ -764,6 +789,31 @@ def test_a_claim_needs_every_part_to_agree():
         assert reason in objection
         assert "No mechanism is claimed" in str(found.tables()[0])
     assert odds_with(likeness=(USUAL, far, bent)).decision == ROTATION  # of the others
+
+
+def test_a_curve_that_too_few_simulations_test_says_how_many_do():
+    """Of fewer than 100, none of which departs as far, more than 1 % may: any curve passed."""
+    least = len(FEW["likeness"][0].bends) + 1
+    assert 1.0 / least > BENT > 1.0 / (CURVES + 1)
+    said = " ".join(odds_with(**FEW).sentences())
+    assert "a claim needs 100: simulate 2000 of each (simulations=2000 of st.mechanism)." in said
+    with in_terminal():
+        assert "simulate 2000 of each: -n 8000." in " ".join(odds_with(**FEW).sentences())
+
+
+def test_a_claim_from_few_simulations_says_so():
+    """`stiction fit --mechanism -n 2000` took 500 of each, and the claim did not say it."""
+    said = odds_with(simulations=500).sentences()
+    assert said[0].startswith(f"Claimed: {ROTATION}")
+    assert said[1].startswith("Learned from 500 simulations of each mechanism in place of 1000")
+    with in_terminal():
+        assert odds_with(simulations=500).sentences()[1].endswith("Simulate 1000 of each: -n 4000.")
+    assert "Learned from" not in " ".join(odds_with().sentences())
+
+
+def test_too_few_simulations_to_claim_anything_are_refused(rig, rotating):
+    with pytest.raises(DescriptionError, match="must be at least 100 of each mechanism, is 75"):
+        st.mechanism(rotating, rig, simulations=75)
 
 
 def test_the_probability_of_a_mechanism_that_the_record_is_unlike_is_not_shown():

@@ -13,11 +13,11 @@ import stiction as st
 from stiction.errors import ResultError
 from stiction.inference import fit as fits
 from stiction.inference.mechanism import comparison
-from stiction.inference.mechanism.likeness import Likeness
+from stiction.inference.mechanism.likeness import CURVES, Likeness
 from stiction.inference.mechanism.odds import Odds
 from stiction.inference.observation import observe
 from stiction.inference.priors import Normal, Uniform
-from stiction.inference.simulated.library import Library
+from stiction.inference.simulated.library import FIRST_SIMULATIONS, Library
 from stiction.inference.simulated.plan import plan
 from stiction.inference.suitability import dispute, explain_unlike, refuse_few
 from stiction.progress.report import silent
@@ -150,7 +150,7 @@ def test_where_an_analysis_counts_other_cycles_that_is_said_first():
 
 
 def test_the_odds_say_why_a_record_is_unlike():
-    likeness = tuple(Likeness(0.01, np.zeros((2, 3)), 0.5) for _ in range(2))
+    likeness = tuple(Likeness(0.01, np.zeros((CURVES, 3)), 0.5) for _ in range(2))
     odds = Odds(
         names=("a", "b"), probabilities=np.array([0.95, 0.05]),
         by_halves=np.array([[0.95, 0.05]] * 2), confusion=np.zeros((2, 3)), likeness=likeness,
@@ -208,9 +208,9 @@ def test_too_few_simulations_are_refused_after_the_first(monkeypatch, usable, re
             fits.refuse_early(of, 400, None, 0)
     else:
         fits.refuse_early(of, 400, None, 0)
-    assert asked == [fits.FIRST_SIMULATIONS]
-    fits.refuse_early(of, fits.FIRST_SIMULATIONS, None, 0)
-    assert asked == [fits.FIRST_SIMULATIONS]
+    assert asked == [FIRST_SIMULATIONS]
+    fits.refuse_early(of, FIRST_SIMULATIONS, None, 0)
+    assert asked == [FIRST_SIMULATIONS]
 
 
 @pytest.mark.parametrize(("share", "enough"), [(0.997, True), (0.7, True), (0.3, False)])

@@ -19,6 +19,7 @@ from scipy.optimize import minimize
 from scipy.special import log_softmax, softmax
 
 from stiction.arrays import Floats
+from stiction.errors import ResultError
 from stiction.inference.fit import refuse_few
 from stiction.inference.learning.summary import (
     Regression,
@@ -29,15 +30,16 @@ from stiction.inference.learning.summary import (
     read_regressions,
     single_threaded_algebra,
 )
-from stiction.inference.mechanism.rivals import Mechanism
+from stiction.inference.mechanism.rivals import CLAIMED, Mechanism
 from stiction.inference.simulated.library import (
     BLOCK,
-    FIRST_SIMULATIONS,
     have_cycles,
     simulate_all,
+    telling,
     will_be_too_few,
 )
 from stiction.inference.simulated.plan import Plan
+from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.progress.report import Progress, part, silent
 from stiction.storage.arrays import read_arrays, write_arrays
 
@@ -92,8 +94,8 @@ def simulate(
     Raises
     ------
     ResultError
-        If by no mechanism enough of them have cycles of stick and slip; as soon as the first ones
-        tell that.
+        If by no mechanism enough of them have cycles of stick and slip, or only by one of those
+        that are claimed; as soon as the first ones tell that.
     """
     first = begin(rivals, count, folder, seed, part(progress, 0, 10))
     progress = part(progress, 1, 10, of=9)
@@ -119,8 +121,7 @@ def simulate(
         else:
             found[rival.name] = features
             parameters.append(common_columns(rival.plans, drawn))
-    if not found:
-        refuse_few_of_all(usable)
+    refuse_few_of_all(usable, [*found])
     labels = np.repeat(np.arange(len(found)), [len(each) for each in found.values()])
     features = np.concatenate([*found.values()])
     return Simulations((*found,), features, labels, (*absent,), (*parameters,))
@@ -131,16 +132,18 @@ def begin(
 ) -> dict[str, tuple[Floats, Floats]]:
     """Return the first simulations of each plan, by its key; none where all are no more.
 
-    They are refused if they tell that by no mechanism enough of all will have cycles.
+    They are refused if they tell that by no mechanism enough of all will have cycles, or only by
+    one of those that are claimed.
     """
-    if count <= FIRST_SIMULATIONS:
+    least = telling(count, FEWEST_SIMULATIONS)
+    if count <= least:
         return {}
     total = sum(len(rival.plans) for rival in rivals)
     found: dict[str, tuple[Floats, Floats]] = {}
     usable = {}
     for rival in rivals:
         # whole blocks by each plan
-        some = BLOCK * ceil(FIRST_SIMULATIONS / (BLOCK * len(rival.plans)))
+        some = BLOCK * ceil(least / (BLOCK * len(rival.plans)))
         its = []
         for plan in rival.plans:
             report, place = part(progress, len(found), total), place_of(plan, folder, seed)
@@ -148,16 +151,27 @@ def begin(
             its.append(have_cycles(found[plan.key][1]))
         own = np.concatenate(its)
         usable[rival.name] = int(own.sum()), len(own)
-    if all(will_be_too_few(*each, count, FEWEST_SIMULATIONS) for each in usable.values()):
-        refuse_few_of_all(usable)
+    few, each = FEWEST_SIMULATIONS, usable.items()
+    left = [name for name, its in each if not will_be_too_few(*its, count, few)]
+    refuse_few_of_all(usable, left)
     return found
 
 
-def refuse_few_of_all(usable: Mapping[str, tuple[int, int]]) -> None:
-    """Refuse simulations of which too few have cycles by each mechanism.
+def refuse_few_of_all(usable: Mapping[str, tuple[int, int]], left: Sequence[str]) -> None:
+    """Refuse simulations of which enough have cycles by none, or by one of the mechanisms.
 
-    Of each, how many have some, and of how many.
+    Of each, how many have some, and of how many; `left` are those by which enough may have some.
     """
+    compared = [name for name in usable if name in CLAIMED]
+    alone = [name for name in left if name in CLAIMED]
+    if len(alone) < min(len(compared), 2) and left:
+        raise ResultError(
+            f"only by {' and '.join(alone or left)} do simulated records have cycles no longer "
+            f"than {LONGEST_CYCLE:g} times the measured ones: there is nothing to compare, which "
+            "itself speaks for it"
+        )
+    if left:
+        return
     most = max(usable, key=lambda name: usable[name][0] / usable[name][1])
     what = f"simulated records of {most}, and by no mechanism more,"
     refuse_few(what, *usable[most], FEWEST_SIMULATIONS)

@@ -11,33 +11,21 @@ from numpy.typing import NDArray
 
 from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, ResultError
+from stiction.errors import DescriptionError, Fault, Instruction
 from stiction.inference.columns import bend_features
 from stiction.inference.fit import check, plan_for
 from stiction.inference.mechanism import classifier, likeness
-from stiction.inference.mechanism.classifier import Simulations, simulate
-from stiction.inference.mechanism.odds import Odds, surely
+from stiction.inference.mechanism.classifier import Simulations, begin, simulate
+from stiction.inference.mechanism.odds import SHARE, SIMULATIONS, Odds, surely
 from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest, shares_at_rest
-from stiction.inference.mechanism.rivals import (
-    LUGRE,
-    RATE_AND_STATE,
-    ROTATION,
-    STATIC,
-    Mechanism,
-    mechanisms,
-)
+from stiction.inference.mechanism.rivals import CLAIMED, ROTATION, Mechanism, mechanisms
 from stiction.inference.mechanism.static_check import ELASTIC, StaticCheck
 from stiction.inference.observation import Observation, Source, observe_all, steadiness
 from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated.library import library_folder
-from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.inference.suitability import explain_unlike
 from stiction.progress.audience import with_progress
 from stiction.progress.report import Progress, part, silent
-
-SIMULATIONS = 1000  # of each mechanism, by default
-CLAIMED = ROTATION, STATIC, RATE_AND_STATE, LUGRE
-SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
 
 
 @read_together
@@ -71,7 +59,8 @@ def mechanism(
     rig : Rig, str or Path
         The description with its priors, one of them of the misalignment ``phi``.
     simulations : int, optional
-        Of each mechanism.
+        Of each mechanism, at least 100; with fewer than 1000 more records of laws that were not
+        simulated pass for one that was.
     library : str or Path, optional
         A folder in which simulations are kept; those of rotation are shared with `stiction.fit`.
     seed : int, optional
@@ -87,16 +76,14 @@ def mechanism(
     Raises
     ------
     ResultError
-        If a record cannot be used, or the priors lead to too few records with cycles.
+        If a record cannot be used, or the priors lead to too few records with cycles, or do so by
+        all mechanisms but one.
     DescriptionError
         If the rig is not of a kind that can be fitted, or is exactly aligned.
     """
     refuse_swapped(rig, records, "the rig comes second: st.mechanism(records, rig)")
     known = rig_of(rig)
-    check(known)
-    if known.slider.phi == 0.0 and "phi" not in known.priors:
-        message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
-        raise DescriptionError.of("phi", message)
+    check_comparable(known, simulations)
     place = library_folder(library)
     seen = observe_all(records, known.slider, load_of_records(known))
     end_reading()
@@ -104,16 +91,48 @@ def mechanism(
     whole = progress or silent
     simulating = part(whole, 0, 10, of=8)
     simulated = simulate(rivals, simulations, place, seed=seed, progress=simulating)
-    if len(simulated.among(CLAIMED).names) < 2:
-        raise ResultError(
-            f"only by {simulated.names[0]} do simulated records have cycles no longer than "
-            f"{LONGEST_CYCLE:g} times the measured ones: there is nothing to compare, which itself "
-            "speaks for it"
-        )
     kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}"
-    found = compare(simulated, known, seen, kept, part(whole, 8, 10, of=2))
+    found = compare(simulated, known, seen, kept, part(whole, 8, 10, of=2), simulations)
     whole(1.0)
     return found
+
+
+def check_comparable(rig: Rig, simulations: int = SIMULATIONS) -> None:
+    """Refuse a rig on which nothing rotates, or that cannot be fitted, and few simulations."""
+    check(rig)
+    faults = []
+    if rig.slider.phi == 0.0 and "phi" not in rig.priors:
+        message = 'is 0 for certain, so that nothing rotates; write for example phi = "0 +- 2 deg"'
+        faults.append(Fault("phi", message))
+    if simulations < likeness.CURVES:
+        least = Instruction(
+            f"each mechanism gets a quarter of them, which must be at least {likeness.CURVES}, is "
+            f"{simulations}; write -n {SHARE * likeness.CURVES} or more",
+            f"must be at least {likeness.CURVES} of each mechanism, is {simulations}",
+        )
+        message = f"{least}: with fewer no loading curve is found unlike the simulated ones"
+        faults.append(Fault("simulations", message))
+    if faults:
+        raise DescriptionError(faults)
+
+
+def refuse_incomparable(
+    records: Source | Sequence[Source],
+    rig: Rig,
+    *,
+    simulations: int,
+    library: str | Path | None,
+    seed: int,
+    progress: Progress = silent,
+) -> None:
+    """Refuse records and a rig for which `mechanism` has no answer, before a fit of them.
+
+    As far as the first simulations of each mechanism tell; a library keeps them.
+    """
+    check_comparable(rig, simulations)
+    seen = observe_all(records, rig.slider, load_of_records(rig))
+    rivals = mechanisms(rig, [each.conditions for each in seen])
+    begin(rivals, simulations, library_folder(library), seed, progress)
 
 
 def key(rivals: Sequence[Mechanism]) -> str:
@@ -128,8 +147,12 @@ def compare(
     seen: Sequence[Observation],
     path: Path | None = None,
     progress: Progress = silent,
+    simulations: int = SIMULATIONS,
 ) -> Odds:
-    """Return the odds of mechanisms, given the observations; results are stored beside a path."""
+    """Return the odds of mechanisms, given the observations; results are stored beside a path.
+
+    `simulations` is the number of those of each mechanism, with cycles or without.
+    """
     every, simulated = simulated, simulated.among(CLAIMED)
     observed = np.concatenate([each.features for each in seen])
     bend = np.concatenate([bend_features(each.conditions, rig.slider) for each in seen])
@@ -166,6 +189,7 @@ def compare(
         bend=observed[bend],
         steady=steadiness(p for each in seen for p in each.trend),
         counts=tuple(np.bincount(labels).tolist()),
+        simulations=simulations,
         absent=absent,
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),
         explanation=explain_unlike([each.changes for each in seen]),

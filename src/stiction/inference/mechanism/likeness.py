@@ -49,6 +49,11 @@ class Likeness(NamedTuple):
         """Whether the record is unlike the simulations, by its features or by its loading."""
         return self.farther < UNLIKE or self.larger < BENT
 
+    @property
+    def curve_is_tested(self) -> bool:
+        """Whether simulations are as many as tell a loading curve that is unlike them."""
+        return len(self.bends) >= CURVES
+
 
 class Reference(NamedTuple):
     """Simulations of a mechanism, with which records are compared.

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from math import ceil
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from stiction.arrays import Floats, same_fields, xr
+from stiction.errors import Instruction
 from stiction.inference.features import MIDDLES
-from stiction.inference.mechanism.likeness import BENT, UNLIKE, Likeness
+from stiction.inference.mechanism.likeness import BENT, CURVES, UNLIKE, Likeness
 from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest
 from stiction.inference.mechanism.rivals import (
     LUGRE,
@@ -22,11 +24,14 @@ from stiction.inference.mechanism.rivals import (
 )
 from stiction.inference.observation import TREND
 from stiction.inference.posterior import RARE, STATE_DRIFT, friction_drifts
+from stiction.inference.simulated.library import SAFE
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.names import draw
 from stiction.text.quantity.wording import percent
 from stiction.text.sections import Report, Section, Table
 
+SIMULATIONS = 1000  # of each mechanism, by default: about as many as its accuracies hold for
+SHARE = 4  # simulations of a fit for each that a mechanism gets beside it
 CLAIM = 0.9  # probability from which on a mechanism is claimed
 BY_HALF = 0.6  # by each half of the simulations: a claim is not a matter of their draw
 UNDECIDED = "undecided"
@@ -64,7 +69,7 @@ class Odds(Report):
     steady : float
         p-value of a trend of the cycles, in all records together.
     counts : tuple of int
-        Number of simulations of each mechanism.
+        Number of simulations of each mechanism that have cycles.
     absent : tuple of str
         Mechanisms that are not compared: hardly any record simulated by them has cycles of stick
         and slip, or none that are not far longer than the measured ones. Static friction on the
@@ -83,6 +88,8 @@ class Odds(Report):
     rest : Rest or None
         How far the mass rests in simulations of rotation with the record's parameters, if that is
         the likeliest mechanism.
+    simulations : int
+        Number of simulations of each mechanism, with cycles or without.
     """
 
     names: tuple[str, ...]
@@ -100,6 +107,7 @@ class Odds(Report):
     doubt: str = field(default="", compare=False)
     beside_static: float = 1.0
     rest: Rest | None = field(default=None, compare=False)
+    simulations: int = SIMULATIONS
 
     @property
     def needed(self) -> float:
@@ -151,6 +159,8 @@ class Odds(Report):
                 f"The loading curve is not like those of {name}: {percent(its.larger)} of the "
                 f"simulated ones depart as far from their mean; a claim needs {percent(BENT)}."
             )
+        if not its.curve_is_tested:
+            found.append(self._lack_of_curves(name))
         if self.explanation and its.unlike:
             found.append(self.explanation)
         if self.steady < TREND:
@@ -162,6 +172,15 @@ class Odds(Report):
                 "seems to have, hardly any have as many cycles of stick and slip."
             )
         return [*found, self.doubt] if self.doubt else found
+
+    def _lack_of_curves(self, name: str) -> str:
+        """Return that too few simulations of a mechanism test its loading curve, as a sentence."""
+        count = self.counts[self.names.index(name)]
+        number = 100 * ceil(SAFE * CURVES * self.simulations / count / 100.0)
+        return (
+            f"Only {count} of {self.simulations} simulated records of {name} have cycles, too few "
+            f"to test the loading curve; a claim needs {CURVES}: {simulate(number)}."
+        )
 
     def _improbable(self) -> Iterator[str]:
         """Yield the reasons why the probability of the likeliest mechanism allows no claim."""
@@ -216,6 +235,12 @@ class Odds(Report):
         """Return the decision and its limits."""
         objections = self.objections()
         found = ["No mechanism is claimed.", *objections] if objections else [self._claim()]
+        if self.simulations < SIMULATIONS:
+            found.append(
+                f"Learned from {self.simulations} simulations of each mechanism in place of "
+                f"{SIMULATIONS}: more records of laws that were not simulated pass as one of "
+                f"these, and more claims depend on the draw. {simulate(SIMULATIONS).capitalize()}."
+            )
         if self.straight_excluded:
             found.append(
                 "The loading is not as straight as static friction in one dimension makes it: that "
@@ -331,6 +356,12 @@ def surely(probabilities: Floats, by_halves: Floats) -> NDArray[np.bool_]:
     best = probabilities.argmax(axis=1)[None, :, None]
     least = np.take_along_axis(by_halves, best, axis=2).min(axis=(0, 2))
     return np.asarray((probabilities.max(axis=1) >= CLAIM) & (least >= BY_HALF))
+
+
+def simulate(number: int) -> str:
+    """Return how to simulate so many records of each mechanism, as an instruction."""
+    call = f"simulate {number} of each (simulations={number} of st.mechanism)"
+    return str(Instruction(f"simulate {number} of each: -n {SHARE * number}", call))
 
 
 def odds_text(probability: float, likeness: Likeness) -> str:

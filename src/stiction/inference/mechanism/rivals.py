@@ -42,6 +42,7 @@ STATIC = "static friction in one dimension"
 RATE_AND_STATE = "rate and state"
 LUGRE = "LuGre"
 MISALIGNED_STATIC = "static friction on the misaligned rig"
+CLAIMED = ROTATION, STATIC, RATE_AND_STATE, LUGRE
 
 DRAWN = 400  # of the description's law, for the range of its coefficients
 WIDER = 0.1  # by which the range is widened on either side: another law, other coefficients

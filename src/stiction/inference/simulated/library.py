@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil
+from math import ceil, log, log1p
 from pathlib import Path
 from threading import Lock
 from typing import NamedTuple
@@ -154,6 +154,16 @@ def will_be_too_few(usable: int, tried: int, wanted: int, fewest: int) -> bool:
 
     share = float(betaincinv(usable + 1, tried - usable, SURE)) if usable < tried else 1.0
     return share * wanted < fewest
+
+
+def telling(wanted: int, fewest: int) -> int:
+    """Return how many first simulations tell that too few will have cycles, if none of them has.
+
+    >>> [telling(wanted, 40) for wanted in (128, 1000, 2000)]
+    [96, 170, 342]
+    """
+    alone = log(1.0 - SURE) / log1p(-fewest / wanted) if fewest < wanted else 0.0
+    return max(FIRST_SIMULATIONS, ceil(alone))
 
 
 def refuse_too_few(
