@@ -23,7 +23,7 @@ from stiction.inference.mechanism.likeness import BENT
 from stiction.inference.mechanism.odds import SHARE, TURNING, UNDECIDED, Odds, near_one
 from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION
 from stiction.inference.observation import Conditions, Observation, observe
-from stiction.inference.posterior import RARE, Estimate, Fit, middle
+from stiction.inference.posterior import RARE, Estimate, Fit, at_most, middle
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.rig import Rig
 from stiction.inference.simulated import SIMULATIONS
@@ -411,13 +411,14 @@ def curve(found: Predictive | None) -> str:
             (found.measured.force, found.measured.bend), found.bands, strict=True
         )
     )
+    least = 1.0 / (1.0 + len(found.simulated.force))
     return (
         f"The measured loading curve lies within the 95 % band of simulated ones over "
         f"{percent(force)} of its length, and its departure from a straight line over "
         f"{percent(bend)}. It rises by {in_words(float(found.measured.rate), 'N/s')} on average, "
         f"95 % of the simulated ones by {low} to {high}. "
-        f"{percent(found.larger)} of the simulations depart as far from their mean, and below "
-        f"{percent(RARE)} it is unlike them."
+        f"{at_most(found.larger, least).capitalize()} of the simulations depart as far from their "
+        f"mean, and below {percent(RARE)} it is unlike them."
     )
 
 

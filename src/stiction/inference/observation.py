@@ -225,6 +225,19 @@ def trend(force: Floats, cycles: Cycles, drift: float = 0.0) -> Trend:
     return Trend(*(its if np.isfinite(its) else 1.0 for its in found))  # all the same
 
 
+def trend_of(seen: Sequence[Observation]) -> Trend:
+    """Return the p-values of a trend in several records together.
+
+    By R. A. Fisher (Statistical Methods for Research Workers, Edinburgh 1932): six cycles that all
+    grow have p = 0.003, and the least p-value of four such records times their number would never
+    be below 0.01, although each of them grows.
+    """
+    from scipy.stats import combine_pvalues
+
+    pairs = zip(*(each.trend for each in seen), strict=True)
+    return Trend(*(float(combine_pvalues(its).pvalue) for its in pairs))
+
+
 def steadiness(probabilities: Iterable[float]) -> float:
     """Return the p-value of several tests together: the least one times their number (Bonferroni).
 

@@ -13,9 +13,9 @@ from scipy.special import ndtr
 
 from stiction.arrays import Floats, xr
 from stiction.errors import ResultError, echo
-from stiction.inference.disagreement import Disagreement, disagreement, stated_rate
+from stiction.inference.disagreement import TWO_WAYS, Disagreement, disagreement, stated_rate
 from stiction.inference.learning.calibration import Learned
-from stiction.inference.learning.conflict import Conflict
+from stiction.inference.learning.conflict import NEAREST, Conflict
 from stiction.inference.learning.regression_abc import Sample, quantiles
 from stiction.inference.learning.summary import FeatureSummary
 from stiction.inference.observation import (
@@ -24,7 +24,7 @@ from stiction.inference.observation import (
     Observation,
     Trend,
     sign_seen,
-    steadiness,
+    trend_of,
 )
 from stiction.inference.rig import Rig, stored_text
 from stiction.inference.simulated.library import Library
@@ -59,6 +59,7 @@ ALONG_X = (
     "The force is taken as that of the spring along x, k_x u_x. A load cell along the drive reads "
     'k_y u_y sin φ as well: if yours does, state cell_angle = "0 deg" in [slider].'
 )
+EXACT = 1e-9  # p-values that differ by less are the same, but for rounding
 BY_RATE = (
     "k_x follows from the rate of loading, k_x V: it is as far off as the drive velocity, which is "
     'taken as certain; else state velocity = "0.5 +- 0.02 mm/s".'
@@ -163,8 +164,7 @@ class Fit(Report):
         `alone` is what the features of each record say by themselves, where there are several.
         """
         observed = np.concatenate([each.features for each in seen])
-        pairs = zip(*(each.trend for each in seen), strict=True)
-        trend = Trend(*map(steadiness, pairs))  # of all records
+        trend = trend_of(seen)
         plan = library.plan
         sample = possible(plan, sample)
         scores, coverage = resample(sample), learned.coverage(INTERVAL)
@@ -323,12 +323,13 @@ class Fit(Report):
         if self.farther < RARE:
             found.append(unlike(self.farther, f"{self.narrow_priors}{self.explanation}"))
         if self.contradictory and self.disagreement is not None:
+            least = TWO_WAYS / (self.simulations + 1.0)
             found.append(
                 "The records contradict each other, most clearly about "
-                f"{self.disagreement.name}: {percent(self.disagreement.p_value)} of the simulated "
-                f"rigs have records that differ as far, {percent(CONTRADICTS)} are needed. The "
-                "values mean nothing until that is explained: are they of one rig, under "
-                "the conditions stated? Fit each by itself."
+                f"{self.disagreement.name}: {at_most(self.disagreement.p_value, least)} of the "
+                f"simulated rigs have records that differ as far, {percent(CONTRADICTS)} are "
+                "needed. The values mean nothing until that is explained: are they of one rig, "
+                "under the conditions stated? Fit each by itself."
             )
         if self.loading.p_value < CONTRADICTS:
             found.append(other_rate(self.loading))
@@ -448,15 +449,26 @@ def estimate(
 
 def other_rate(its: Conflict) -> str:
     """Return the doubt that the loading rate differs from the stated one, with the remedy."""
-    factor = float(np.exp(its.found))
+    factor, share = float(np.exp(its.found)), at_most(its.p_value, 1.0 / (NEAREST + 1.0))
     return (
         f"The force rises at {with_error(factor, its.error * factor, '')} times the rate that is "
-        f"stated, stiffness times drive velocity: {percent(its.p_value)} of the simulated records "
-        f"are as far off, {percent(CONTRADICTS)} are needed. Stiffness, velocity or the gain of "
-        "the load cell is off by more than stated, and what is estimated of friction and stiffness "
+        f"stated, stiffness times drive velocity: {share} of the simulated records are as far off, "
+        f"{percent(CONTRADICTS)} are needed. Stiffness, velocity or the gain of the load cell is "
+        "off by more than stated, and what is estimated of friction and stiffness "
         "with it. Measure them, or state uncertainties that hold, such as velocity = "
         '"0.5 +- 0.02 mm/s" under [drive].'
     )
+
+
+def at_most(p_value: float, least: float) -> str:
+    """Return a share of simulations as text: a bound where none of them is as far off.
+
+    `least` is the p-value of a record that is farther off than all simulations.
+
+    >>> at_most(0.03, 0.01), at_most(0.01, 0.01)
+    ('3 %', 'at most 1 %')
+    """
+    return f"{'at most ' if p_value <= least + EXACT else ''}{percent(p_value)}"
 
 
 def friction_drifts(p_value: float) -> str:

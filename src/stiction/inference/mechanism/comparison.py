@@ -20,7 +20,13 @@ from stiction.inference.mechanism.odds import SHARE, SIMULATIONS, Odds, surely
 from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import CLAIMED, ROTATION, Mechanism, mechanisms
 from stiction.inference.mechanism.static_check import ELASTIC, StaticCheck
-from stiction.inference.observation import Observation, Source, observe_all, steadiness
+from stiction.inference.observation import (
+    Observation,
+    Source,
+    observe_all,
+    steadiness,
+    trend_of,
+)
 from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.suitability import explain_unlike
@@ -187,7 +193,7 @@ def compare(
         confusion=confusion(learned.whole.left_out, learned.left_out_by_halves, labels),
         likeness=tuple(each.likeness(record, observed[bend]) for each in references),
         bend=observed[bend],
-        steady=steadiness(p for each in seen for p in each.trend),
+        steady=steadiness(trend_of(seen)),
         counts=tuple(np.bincount(labels).tolist()),
         simulations=simulations,
         absent=absent,

@@ -50,9 +50,14 @@ class Likeness(NamedTuple):
         return self.farther < UNLIKE or self.larger < BENT
 
     @property
+    def least(self) -> float:
+        """The share `larger` of a loading that departs more than that of each simulation."""
+        return 1.0 / (1.0 + len(self.bends))
+
+    @property
     def curve_is_tested(self) -> bool:
         """Whether simulations are as many as tell a loading curve that is unlike them."""
-        return len(self.bends) >= CURVES
+        return self.least < BENT
 
 
 class Reference(NamedTuple):

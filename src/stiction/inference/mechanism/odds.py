@@ -23,7 +23,7 @@ from stiction.inference.mechanism.rivals import (
     STATIC,
 )
 from stiction.inference.observation import TREND
-from stiction.inference.posterior import RARE, STATE_DRIFT, friction_drifts
+from stiction.inference.posterior import RARE, STATE_DRIFT, at_most, friction_drifts
 from stiction.inference.simulated.library import SAFE
 from stiction.inference.simulated.synthetic import LONGEST_CYCLE
 from stiction.names import draw
@@ -156,8 +156,9 @@ class Odds(Report):
             )
         if its.larger < BENT:
             found.append(
-                f"The loading curve is not like those of {name}: {percent(its.larger)} of the "
-                f"simulated ones depart as far from their mean; a claim needs {percent(BENT)}."
+                f"The loading curve is not like those of {name}: {share_as_bent(its)} "
+                "of the simulated ones depart as far from their mean; a claim needs "
+                f"{percent(BENT)}."
             )
         if not its.curve_is_tested:
             found.append(self._lack_of_curves(name))
@@ -207,7 +208,7 @@ class Odds(Report):
         """Return the odds, their evidence, and the frequency with which such odds are right."""
         numbered = [f"{number} {name}" for number, name in enumerate(self.names, 1)]
         rows = [
-            (name, odds_text(p, its), percent(its.farther), percent(its.larger), str(count))
+            (name, odds_text(p, its), percent(its.farther), share_as_bent(its), str(count))
             for name, p, its, count in zip(
                 numbered, self.probabilities, self.likeness, self.counts, strict=True
             )
@@ -367,6 +368,11 @@ def simulate(number: int) -> str:
 def odds_text(probability: float, likeness: Likeness) -> str:
     """Return the probability of a mechanism as text; "unlike" if the record is unlike it."""
     return "unlike" if likeness.unlike else near_one(probability)
+
+
+def share_as_bent(likeness: Likeness) -> str:
+    """Return the share of simulations whose loading departs more, as text."""
+    return at_most(likeness.larger, likeness.least)
 
 
 def near_one(probability: float) -> str:
