@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import pi, sqrt
+from math import hypot, pi, sqrt
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple, Self
 
@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import PydanticCustomError
 
-from stiction.analysis.drive.measured_drive import even_velocity
+from stiction.analysis.drive.measured_drive import EvenDrive, even_drive
 from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arrays import Floats, Indices, xr
@@ -318,14 +318,25 @@ class Record(Described):
 
     def with_measured_velocity(self) -> Self:
         """Return the record with the velocity of an even `drive_position`, if none is stated."""
-        if self.drive_velocity is not None or self.drive_position is None or not len(self):
+        its = None if self.drive_velocity is not None else self.even_drive()
+        if its is None:
             return self
-        velocity = even_velocity(self.time, self.drive_position)
-        if velocity is None:
-            return self
-        found = self.model_copy(update={"drive_velocity": velocity})
-        found._measured_velocity = velocity
+        found = self.model_copy(update={"drive_velocity": its.speed})
+        found._measured_velocity = its.speed
         return found
+
+    def even_drive(self) -> EvenDrive | None:
+        """Return the speed that an even `drive_position` shows; None if it is not even.
+
+        Its error holds that of the gain of its sensor.
+        """
+        if self.drive_position is None or not len(self):
+            return None
+        found = even_drive(self.time, self.drive_position)
+        sensor = (self.sensors or {}).get("drive_position")
+        if found is None or sensor is None:
+            return found
+        return found._replace(error=hypot(found.error, found.speed * sensor.gain_uncertainty))
 
     def each_value_once(self) -> Self:
         """Return the record with each value of the force once, if a slow sensor repeats them all.

@@ -18,6 +18,7 @@ from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit
+from stiction.inference.measured.drive_of_records import with_measured_drive
 from stiction.inference.mechanism.comparison import mechanism
 from stiction.inference.mechanism.likeness import BENT
 from stiction.inference.mechanism.odds import SHARE, TURNING, UNDECIDED, Odds, near_one
@@ -137,7 +138,7 @@ def compare(
     library_folder(library)  # refused at once, and not as a reason why there is no verdict
     report, stated = progress or silent, with_description(record, rig)
     try:
-        seen = observe(record, rig.slider)
+        seen = observe(record, with_measured_drive(rig, [record]).rig.slider)
         found = fit(
             record, rig, simulations=simulations, library=library, seed=seed,
             progress=lambda fraction: report(0.5 * fraction),

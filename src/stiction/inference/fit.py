@@ -18,12 +18,14 @@ from stiction.friction import Anisotropic, has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
 from stiction.inference.learning.summary import FeatureSummary
+from stiction.inference.measured.drive_of_records import with_measured_drive
 from stiction.inference.observation import (
     VELOCITY,
     Conditions,
     Observation,
     Source,
     observe_all,
+    read_all,
     sign_seen,
 )
 from stiction.inference.posterior import Fit
@@ -111,16 +113,18 @@ def fit(
     known = rig_of(rig)
     check(known, simulations)
     place = library_folder(library)
-    seen = observe_all(records, known.slider, load_of_records(known))
+    given = read_all(records, load_of_records(known))
+    drive = with_measured_drive(known, given)
+    seen = observe_all(given, drive.rig.slider)
     end_reading()
-    plan_of = plan_for(known, [each.conditions for each in seen])
+    plan_of = plan_for(drive.rig, [each.conditions for each in seen])
     folder = None if place is None else place / f"{plan_of.key}-{seed}"
     whole = progress or silent
     refuse_early(plan_of, simulations, folder, seed)
     simulated = build_enough(plan_of, simulations, folder, seed, part(whole, 0, 10, of=7))
     found = compare(simulated, seen, folder, part(whole, 7, 10, of=3))
     whole(1.0)
-    return found
+    return replace(found, drive=drive)
 
 
 def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int) -> None:

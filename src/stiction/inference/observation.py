@@ -361,28 +361,37 @@ def sign_seen(conditions: Iterable[Conditions]) -> bool:
     return any("force_across" in each.noise or each.yaw for each in conditions)
 
 
-def drive_velocity(record: Record, slider: Slider) -> float:
-    """Return the drive velocity that a record states, else the rig's, with the rig's sign."""
-    velocity, stated = nominal_velocity(slider.motion), record.stated_velocity
-    if stated is None or abs(stated / abs(velocity) - 1.0) <= SAME:
-        return velocity
-    return float(np.copysign(stated, velocity))
+def drive_velocity(record: Record, slider: Slider, certain: bool = True) -> float:
+    """Return the drive velocity that a record shows or states, else the rig's, with its sign.
+
+    Where the record agrees with the rig's, if that is `certain`, it is the rig's, so that many
+    records share a library.
+    """
+    velocity, speed, shown = nominal_velocity(slider.motion), record.stated_velocity, None
+    if record.drive_position is not None:
+        shown = record.even_drive()
+    if shown is not None:
+        speed = float(f"{shown.speed:.{DIGITS}g}")
+        same = certain and shown.agrees(abs(velocity))
+    else:
+        same = speed is None or abs(speed / abs(velocity) - 1.0) <= SAME
+    return velocity if same or speed is None else float(np.copysign(speed, velocity))
 
 
-def observe_all(
-    records: Source | Sequence[Source], slider: Slider, rig_load: float
-) -> list[Observation]:
-    """Observe one or several records of a rig, under the normal load of its description.
+def read_all(records: Source | Sequence[Source], rig_load: float) -> list[Record]:
+    """Return one or several records of a rig, under the normal load of its description.
 
     `rig_load` is NaN if the description's load is uncertain.
     """
     given = [records] if isinstance(records, Source) else [*records]
     if not given:
         raise ResultError("no record is given; name one or several")
-    return [
-        observe(record_from(each, rig_load), slider, f"record {number}")
-        for number, each in enumerate(given, 1)
-    ]
+    return [record_from(each, rig_load) for each in given]
+
+
+def observe_all(records: Sequence[Record], slider: Slider) -> list[Observation]:
+    """Observe one or several records of a rig."""
+    return [observe(each, slider, f"record {number}") for number, each in enumerate(records, 1)]
 
 
 def record_from(source: Source, rig_load: float | None = None) -> Record:

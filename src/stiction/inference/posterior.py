@@ -18,6 +18,7 @@ from stiction.inference.learning.calibration import Learned
 from stiction.inference.learning.conflict import NEAREST, Conflict
 from stiction.inference.learning.regression_abc import Sample, quantiles
 from stiction.inference.learning.summary import FeatureSummary
+from stiction.inference.measured.drive_of_records import DriveOfRecords
 from stiction.inference.observation import (
     TREND,
     VELOCITY,
@@ -134,6 +135,8 @@ class Fit(Report):
         What may explain that records are not like the simulated ones, as sentences; may be empty.
     disputed : str
         In which records an analysis counts other cycles, as sentences; may be empty.
+    drive : DriveOfRecords or None
+        The velocity that records show of the drive, in place of what is stated.
     """
 
     plan: Plan
@@ -149,6 +152,7 @@ class Fit(Report):
     loading: Conflict = field(compare=False)
     explanation: str = field(default="", compare=False)
     disputed: str = field(default="", compare=False)
+    drive: DriveOfRecords | None = field(default=None, compare=False)
 
     @classmethod
     def of(
@@ -260,6 +264,8 @@ class Fit(Report):
             sentences.append(ALONG_X)
         if VELOCITY not in self.plan.priors and "k_x" in [x.name for x in self.known]:
             sentences.append(BY_RATE)
+        if self.drive is not None and self.drive.said:
+            sentences.append(self.drive.said)
         sentences.append(f"Compared with {self.simulations} simulated records.")
         sentences += self.disturbances
         sentences.append(
@@ -331,6 +337,8 @@ class Fit(Report):
                 "needed. The values mean nothing until that is explained: are they of one rig, "
                 "under the conditions stated? Fit each by itself."
             )
+        if self.drive is not None and self.drive.doubt:
+            found.append(self.drive.doubt)
         if self.loading.p_value < CONTRADICTS:
             found.append(other_rate(self.loading))
         if self.beyond:

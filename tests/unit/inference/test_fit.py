@@ -19,12 +19,14 @@ from stiction.friction.user.loading import finder_for_descriptions
 from stiction.inference.cycles import slip_cycles
 from stiction.inference.features import features, of_trend
 from stiction.inference.fit import check, plan_for
+from stiction.inference.measured.drive_of_records import DriveOfRecords
 from stiction.inference.observation import (
     Noise,
     Trend,
     near,
     observe,
     observe_all,
+    read_all,
     trend,
 )
 from stiction.inference.posterior import WITHHELD, middle, row
@@ -275,6 +277,10 @@ def test_a_fit_says_that_the_record_is_not_one_of_the_rig(found, rig, record, li
     (disputed,) = replace(found, disputed="An analysis counts others.").tables()
     assert disputed.sentences[0] == "An analysis counts others."
     assert disputed.table is None
+    shown = DriveOfRecords(found.rig, "It is as its displacement shows.", "It contradicts that.")
+    assert "displacement" not in str(found)
+    assert shown.said in str(replace(found, drive=shown))
+    assert replace(found, drive=shown).doubts[0] == shown.doubt
     unlike = replace(found, farther=0.02, explanation="It paused.").tables()[0].sentences
     assert unlike[0].startswith("The records are not like those of the rig as described")
     assert unlike[0].endswith("the axis that the rig states? It paused.")
@@ -699,7 +705,7 @@ def test_a_record_of_coefficients_takes_the_load_of_its_rig(record, rig, tmp_pat
     assert own.normal_load == load == 4.0
     np.testing.assert_allclose(own.force, record.force, rtol=1e-8)
     assert "the normal load is that of the rig's description" in own.origin.notes
-    (seen,) = observe_all(path, rig.slider, load)
+    (seen,) = observe_all(read_all(path, load), rig.slider)
     assert seen.conditions.normal_load == 4.0
     with pytest.raises(st.ResultError, match="if the load is unknown, 1 N: forces are then"):
         st.read_record(path)
@@ -724,12 +730,12 @@ def test_a_record_is_taken_from_its_file_and_from_a_run(record, rig, tmp_path):
     np.savetxt(path, rows, "%.9g", ",", header="t (s),F (N)", comments="")
     plain = observe(st.read_record(path), rig.slider)
     for given in (path, str(path), [path]):
-        (seen,) = observe_all(given, rig.slider, 4.0)
+        (seen,) = observe_all(read_all(given, 4.0), rig.slider)
         assert seen.conditions == plain.conditions
         np.testing.assert_array_equal(seen.features, plain.features)
     run = st.simulate(rig.slider, "1 ms", sample_rate="1 kHz")
     with pytest.raises(st.ResultError, match="record 1"):  # of too few samples
-        observe_all(run, rig.slider, 4.0)
+        observe_all(read_all(run, 4.0), rig.slider)
     with pytest.raises(st.StictionError, match="a record, a run or a path or a sequence, is 5"):
         st.fit(5, rig)
 

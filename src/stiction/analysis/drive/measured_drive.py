@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from stiction.analysis.signals.correlated_noise import standard_error
+from stiction.analysis.signals.correlated_noise import ERRORS_997, standard_error
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.robust import part_means
 from stiction.analysis.signals.straight_line import StraightLine, line
@@ -22,6 +22,7 @@ from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, Stretches
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion, white_noise
+from stiction.text.quantity_text import SLIGHT
 
 MEANS = 4000  # of the record, at most: noise is averaged out
 FEWEST_MEANS = 3.0  # over which a velocity lasts: a bend is not better placed
@@ -81,8 +82,25 @@ def measured_stretches(time: Floats, position: Floats) -> Stretches:
     )
 
 
-def even_velocity(time: Floats, position: Floats) -> float | None:
-    """Return the speed (m/s) of a drive that keeps to one; None if it does not.
+class EvenDrive(NamedTuple):
+    """The speed of a drive that keeps to one, and its standard error, m/s."""
+
+    speed: float
+    error: float
+
+    def agrees(self, speed: float) -> bool:
+        """Return whether a stated speed (m/s) is the same, within the error or a thousandth.
+
+        >>> EvenDrive(1e-3, 1e-6).agrees(1.001e-3), EvenDrive(1e-3, 1e-5).agrees(1.02e-3)
+        (True, True)
+        >>> EvenDrive(1e-3, 1e-6).agrees(1.004e-3)
+        False
+        """
+        return abs(speed - self.speed) <= max(ERRORS_997 * self.error, SLIGHT * self.speed)
+
+
+def even_drive(time: Floats, position: Floats) -> EvenDrive | None:
+    """Return the speed of a drive that keeps to one; None if it does not.
 
     It may rest before it starts, and after it stops, but not turn, pause or change its velocity.
     Noise must leave its speed known.
@@ -102,11 +120,10 @@ def even_velocity(time: Floats, position: Floats) -> float | None:
     if inside.stop - inside.start < FEWEST_SAMPLES:
         return None
     way = line(time[inside], position[inside])
-    error = standard_error(way.deviations(time[inside], position[inside]))
-    speed = abs(way.slope)
-    known = error / float(time[inside].std()) < SAME * speed
+    speed, off = abs(way.slope), way.deviations(time[inside], position[inside])
+    error = standard_error(off) / float(time[inside].std())
     goes = speed * (end - begins[at]) > GOES * float(np.ptp(position))
-    return speed if known and goes else None
+    return EvenDrive(speed, error) if error < SAME * speed and goes else None
 
 
 def _parts(time: Floats, position: Floats) -> list[_Part]:

@@ -14,6 +14,7 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, Instruction
 from stiction.inference.columns import bend_features
 from stiction.inference.fit import check, plan_for
+from stiction.inference.measured.drive_of_records import with_measured_drive
 from stiction.inference.mechanism import classifier, likeness
 from stiction.inference.mechanism.classifier import Simulations, begin, simulate
 from stiction.inference.mechanism.odds import SHARE, SIMULATIONS, Odds, surely
@@ -24,6 +25,7 @@ from stiction.inference.observation import (
     Observation,
     Source,
     observe_all,
+    read_all,
     steadiness,
     trend_of,
 )
@@ -91,7 +93,9 @@ def mechanism(
     known = rig_of(rig)
     check_comparable(known, simulations)
     place = library_folder(library)
-    seen = observe_all(records, known.slider, load_of_records(known))
+    given = read_all(records, load_of_records(known))
+    known = with_measured_drive(known, given).rig
+    seen = observe_all(given, known.slider)
     end_reading()
     rivals = mechanisms(known, [each.conditions for each in seen])
     whole = progress or silent
@@ -136,7 +140,9 @@ def refuse_incomparable(
     As far as the first simulations of each mechanism tell; a library keeps them.
     """
     check_comparable(rig, simulations)
-    seen = observe_all(records, rig.slider, load_of_records(rig))
+    given = read_all(records, load_of_records(rig))
+    rig = with_measured_drive(rig, given).rig
+    seen = observe_all(given, rig.slider)
     rivals = mechanisms(rig, [each.conditions for each in seen])
     begin(rivals, simulations, library_folder(library), seed, progress)
 

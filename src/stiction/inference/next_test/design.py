@@ -15,6 +15,7 @@ from stiction.errors import Faults, Instruction, ResultError
 from stiction.inference.columns import features_from
 from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for, refuse_few
 from stiction.inference.learning import calibration
+from stiction.inference.measured.drive_of_records import with_measured_drive
 from stiction.inference.next_test.advice import Advice
 from stiction.inference.next_test.expected import (
     FEWEST_RIGS,
@@ -156,6 +157,8 @@ def answer(
 ) -> Advice:
     """Simulate the tests, in the library `place` if there is one, and learn from each."""
     known, name, wanted, given = question
+    if given is not None:
+        known = with_measured_drive(known, [given]).rig
     slider, seen = known.slider, None if given is None else observe(given, known.slider)
     now = usual_conditions(slider) if seen is None else seen.conditions
     measured = wanted.channels if seen is None else tuple(now.noise)

@@ -9,7 +9,7 @@ from benchmarks.state_laws import velocity_steps as drawn
 from tests.drawn import SEED
 
 import stiction as st
-from stiction.analysis.drive.measured_drive import even_velocity, measured_stretches
+from stiction.analysis.drive.measured_drive import even_drive, measured_stretches
 from stiction.analysis.protocols.friction_test import friction_test
 
 p = st.protocols
@@ -211,13 +211,13 @@ def test_a_drive_is_even_if_it_rests_at_most_before_and_after_it_moves(noise, wa
     white = noise * np.random.default_rng(4).standard_normal(len(time))
     for begin, end in ((0.0, 20.0), (3.0, 20.0), (0.0, 15.0), (2.0, 18.0)):
         travel = 5e-4 * (np.clip(time, begin, end) - begin)
-        assert even_velocity(time, way * travel + white) == pytest.approx(5e-4, rel=2e-3)
+        assert even_drive(time, way * travel + white).speed == pytest.approx(5e-4, rel=2e-3)
     turns = 5e-4 * (10.0 - np.abs(10.0 - time))
     pauses = 5e-4 * (time - np.clip(time - 8.0, 0.0, 4.0))
     faster = 5e-4 * (time + 0.5 * np.maximum(time - 10.0, 0.0))
     swings = 1e-3 * np.sin(time)
     for position in (turns, pauses, faster, swings, np.zeros(len(time))):
-        assert even_velocity(time, way * position + white) is None
+        assert even_drive(time, way * position + white) is None
 
 
 @pytest.mark.parametrize("known", [{}, {"stiffness": "2 kN/m"}])

@@ -1,0 +1,1 @@
+"""The apparatus of a rig as its records measured it."""
