@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.changes.initial_rest import InitialRest
 from stiction.analysis.motion.cycle_columns import with_spread
-from stiction.analysis.motion.doubts.zero import is_stated
+from stiction.analysis.motion.doubts.zero import is_hidden, is_stated
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.arrays import xr
@@ -90,8 +90,18 @@ def force_in_words(its: Measured) -> str:
 
 
 def _zero(found: Analysis) -> str:
-    """Return the zero that a record shows at its start, if the errors come from it."""
+    """Return the zero that a record shows at its start, if the errors come from it.
+
+    Where it shows none, return what a zero that is off would change.
+    """
     shown: InitialRest | None = found.parts["zero"]
+    if is_hidden(found.record, found.friction, shown):
+        force = max(abs(each.force) for each in found.friction[:3] if each is not None)
+        return (
+            " The record does not show it either, as it begins with a loaded spring: where it is "
+            f"off by {in_words(0.01 * force, 'N', 1)}, friction is off by as much, about 1 %, and "
+            "the errors do not allow for it."
+        )
     errors = [each.error for each in found.friction[:3] if each is not None]
     if shown is None or not errors or abs(shown.reading) < MAKES * min(errors):
         return ""

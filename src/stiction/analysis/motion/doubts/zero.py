@@ -107,6 +107,42 @@ def zero_of_strokes(record: Record) -> InitialRest | None:
     return InitialRest(stroke.way * stroke.middle, error)
 
 
+def reading_of_start(
+    record: Record, friction: Friction, shown: InitialRest | None
+) -> InitialRest | None:
+    """Return the first reading of a force that rises from the first sample on, if it is off.
+
+    It is the zero if the spring was unloaded, and nothing if it was loaded already. Where the
+    record begins in the middle of a loading, or after a turn of the drive, it is neither.
+    """
+    stroke = place_of_stroke(record)
+    if is_stated(record) or shown is not None or friction.break_away is None:
+        return None
+    if stroke is not None and stroke.after_turn:
+        return None
+    reading, noise = first_level(record.force)
+    least = max(AT_REST * largest_magnitude(record.force), NOISE * noise)
+    return InitialRest(reading, noise) if abs(reading) > least else None
+
+
+def may_be_zero(start: InitialRest | None, friction: Friction) -> bool:
+    """Return whether a first reading is so small beside friction that it may be the zero."""
+    top = friction.break_away
+    if start is None or top is None:
+        return False
+    return abs(start.reading) <= BEGINS_UNLOADED * top.force
+
+
+def is_hidden(record: Record, friction: Friction, shown: InitialRest | None) -> bool:
+    """Return whether a record begins with a loaded spring, and nothing else tells its zero."""
+    known = friction.static or friction.kinetic or friction.break_away
+    if known is None or is_stated(record) or shown is not None:
+        return False
+    if place_of_stroke(record) is not None:
+        return False
+    return abs(first_level(record.force)[0]) > BEGINS_UNLOADED * abs(known.force)
+
+
 def shift_of_zero(
     record: Record, friction: Friction, cycles: CycleTable, shown: InitialRest | None
 ) -> float:
@@ -116,8 +152,17 @@ def shift_of_zero(
     """
     if why_no_friction(record, friction, cycles):
         return inf
-    shown = shown or zero_of_strokes(record)
+    shown = shown or _apparent_zero(record, friction)
     return 0.0 if shown is None else abs(shown.reading)
+
+
+def _apparent_zero(record: Record, friction: Friction) -> InitialRest | None:
+    """Return the zero that strokes, or a loading from the first sample on, seem to show."""
+    middle = zero_of_strokes(record)
+    if middle is not None:
+        return middle
+    start = reading_of_start(record, friction, None)
+    return start if may_be_zero(start, friction) else None
 
 
 def with_zero(friction: Friction, record: Record, shown: InitialRest | None) -> Friction:
@@ -127,7 +172,7 @@ def with_zero(friction: Friction, record: Record, shown: InitialRest | None) -> 
     spring that friction holds reads as much. So the values are those of the zero as it is supposed,
     and the error reaches to those of the other zero. A stated zero has its stated uncertainty.
     """
-    shown = shown or zero_of_strokes(record)
+    shown = shown or _apparent_zero(record, friction)
     further = stated_error(record) if shown is None else hypot(shown.reading, shown.error)
     return friction.with_errors(break_away=further, static=further, kinetic=further)
 
@@ -179,30 +224,40 @@ def doubt_zero(
             "allow for it."
         )
         return
-    if is_stated(record) or (shown is None and friction.break_away is None):
-        return
-    if shown is None and stroke is not None and stroke.after_turn:
-        return
-    first, noise = first_level(record.force)
-    read, hidden = first, NOISE * noise
     if shown is not None:
-        read, hidden = shown.reading, ERRORS_997 * shown.error
-    if abs(read) <= max(AT_REST * largest, hidden):
-        return
-    if shown is not None:
+        read = shown.reading
+        if abs(read) <= max(AT_REST * largest, ERRORS_997 * shown.error):
+            return
         turned = "; just after a turn of the drive it is not" if read < 0.0 else ""
         yield (
             f"{_less(friction, read)} if the start at {in_words(read, 'N')}, before the first "
             "loading, is the zero: if the spring was unloaded, give "
             f"{_zero_in_file(read, way)}{turned}. The errors of friction allow for it."
         )
-    else:
-        after = ", as after a turn of the drive" if read < 0.0 else ""
-        yield (
-            f"The record does not show the unloaded spring: from its first reading on, "
-            f"{in_words(read, 'N')}, the force rises. The spring was loaded already{after}, or the "
-            f"zero is off: give {ZERO}, the reading without load."
+        return
+    start = reading_of_start(record, friction, shown)
+    if start is not None:
+        yield _doubt_start(start, friction)
+
+
+def _doubt_start(start: InitialRest, friction: Friction) -> str:
+    """Return the doubt about the zero of a force that rises from its first reading on."""
+    read = start.reading
+    after = ", as after a turn of the drive" if read < 0.0 else ""
+    said = (
+        "The record does not show the unloaded spring: from its first reading on, "
+        f"{in_words(read, 'N')}, the force rises. "
+    )
+    if not may_be_zero(start, friction):
+        return (
+            f"{said}The spring was loaded already{after}, or the zero is off: give {ZERO}, the "
+            "reading without load."
         )
+    return (
+        f"{said}{_less(friction, read)} if that is the zero, and as given if the spring was loaded "
+        f"already{after}. The errors of friction allow for both: give {ZERO}, the reading without "
+        "load."
+    )
 
 
 def _zero_in_file(reading: float, way: float) -> Suggestion:
