@@ -157,6 +157,21 @@ def test_odds_that_cannot_be_given_are_refused_before_the_fit(
     assert set(xr.open_dataset(output)) == {"phi", "k_x", "k_y", "mu_0", "mu_inf", "jitter"}
 
 
+@pytest.mark.parametrize("command", ["audit", "design"])
+def test_what_takes_one_record_says_which_command_takes_all_strokes(tmp_path, capsys, command):
+    """Its remedy was a function of Python."""
+    data, rig = tmp_path / "data.csv", tmp_path / "rig.toml"
+    way = [*range(20), *range(20, 0, -1)]
+    rows = (f"{number},{1 if number < 20 else -1},{place}" for number, place in enumerate(way))
+    data.write_text("\n".join(["t (s),F (N),stage (mm)", *rows]))
+    rig.write_text(TEXT)
+    said = ("--record", data, "--drive-position", "stage", "--stroke", "all")
+    assert inside(command, rig, *said) == 2
+    wrong = " ".join(capsys.readouterr().err.split())
+    assert "say --stroke 1 for one of them; `stiction fit --stroke all`" in wrong
+    assert "st.read_records" not in wrong
+
+
 def test_a_design_says_what_to_measure_next(designed, tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(further, "CYCLES", CYCLES)
     copy_blocks(designed, tmp_path)

@@ -5,6 +5,7 @@ import pytest
 
 import stiction as st
 from stiction.analysis.export import full_report
+from stiction.analysis.measurement.reading import read_source
 from stiction.cli import main
 from stiction.recording.strokes import strokes
 
@@ -292,15 +293,17 @@ def test_a_fit_takes_all_strokes_together(tmp_path, monkeypatch, capsys):
     ]
 
 
-def test_an_audit_of_all_strokes_names_one_and_how_python_reads_all(tmp_path, capsys):
-    """It said that st.read_records(path) reads all, which returns the record as a whole."""
+def test_an_audit_of_all_strokes_names_one_and_what_takes_all(tmp_path, capsys):
+    """In a terminal it named a function of Python."""
     path, rig = stick_slip_to_and_fro(tmp_path), tmp_path / "rig.toml"
     rig.write_text(st.presets.nakano_popov_2020().to_toml())
     with pytest.raises(SystemExit):
         main(["audit", str(rig), "--record", str(path), "--stroke", "all"])
     said = " ".join(capsys.readouterr().err.split())
     assert "say --stroke 1 for one of them" in said
-    assert "st.read_records(path, stroke='all') reads all" in said
+    assert "`stiction fit --stroke all` takes them together" in said
+    with pytest.raises(st.ResultError, match=r"stroke='all'\) reads all, and st.fit takes them"):
+        read_source(path, stroke="all")
 
 
 @pytest.mark.parametrize("number", [2, 3, 5, 6])

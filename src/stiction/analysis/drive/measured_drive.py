@@ -22,7 +22,7 @@ from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity, Stretches
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion, white_noise
-from stiction.text.quantity_text import SLIGHT
+from stiction.text.quantity.wording import SLIGHT
 
 MEANS = 4000  # of the record, at most: noise is averaged out
 FEWEST_MEANS = 3.0  # over which a velocity lasts: a bend is not better placed

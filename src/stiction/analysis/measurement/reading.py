@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
 from stiction.analysis.record import Record
-from stiction.errors import DescriptionError, Fault, Faults, ResultError
+from stiction.errors import DescriptionError, Fault, Faults, Instruction, ResultError
 from stiction.formats.table import natural_key
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.part import part_between
@@ -19,6 +19,11 @@ from stiction.storage.kinds import use_of
 from stiction.text.suggestion import Suggestion, as_argument, as_argument_elsewhere, suggest
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory, load
+
+TOGETHER = Instruction(
+    f"`stiction fit --stroke {ALL}` takes them together",
+    f"st.read_records(path, stroke={ALL!r}) reads all, and st.fit takes them together",
+)
 
 
 class ReadArguments(TypedDict, total=False):
@@ -126,8 +131,7 @@ def _only_record(
     if len(strokes) > 1:
         raise ResultError(
             f"{path}: has {len(strokes)} strokes, which are as many records: say "
-            f"{Suggestion('stroke', 1)} for one of them; in Python "
-            f"st.read_records(path, stroke={ALL!r}) reads all"
+            f"{Suggestion('stroke', 1)} for one of them; {TOGETHER}"
         )
     return strokes[0]
 

@@ -15,8 +15,7 @@ from stiction.drive.program import nominal_velocity
 from stiction.inference.observation import VELOCITY, drive_velocity
 from stiction.inference.priors import Normal, Prior
 from stiction.inference.rig import Rig
-from stiction.text.quantity_text import SLIGHT
-from stiction.text.units import in_words, with_error
+from stiction.text.quantity.wording import SLIGHT, in_words, with_error
 
 SPREAD = 0.1587, 0.8413  # shares between which one standard deviation lies on either side
 
