@@ -69,9 +69,8 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
         missing |= {"mu_kinetic": turns}
     given = cycles.blank(missing)
     sticking = cycles if regime.loads else cycles.part(slice(0))
-    return Assessment(
-        given, given, sticking, friction, (), warnings_of_run(run, record, cycles), missing
-    )
+    doubts = warnings_of_run(run, record, regime.kind, cycles)
+    return Assessment(given, given, sticking, friction, (), doubts, missing)
 
 
 def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:

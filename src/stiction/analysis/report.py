@@ -26,6 +26,7 @@ from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.motion.regime.evidence import Regime
 from stiction.analysis.oscillation import apart, oscillation_by_phase, transverse_oscillation
 from stiction.analysis.parts import functions
+from stiction.analysis.parts.procedure import with_test
 from stiction.analysis.record import Record
 from stiction.analysis.rotation.findings import GROWING
 from stiction.arrays import TINY, xr
@@ -212,12 +213,15 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
 
 
 def _with_parts(analysis: Analysis) -> Analysis:
-    """Return an analysis with the findings of each of its parts."""
-    missing = {**analysis.missing}
+    """Return an analysis with the findings of each of its parts, those of its test first."""
+    missing, finders = {**analysis.missing}, dict(functions("find"))
+    test = attempt(missing, "procedure", partial(finders.pop("procedure"), analysis))
+    analysis = with_test(analysis, test)
     found = {
-        name: attempt(missing, name, partial(find, analysis)) for name, find in functions("find")
+        name: attempt(missing, name, partial(find, analysis)) for name, find in finders.items()
     }
-    return _agreeing(replace(analysis, parts=analysis.parts | found, missing=missing))
+    parts = analysis.parts | {"procedure": test} | found
+    return _agreeing(replace(analysis, parts=parts, missing=missing))
 
 
 def _agreeing(analysis: Analysis) -> Analysis:

@@ -85,6 +85,11 @@ class SectionReport(Report):
         """The report in words and as a table."""
         raise NotImplementedError
 
+    @property
+    def answer(self) -> str:
+        """Its result in a sentence."""
+        return self.section.sentences[0]
+
     def tables(self) -> list[Section]:
         """Return the section, as reports of several do."""
         return [self.section]

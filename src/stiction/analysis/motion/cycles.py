@@ -83,7 +83,7 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     by themselves (`stiction.analysis.motion.changes.sizes`). Left out are
     cycles cut by the beginning or end of the record, cycles with a gap of a quarter of their period
     between samples, the first loading from an unloaded spring, before which there is no slip, and
-    swings that jumps of the drive's measured velocity make
+    swings that jumps of the drive's velocity make, in a run or where it was measured
     (`stiction.analysis.motion.changes.velocity`).
 
     A study (`stiction.Study`) counts the same cycles in the same run, but for one cycle in 8 of 250
@@ -203,7 +203,7 @@ class Swings(NamedTuple):
 def swings(record: Record) -> Swings:
     """Return all swings of the force that stand apart from smaller reversals.
 
-    Those that jumps of the drive's measured velocity make are left out, and counted.
+    Those that jumps of the drive's velocity make are left out, and counted.
     """
     found = _swings_of_any_drive(record)
     its = found.table if len(found.table) or found.few is None else found.few

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from math import isfinite
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from stiction.analysis.motion.friction import without_loading
+from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.analysis.parts import rotation
 from stiction.analysis.parts.friction import coefficient_in_words, force_in_words
 from stiction.analysis.parts.motion import other_reading
-from stiction.analysis.parts.procedure import name_of
+from stiction.analysis.parts.procedure import OF_SPEED, name_of
 from stiction.text.quantity.wording import with_error
 from stiction.text.sections import Section, first_clause, first_sentence
 
@@ -30,13 +31,14 @@ def section(found: Analysis) -> Section:
     Where the motion asks for another reading of the file, that follows at once.
     """
     kind, test = found.regime.surely, found.parts["procedure"]
+    known = test is None or found.regime.kind != UNDETERMINED
     lines = [
-        *([] if test is None else [f"A test of {name_of(test).replace('-', ' ')}, as below."]),
-        f"{kind[0].upper()}{kind[1:]}.",
+        *([] if test is None else [_test(test)]),
+        *([f"{kind[0].upper()}{kind[1:]}."] if known else []),
         first_sentence(found.parts["motion"]),
         *filter(None, [other_reading(found)]),
         *rotation.in_short(found),
-        _friction(found),
+        *_friction(found),
         *_misalignment(found),
         *warnings_in_short(found.warnings),
         *_open_questions(found),
@@ -44,8 +46,24 @@ def section(found: Analysis) -> Section:
     return Section("In short", lines)
 
 
-def _friction(found: Analysis) -> str:
-    """Return the coefficients, forces where the load is unknown, or why there are none."""
+def _test(test: Any) -> str:
+    """Return the name of a test, and its answer."""
+    return f"A test of {name_of(test).replace('-', ' ')}. {test.answer}"
+
+
+def _friction(found: Analysis) -> list[str]:
+    """Return the coefficients, forces where the load is unknown, or why there are none.
+
+    Where a test has several velocities, it has the friction of each.
+    """
+    test = found.parts["procedure"]
+    if test is not None and name_of(test) in OF_SPEED:
+        return []
+    return [_coefficients(found)]
+
+
+def _coefficients(found: Analysis) -> str:
+    """Return the coefficients or forces of friction in a sentence."""
     its = found.friction
     known = {name: each for name in FRICTIONS if (each := getattr(its, name)) is not None}
     if not known and its.break_away is not None:

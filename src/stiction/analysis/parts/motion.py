@@ -56,7 +56,7 @@ IMPOSED: dict[Evidence, str] = {
     "straight": "The force rises and falls evenly, as where a drive goes back and forth and the "
     "mass sticks, or the load changes so. No vibration has such a shape.",
     "driven": "The force rises and falls after jumps of the drive's velocity, as friction does "
-    "then without any slip.",
+    "then without stick-slip.",
     "levels": "The force stays at several levels, one after the other, as where the velocity of "
     "the drive, or the load, changes in steps while the mass slides. At a lower level it may "
     "rest, as where the drive has stopped.",

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import suppress
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.doubts.warnings import variations
+from stiction.analysis.motion.doubts.warnings import say_unsteady, variations
 from stiction.analysis.motion.regime.kinds import STICK_SLIP
 from stiction.analysis.record import Record
 from stiction.arrays import xr
@@ -55,36 +56,54 @@ TESTS = {  # the first that suits a run is its test
         "coefficient": "1", "error": "1", "adhesion": "N", "adhesion_error": "N",
     }),
 }  # fmt: skip
+OF_SPEED = ("velocity-steps", "healing")  # tests of steady friction at several speeds
 
 
 def find(found: Analysis) -> Any:
     """Return the first analysis of a test that suits a run, or a record of the drive as well.
 
-    None where nothing varies. In a record of stick-slip no change of the drive's speed shows steady
-    friction; and the strokes of a drive that goes back and forth are analysed one by one.
+    None where nothing varies. Under stick-slip no change of the drive's speed shows steady
+    friction; and in a record the strokes of a drive that goes back and forth are analysed one by
+    one.
     """
-    source = found.source
+    source, sticks = found.source, found.regime.kind == STICK_SLIP
     if isinstance(source, Trajectory):
-        its = tuple(name.replace("-", "_") for name in TESTS)
+        its = [name for name in TESTS if not (sticks and name in OF_SPEED)]
         return _first(source, its) if variations(source) else None
-    measured = source.drive_position is not None and source.normal_load is not None
-    if not measured or found.regime.kind == STICK_SLIP:
+    if sticks or source.drive_position is None or source.normal_load is None:
         return None
     from stiction.analysis.protocols.friction_test import friction_test
 
     with suppress(ResultError):
         if len(friction_test(source).stretches) > 1:
-            return _first(source, ("velocity_steps", "healing"))
+            return _first(source, OF_SPEED)
     return None
 
 
-def _first(source: Trajectory | Record, names: tuple[str, ...]) -> Any:
+def with_test(found: Analysis, test: Any) -> Analysis:
+    """Return an analysis without warnings and friction that its test replaces.
+
+    A warning names the analysis that suits a test; and a mean over velocities, each with its own
+    friction, is none of them.
+    """
+    if test is None:
+        return found
+    if isinstance(found.source, Trajectory):
+        needless = say_unsteady(found.source, found.regime.kind)
+        found = replace(found, warnings=tuple(x for x in found.warnings if x not in needless))
+    if name_of(test) not in OF_SPEED:
+        return found
+    why = f"the drive has several velocities, each with its own: see {test.section.title}"
+    return replace(found, friction=found.friction.without_kinetic(why))
+
+
+def _first(source: Trajectory | Record, names: Iterable[str]) -> Any:
     """Return the first of some analyses that finds its test; None if there is none of them."""
     import stiction.analysis as of
 
     for name in names:
         with suppress(ResultError):
-            return getattr(of, name)(source)
+            return getattr(of, name.replace("-", "_"))(source)
     return None
 
 

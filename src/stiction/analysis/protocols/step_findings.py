@@ -117,6 +117,13 @@ class VelocitySteps(SectionReport):
     trend_error: float = 0.0
 
     @property
+    def answer(self) -> str:
+        """How steady friction depends on speed, and over which distance it evolves."""
+        laws = [_distance(each) for each in (self.steps, self.other)]
+        either = f"; D_c = {' or '.join(filter(None, laws))}." if any(laws) else "."
+        return f"{self._a_minus_b().removesuffix('.')}{either}"
+
+    @property
     def section(self) -> Section:
         """The steps in words and as a table."""
         sentences = [self._a_minus_b(), *self._trend(), *self.fitted, *self._differing()]
@@ -193,10 +200,29 @@ def common_value(steps: Sequence[VelocityStep]) -> CommonValue:
     return CommonValue(found.value, found.scaled_error, found.alike)
 
 
+def _distance(steps: Sequence[VelocityStep]) -> str:
+    """Return the mean of D_c with its law, or its range where steps differ; "" without any."""
+    values, errors = _known_values(steps, "D_c")
+    if not len(values):
+        return ""
+    if _alike(steps, "D_c"):
+        found = common_mean(values, errors)
+        text = with_error(found.value, found.safe_error, "m")
+    else:
+        text = f"{in_words(values.min(), 'm', 2)} to {in_words(values.max(), 'm', 2)}"
+    return f"{text} ({steps[0].law} law)"
+
+
+def _known_values(steps: Sequence[VelocityStep], name: str) -> Floats:
+    """Return the known values of a fitted parameter, and their errors, (2, n)."""
+    pairs = np.array([(getattr(each, name), getattr(each, f"{name}_error")) for each in steps])
+    found: Floats = pairs.reshape(-1, 2)[np.isfinite(pairs).all(axis=-1)].T
+    return found
+
+
 def _alike(steps: Sequence[VelocityStep], name: str) -> bool:
     """Return whether a fitted parameter is the same in all steps, within its errors."""
-    pairs = np.array([(getattr(each, name), getattr(each, f"{name}_error")) for each in steps])
-    values, errors = pairs[np.isfinite(pairs).all(axis=1)].T
+    values, errors = _known_values(steps, name)
     return len(values) < 2 or not errors.all() or common_mean(values, errors).alike
 
 

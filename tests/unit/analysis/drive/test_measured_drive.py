@@ -197,7 +197,9 @@ def test_an_analysis_of_a_record_with_its_drive_begins_with_its_test():
     )
     found = st.analyse(record)
     assert [part.title for part in found.tables()[:2]] == ["In short", "Healing"]
-    assert found.tables()[0].sentences[0] == "A test of healing, as below."
+    said = found.tables()[0].sentences
+    assert said[0] == f"A test of healing. {found.parts['procedure'].answer}"
+    assert not any(each.startswith("Friction") for each in said)  # "the mass may not slide"
     healing = found.parts["procedure"]
     assert healing.hold == pytest.approx([10.0, 100.0], rel=1e-3)
     assert "Friction heals by" in str(found)

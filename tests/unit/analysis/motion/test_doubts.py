@@ -452,7 +452,7 @@ def test_a_run_that_rises_fast_is_not_told_to_turn_its_force() -> None:
         drive=test,
     )  # fmt: skip
     text = str(st.analyse(st.simulate(rig, sample_rate="200 Hz")))
-    assert "falls slowly and rises fast, as where the drive pauses or changes its velocity" in text
+    assert "The force rises and falls after jumps of the drive's velocity" in text
     assert "force=-force" not in text
 
 

@@ -1,4 +1,4 @@
-"""Swings of the force that jumps of the drive's velocity make, where its displacement was measured.
+"""Swings of the force that jumps of the drive's velocity make, where its motion is known.
 
 Where a drive becomes faster, friction rises at once and comes down again while the contacts evolve;
 where it becomes slower, or holds, friction falls at once. Thus the force has a peak soon after the
@@ -18,6 +18,7 @@ from stiction.analysis.drive.measured_drive import measured_stretches
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.record import Record
 from stiction.arrays import Floats, Indices
+from stiction.drive import ConstantVelocity, Stretches, drive_stretches
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion
 
@@ -39,25 +40,44 @@ class VelocityJump(NamedTuple):
 
 
 def velocity_jumps(record: Record) -> list[VelocityJump]:
-    """Return the jumps of the measured velocity of a drive, in order of time.
+    """Return the jumps of a drive's velocity, in order of time: of a run, or as it was measured.
 
-    None are known where the displacement was not measured, or has no stretches of constant
-    velocity.
+    They lie between stretches of constant velocity. None are known where the displacement was not
+    measured.
     """
-    way = record.drive_position
-    if way is None or record.slip_speed is not None or not np.ptp(way) > seeming_motion(way):
-        return []
-    try:
-        found = measured_stretches(record.time, way)
-    except ResultError:
-        return []
-    end, forward = float(record.time[-1]), float(way[-1] - way[0]) >= 0.0
+    end, found = float(record.time[-1]), _stretches(record)
+    forward = _way(found, float(record.time[0]), end) >= 0.0
     jumps = []
     for (at, one), (until, two) in pairwise(found):
+        if at >= end or not (isinstance(one, ConstantVelocity) and isinstance(two, type(one))):
+            continue
         rise = two.velocity - one.velocity
         if abs(rise) > CHANGES * max(abs(one.velocity), abs(two.velocity)):
             jumps.append(VelocityJump(at, min(until, end), (rise > 0.0) == forward))
     return jumps
+
+
+def _stretches(record: Record) -> Stretches:
+    """Return the stretches of a run's drive, or those that its measured displacement shows."""
+    if record.slider is not None:
+        return drive_stretches(record.slider.motion)
+    way = record.drive_position
+    if way is None or not np.ptp(way) > seeming_motion(way):
+        return ()
+    try:
+        return measured_stretches(record.time, way)
+    except ResultError:
+        return ()
+
+
+def _way(stretches: Stretches, start: float, end: float) -> float:
+    """Return how far a drive goes in its stretches of constant velocity, from `start` to `end`."""
+    way = 0.0
+    for until, course in stretches:
+        lasts = max(min(until, end) - start, 0.0)
+        way += course.velocity * lasts if isinstance(course, ConstantVelocity) else 0.0
+        start = max(start, min(until, end))
+    return way
 
 
 def made_by_jumps(swings: CycleTable, jumps: list[VelocityJump]) -> bool:

@@ -177,12 +177,14 @@ def _doubt_load(record: Record) -> Iterator[str]:
         )
 
 
-def warnings_of_run(run: Trajectory, record: Record, cycles: CycleTable) -> tuple[str, ...]:
+def warnings_of_run(
+    run: Trajectory, record: Record, kind: str, cycles: CycleTable
+) -> tuple[str, ...]:
     """Return warnings about the samples of a run; its parameters are exact."""
     return (
         *_ended_early(run),
         *([f"The load cell {ACROSS}."] if across_force(run, record) else []),
-        *_unsteady(run),
+        *say_unsteady(run, kind),
         *doubt_few_samples(record, cycles),
         *doubt_slips_between_samples(record, cycles),
     )
@@ -199,8 +201,11 @@ def _ended_early(run: Trajectory) -> tuple[str, ...]:
     )
 
 
-def _unsteady(run: Trajectory) -> tuple[str, ...]:
-    """Return a sentence if the drive or the load of a run varies, and which analysis suits it."""
+def say_unsteady(run: Trajectory, kind: str) -> tuple[str, ...]:
+    """Return a sentence if the drive or the load of a run varies, and which analysis suits it.
+
+    It is needless where that analysis found its test.
+    """
     varies = variations(run)
     if not varies:
         return ()
@@ -209,6 +214,8 @@ def _unsteady(run: Trajectory) -> tuple[str, ...]:
         remedy = "st.analysis.load_dependence suits such a test"
     if turns_round(run):
         remedy = "st.analysis.hysteresis gives the loops of force over travel"
+    elif kind == STICK_SLIP and "drive" in varies:  # whose parts show no steady friction, either
+        remedy = "the table of cycles has each by itself"
     return (
         f"The {' and the '.join(varies)} {'varies' if len(varies) == 1 else 'vary'}: kind of "
         f"motion, cycles and friction are those of a steady test, which this is not; {remedy}.",

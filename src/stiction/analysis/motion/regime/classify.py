@@ -68,7 +68,7 @@ def classify(source: Trajectory | Record) -> Regime:
 
     The shape of the cycles decides (`stiction.analysis.motion.rest`). If there are none, or they
     die out, the course of the force decides: it rises to the end, settles, or stays about constant.
-    Where jumps of the drive's measured velocity make the swings, nothing is determined.
+    Where jumps of the drive's velocity make the swings, nothing is determined.
 
     Parameters
     ----------

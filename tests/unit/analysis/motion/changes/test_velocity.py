@@ -112,10 +112,78 @@ def test_a_jump_has_a_time_an_end_and_a_sign():
     assert up[:2] == pytest.approx((1000.0, 1100.0), rel=1e-3)
     assert down[:2] == pytest.approx((1203.1, 2203.1), rel=1e-3)
     assert last[:2] == pytest.approx((2203.1, time[-1]), rel=1e-3)
-    known = record.model_copy(update={"slip_speed": np.ones(len(time))})
-    assert velocity_jumps(known) == []  # then a rest is seen
     run = st.simulate(st.presets.nakano_popov_2020(), "1 s", sample_rate="1 kHz")
     assert not velocity_jumps(st.analysis.record_of(run))
+
+
+ROCK = st.laws.RateStateAgeing(mu_star=0.6, a=0.010, b=0.014, D_c="10 um", V_star="1 um/s")
+HOLDS = st.protocols.slide_hold_slide("10 um/s", ["10 s", "100 s", "1000 s"], slide="100 s")
+
+
+def run_of(test, **rig):
+    slider = st.Slider(**{
+        "mass": 1.0, "k_x": 1e7, "k_y": 1e9, "phi": "0 deg", "normal_load": 5e3,
+        "friction": ROCK, "drive": test,
+    } | rig)  # fmt: skip
+    return st.simulate(slider, sample_rate="20 Hz")
+
+
+@pytest.fixture(scope="module")
+def holds():
+    return run_of(HOLDS)
+
+
+def test_the_jumps_of_a_run_are_those_that_its_measured_drive_shows(holds):
+    """The report of a slide-hold-slide run had three cycles, that of its record none."""
+    record = st.analysis.record_of(holds)
+    way = record.drive_travel
+    measured = st.Record(time=record.time, force=record.force, drive_position=way)
+    jumps, seen = velocity_jumps(record), velocity_jumps(measured)
+    assert [each.rises for each in jumps] == [each.rises for each in seen] == [False, True] * 3
+    assert np.allclose([x[:2] for x in jumps], [x[:2] for x in seen], atol=0.05)
+    for source in (holds, measured):
+        assert st.analysis.classify(source).has("driven")
+        assert not st.analysis.find_cycles(source).sizes["cycle"]
+
+
+def test_jumps_beside_a_ramp_and_after_the_end_of_a_run_are_none():
+    p = st.protocols
+    one, two, three = (p.Constant(speed, duration="1 s") for speed in (1e-4, 2e-3, 3e-3))
+    program = [one, p.Ramp("1 mm/s", duration="1 s"), two, three]
+    slider = st.presets.nakano_popov_2020().replace(drive=p.DriveProgram(program=program))
+    for end, jumps in (("2.5 s", []), ("3.5 s", [3.0]), ("4 s", [3.0])):
+        record = st.analysis.record_of(st.simulate(slider, end, sample_rate="200 Hz"))
+        assert [each.time for each in velocity_jumps(record)] == jumps
+
+
+def test_a_run_of_a_test_tells_its_answer_and_no_friction_of_mixed_speeds(holds):
+    found = st.analyse(holds)
+    brief = " ".join(found.tables()[0].sentences)
+    assert f"A test of healing. {found.parts['procedure'].answer} The force rises" in brief
+    assert "ndetermined" not in brief
+    assert "riction coefficient" not in brief
+    assert found.warnings == ()  # "healing or hysteresis suit such a test"
+    assert found.friction.kinetic is None
+    test = st.protocols.velocity_steps(["10 um/s", "30 um/s", "10 um/s"], distance="0.3 mm")
+    found = st.analyse(run_of(test))
+    steps = found.parts["procedure"]
+    assert steps.answer in found.tables()[0].sentences[0]
+    assert "; D_c = 10.0" in steps.answer
+    assert steps.answer.endswith(" µm (ageing law).")
+    assert found.warnings == ()
+    assert found.friction.kinetic is None
+
+
+def test_stick_slip_of_a_run_has_its_cycles_and_no_a_minus_b():
+    """Of 92 cycles at two speeds a report said first that a - b is 0.0 ± 0.1."""
+    test = st.protocols.velocity_steps(["0.3 mm/s", "1 mm/s"], distance="1.5 mm")
+    law = st.ExponentialWeakening(mu_0=0.35, mu_inf=0.25, v_f="1 mm/s")
+    found = st.analyse(run_of(test, mass=0.5, k_x=2e4, k_y=1e6, normal_load=20.0, friction=law))
+    assert found.regime.kind == "stick-slip"
+    assert found.parts["procedure"] is None
+    assert found.friction.kinetic is not None
+    (said,) = [each for each in found.warnings if "drive varies" in each]
+    assert said.endswith("; the table of cycles has each by itself.")
 
 
 @pytest.mark.parametrize("steps", [3.7, 10.3, 30.7])
