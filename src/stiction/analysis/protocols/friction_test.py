@@ -34,6 +34,8 @@ BESIDE = 1e-3  # of the mean interval between samples: one so near to an end is 
 # By which the times of a program may be off in a record, as a share of a stretch: a stage starts
 # late, and its clock is not that of the record
 OFF_BY = 0.05
+BESIDE_JUMP = 4  # samples on each side of a jump, over which two lines meet there
+KNOWN_TIME = 0.01  # of the interval between samples: a clock is no better than that
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
 COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 
@@ -95,6 +97,9 @@ class FrictionTest(NamedTuple):
         Motion of the drive.
     stretches : list of ConstantStretch
         In order of time. Between them velocity or load vary, as in ramps and under harmonics.
+    position : ndarray or None
+        (n,), displacement of the drive, m, where the stretches are those that it shows: it is on
+        the clock of the force.
     """
 
     time: Floats
@@ -107,6 +112,7 @@ class FrictionTest(NamedTuple):
     law: Law | None
     drive: ConstantVelocity | DriveProgram
     stretches: list[ConstantStretch]
+    position: Floats | None = None
 
     @property
     def mu(self) -> Floats:
@@ -131,6 +137,22 @@ class FrictionTest(NamedTuple):
         interval = float(np.median(np.diff(self.time[self.within(*two[:2])])))
         off = max(min(self.clock(one), self.clock(two)), interval)
         return off if self.law is None else 0.0
+
+    def error_of_jump(self, one: ConstantStretch, two: ConstantStretch) -> float:
+        """Return how well a measured displacement shows when the velocity jumps, s; inf without it.
+
+        Beside the jump its samples deviate from the two lines that meet there: by noise, by the
+        time that the drive takes, and by an error of the jump's time.
+        """
+        at = int(np.searchsorted(self.time, two.start))
+        near = slice(max(at - BESIDE_JUMP, 0), at + BESIDE_JUMP)
+        if self.position is None or len(self.time[near]) < 2 * BESIDE_JUMP:
+            return inf
+        since = self.time[near] - two.start
+        lines = np.where(since < 0.0, one.velocity, two.velocity) * since
+        off = float(np.ptp(self.position[near] - lines)) / abs(two.velocity - one.velocity)
+        interval = float(np.median(np.diff(self.time[near])))
+        return max(off, KNOWN_TIME * interval)
 
     def until_end(self, stretch: ConstantStretch, early: float = 0.0) -> Indices:
         """Return the indices of a stretch's samples, without those that may belong to the next.
@@ -272,6 +294,7 @@ def of_record(
         None,
         drive,
         found,
+        None if measured is None else record.drive_position,
     )
 
 

@@ -174,6 +174,7 @@ def step_data(
         error,
         abs(two.velocity),
         abs(two.velocity) * clock,
+        abs(two.velocity) * test.error_of_jump(one, two),
     )
 
 

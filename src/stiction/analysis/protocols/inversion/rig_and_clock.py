@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import exp, expm1, isnan, log
+from math import exp, expm1, inf, isnan, log
 
 import numpy as np
 
 from stiction.analysis.protocols.common_mean import CommonMean, common_mean
 from stiction.analysis.protocols.inversion.fit import Inversion
-from stiction.analysis.protocols.inversion.step import StepData, has_changed, onset
+from stiction.analysis.protocols.inversion.step import StepData, has_changed, jumps_at_once, onset
 from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.text.lists import in_list, number_text
-from stiction.text.quantity.wording import in_words
+from stiction.text.quantity.wording import advice, in_words
 
+SAMPLES = 20.0  # while friction evolves by D_c: with fewer the time of a step matters
 ALIKE_STIFFNESSES = log(1.02)  # stiffnesses that are so near to each other are not worth a sentence
 
 
@@ -34,7 +35,22 @@ def say_rig_and_clock(
     late = [(fit.delay / step.speed, fit.delay_error / step.speed) for step, fit in known]
     interval = max(step.interval for step, _ in known)
     of_stiffness, of_delay = (common_mean(*np.array(each).T) for each in (stiffer, late))
-    return [*_say_stiffness(of_stiffness), *_say_delay(of_delay, interval, drive), *said]
+    said = [*_say_stiffness(of_stiffness), *_say_delay(of_delay, interval, drive), *said]
+    return [*said, *_say_sampling(known)]
+
+
+def _say_sampling(known: Sequence[tuple[StepData, Inversion]]) -> list[str]:
+    """Return that samples are few for a step that may lie anywhere between two of them."""
+    unseen = [pair for pair in known if not pair[0].shows_jump and jumps_at_once(pair[0])]
+    wanted = max((SAMPLES * step.speed / fit.D_c for step, fit in unseen), default=0.0)
+    rate = min((1.0 / step.interval for step, _ in unseen), default=inf)
+    if wanted <= rate:
+        return []
+    return [
+        f"Steps may lie anywhere between two samples, at {in_words(rate, 'Hz')}: a and b of all "
+        "of them may be too small, or too large, by their errors. Sample at "
+        f"{advice(wanted, 'Hz')}, or measure the displacement of the drive."
+    ]
 
 
 def _say_clock(steps: Sequence[StepData], drive: str) -> list[str]:

@@ -17,6 +17,7 @@ from stiction.analysis.protocols.inversion.spring_slider import (
     SpringSlider,
     course_after_a_step,
 )
+from stiction.analysis.signals.correlated_noise import ERRORS_997
 from stiction.arrays import Floats
 
 # parameters of a curve; that of a run has the first four
@@ -53,11 +54,18 @@ class StepData(NamedTuple):
     # travel by which the step may come earlier or later than `slip` has it, m. 0 for a run: then
     # its stiffness is right, too
     clock: float = 0.0
+    # error of the step in `slip` where a displacement shows it, as travel, m
+    jump_error: float = inf
 
     @property
     def shortest(self) -> float:
         """Travel from one sample to the next, m."""
         return float(np.median(np.diff(self.slip)))
+
+    @property
+    def shows_jump(self) -> bool:
+        """Whether a displacement shows the step better than the samples between which it lies."""
+        return self.jump_error < min(FLAT * self.shortest, self.clock)
 
     @property
     def interval(self) -> float:
@@ -249,6 +257,11 @@ def has_changed(data: StepData) -> bool:
     return abs(float(data.mu[0]) - data.level) > _least_change(data, data.mu)
 
 
+def jumps_at_once(data: StepData) -> bool:
+    """Return whether the spring takes up the jump of friction within a sample."""
+    return travel_of_spring(data, _jump(data, data.mu)) < RESOLVED * data.shortest
+
+
 def _jump(data: StepData, mu: Floats) -> float:
     """Return the first change of friction."""
     return abs(float(mu[int((data.up * mu).argmax())]) - data.level)
@@ -262,13 +275,18 @@ def _least_change(data: StepData, mu: Floats) -> float:
 def _delay(data: StepData, slip: Floats, mu: Floats, shortest: float) -> tuple[Delay, slice]:
     """Return where the delay is sought, and which bins lie on the flank of a jump.
 
-    The spring takes up the first of a jump undisturbed.
+    There is none where a displacement on the same clock shows the step, and friction changes right
+    after it. Else the first change of friction tells: the spring takes up the first of a jump
+    undisturbed.
     """
     clock, first = data.clock, onset(data, mu)
     last, rise = float(slip[first]), travel_of_spring(data, _jump(data, mu))
+    width = shortest + travel_of_spring(data, ABOVE_NOISE * float(data.before.std()))
+    off = data.jump_error
+    if data.shows_jump and -ERRORS_997 * off < last < width + ERRORS_997 * off:
+        return Delay(-clock, 0.0, clock, off), slice(0)
     likely = last - 0.5 * shortest - travel_of_spring(data, float(mu[first]) - data.level)
     if clock > 0.0 and rise < RESOLVED * shortest and last < clock:
-        width = shortest + travel_of_spring(data, ABOVE_NOISE * float(data.before.std()))
         flank = slice(first, first + 1 + int(rise / shortest))
         return Delay(last - width, last - 0.5 * width, last, FLAT * width), flank
     likely = min(max(likely, -INSIDE * clock), INSIDE * clock)
