@@ -19,6 +19,7 @@ __all__ = [
     "Complex",
     "Floats",
     "Indices",
+    "ShortRepr",
     "compute_once",
     "median",
     "same_fields",
@@ -28,6 +29,7 @@ __all__ = [
 
 TINY = 1e-300  # nothing beside any quantity in SI, and more than 0: of a divisor, or in a logarithm
 NORMAL_MEDIAN = 0.6744897501960817  # of |x| of a standard normal x
+SHOWN = 6  # values of an array that a repr has in full
 KEPT = 8  # arrays of which a function keeps what it found: those of one record
 
 Floats = NDArray[np.float64]
@@ -35,6 +37,23 @@ Complex = NDArray[np.complex128]
 Indices = NDArray[np.intp]
 Rest = ParamSpec("Rest")
 Found = TypeVar("Found")
+
+
+class ShortRepr:
+    """A dataclass whose repr says how many numbers an array has, and between which they lie."""
+
+    def __repr__(self) -> str:
+        """Return the fields by name, long arrays in short."""
+        its: Any = self
+        shown = (f"{each.name}={_in_short(getattr(its, each.name))}" for each in fields(its))
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+
+def _in_short(value: Any) -> str:
+    if not isinstance(value, np.ndarray) or value.size <= SHOWN:
+        return repr(value)
+    ends = (f"{end(value):.4g}" for end in (np.nanmin, np.nanmax) if not np.isnan(value).all())
+    return f"<{value.size} values, {' to '.join(ends) or 'nan'}>"
 
 
 def compute_once(

@@ -40,6 +40,7 @@ HEADINGS = (
     "law", "sticks", "stuck", "largest {}/W", "fastest slip", "slowest slip while loading",
     "median slip while loading",
 )  # fmt: skip
+SLOWEST = 1e-12  # m/s: slower motion of a law with states, which never rests, has no number
 ROUNDED = 1.0 + 1e-9  # times the speed of the release, which is not a slip
 BRISTLES = 100.0  # of a spring's stiffness: sigma_0 of Canudas de Wit et al. (1995) over 1 kN/m
 MEMORY = 200.0  # memory lengths in a slip length: 10 µm in the 2 mm of Nakano & Popov
@@ -99,10 +100,26 @@ def row(label: str, run: Trajectory, o: Outcome) -> tuple[str, ...]:
     drive = float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
     release = ROUNDED * initial.epsilon if initial.v_x is None else 0.0
     least = drive * (REST if o.fastest > release * drive else release)  # it sticks at once
-    shown = (v if v > least else 0.0 for v in (o.fastest, o.slowest, o.creep))
-    speeds = [in_words(v, "m/s", 3) for v in shown]
+    moves = has_state(run.slider.law)  # always, however slowly
+    speeds = [
+        in_words(v, "m/s", 3)
+        if v > least and not (moves and v < SLOWEST)
+        else f"< {in_words(SLOWEST, 'm/s')}"
+        if moves and v == v
+        else in_words(v if v != v else 0.0, "m/s", 3)
+        for v in (o.fastest, o.slowest, o.creep)
+    ]
     speeds[0] = f"> {speeds[0]}" if o.hidden else speeds[0]
-    return label, str(o.sticks), in_words(o.time_stuck, "s", 3), f"{o.peak:.4f}", *speeds
+    stuck = _share_in_words(o.time_stuck, float(run.samples["time"][-1] - run.samples["time"][0]))
+    return label, str(o.sticks), stuck, f"{o.peak:.4f}", *speeds
+
+
+def _share_in_words(lasts: float, whole: float) -> str:
+    """Return how long something lasts (s): not the whole time, if it is less."""
+    text = in_words(lasts, "s", 3)
+    if lasts >= whole or text != in_words(whole, "s", 3):
+        return text
+    return f"all but {in_words(whole - lasts, 's', 2)}"
 
 
 def add_sample_rate(description: Description) -> Description:

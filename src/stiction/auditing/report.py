@@ -20,8 +20,10 @@ from stiction.auditing.oscillation import TransverseSwings, oscillation_of
 from stiction.auditing.pairs import Pair, advise_pairs
 from stiction.auditing.prediction import Prediction, predict
 from stiction.auditing.simulated_test import (
+    LEAST_WORK,
     MOST_WORK,
     OSCILLATES,
+    SHARE,
     SLIDES,
     SimulatedTest,
     coarse_rate,
@@ -37,6 +39,7 @@ from stiction.auditing.words.numbers import numbers, violated_assumptions
 from stiction.auditing.words.stick import stick
 from stiction.auditing.words.transverse import transverse
 from stiction.auditing.words.verdict import AS_DESCRIBED, VERDICT, verdict
+from stiction.friction import has_state
 from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.linear_stability import Critical, Linearisation, critical, steady_sliding
@@ -89,6 +92,9 @@ class Audit(Report):
         Of the uncertain parameters, which `slider` has in their middle.
     pairs : tuple of Pair
         Changes of two parameters, where no misalignment alone makes it slide steadily.
+    aligned : SimulatedTest or None
+        The simulated test, from rest, without misalignment; only where friction has an internal
+        state, which creeps by itself.
 
     Examples
     --------
@@ -110,6 +116,7 @@ class Audit(Report):
     measured: RecordComparison | None = None
     priors: Mapping[str, Prior] = field(default_factory=dict)
     pairs: tuple[Pair, ...] = ()
+    aligned: SimulatedTest | None = None
 
     def __eq__(self, other: object) -> bool:
         """Compare predictions and simulations; NaN equals NaN."""
@@ -265,6 +272,13 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     observation = simulate_test(system, prediction, growth, sample_rate=rate, progress=report(0))
     sliding_on = from_sliding(sliding, prediction, report(1))
     work = MOST_WORK - observation.work - sliding_on.work
+    aligned = None
+    if has_state(system.law) and system.misalignment != 0.0:
+        straight = system.replace(phi=f"{system.turn!r} rad")
+        at_zero, its = predict(straight), steady_sliding(straight).growth_rate
+        most = max(min(work // 2, int(SHARE * MOST_WORK)), LEAST_WORK)
+        aligned = simulate_test(straight, at_zero, its, sample_rate=rate, most_steps=most)
+        work -= aligned.work
     springs = None
     if system.springs:
         springs = chain.examine(system, work // 2, report(2))
@@ -287,7 +301,7 @@ def _examine(rig: Rig, measured: RecordComparison | None, progress: Progress) ->
     both = observation, sliding_on
     return Audit(
         system, prediction, sliding, misalignment, *both, advices, springs, tolerance, measured,
-        rig.priors, pairs,
+        rig.priors, pairs, aligned,
     )  # fmt: skip
 
 

@@ -101,7 +101,11 @@ class Stability(Report):
     @cached_property
     def _sections(self) -> tuple[Section, ...]:
         """All sections; a critical stiffness takes as long to find as a critical value."""
-        return modes_section(self.sliding), critical_section(self.slider, self.criticals)
+        of_spring = critical_stiffness_of(self.slider)
+        its = self.criticals
+        if self.over == OVER and of_spring is not None:
+            its = (*its, of_spring)
+        return modes_section(self.sliding, of_spring), critical_section(self.slider, its)
 
     def plot(self, axes: Any = None) -> Axes | NDArray[np.object_]:
         """Draw the modes over one parameter, or the boundary in the plane of two.
@@ -170,7 +174,7 @@ def ends(found: Critical) -> tuple[float | str, float | str]:
     return (f"{low!r} rad", f"{high!r} rad") if found.unit == "rad" else (low, high)
 
 
-def modes_section(linear: Linearisation) -> Section:
+def modes_section(linear: Linearisation, of_spring: Critical | None = None) -> Section:
     """Return the verdict, and a row for each mode, one for a conjugate pair."""
     decays = "every small disturbance decays" if linear.stable else "not every disturbance decays"
     modes = zip(linear.eigenvalues, linear.frequencies, linear.damping_ratios, strict=True)
@@ -186,19 +190,26 @@ def modes_section(linear: Linearisation) -> Section:
             "The static coefficient plays no part in that: a mass that is at rest, or is stopped, "
             "may go on to stick and slip. stiction audit tries both starts."
         )
-    sentences += beside_critical_stiffness(linear.slider)
+    sentences += beside_critical_stiffness(linear.slider, of_spring)
     headings = ("growth rate (1/s)", "frequency (Hz)", "damping ratio")
     return Section("Steady sliding", sentences, Table(headings, rows))
 
 
-def beside_critical_stiffness(slider: Slider) -> list[str]:
+def critical_stiffness_of(slider: Slider) -> Critical | None:
+    """Return the critical stiffness along x of rate and state; None for other friction."""
+    if slider.springs or not hasattr(slider.law, "grain"):
+        return None
+    return critical(slider, "k_x")
+
+
+def beside_critical_stiffness(slider: Slider, found: Critical | None = None) -> list[str]:
     """Return the stiffness along x relative to the critical one of rate and state.
 
     All else is as it is, the misalignment too: `stiction.theory.critical_stiffness` has none.
     """
-    if slider.springs or not hasattr(slider.law, "grain"):
+    found = found or critical_stiffness_of(slider)
+    if found is None:
         return []
-    found = critical(slider, "k_x")
     if not len(found.values):
         kind = BOUNDARY if found.neutral else STABLE if found.stable[0] else UNSTABLE
         low, high = (in_words(end, "N/m") for end in found.between)

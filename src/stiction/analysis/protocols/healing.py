@@ -20,7 +20,7 @@ from stiction.analysis.protocols.settling import ROUNDED
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.analysis.signals.straight_line import StraightLine, line_of_few
-from stiction.arrays import Floats
+from stiction.arrays import Floats, ShortRepr
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.lists import coefficient_texts, in_list, say_left_out
@@ -29,8 +29,8 @@ from stiction.text.sections import Section, SectionReport, Table
 from stiction.trajectory import Trajectory
 
 
-@dataclass(frozen=True)
-class Healing(SectionReport):
+@dataclass(frozen=True, repr=False)
+class Healing(SectionReport, ShortRepr):
     """Peaks of friction after holds, and a straight line through them.
 
     Attributes

@@ -11,7 +11,7 @@ import numpy as np
 from stiction.analysis.protocols.friction_test import FrictionTest, friction_test, without_harmonics
 from stiction.analysis.record import Record
 from stiction.analysis.signals.reversals import remove_reversals
-from stiction.arrays import Floats
+from stiction.arrays import Floats, ShortRepr
 from stiction.drive import ConstantVelocity, DriveProgram, drive_stretches
 from stiction.errors import ResultError
 from stiction.recording.noise import seeming_motion
@@ -28,8 +28,8 @@ LATE = 0.2  # of the width, for which the mass slides before the drive turns
 VARIES = 0.01  # of the load: where it varies by more, a force over it is not a coefficient
 
 
-@dataclass(frozen=True)
-class Loop:
+@dataclass(frozen=True, repr=False)
+class Loop(ShortRepr):
     """One loop, from a turn of the drive to the second turn after it, or to the record's end.
 
     Attributes
@@ -56,8 +56,8 @@ class Loop:
     closed: bool = True
 
 
-@dataclass(frozen=True)
-class Hysteresis(SectionReport):
+@dataclass(frozen=True, repr=False)
+class Hysteresis(SectionReport, ShortRepr):
     """The loops of a reversal test.
 
     Attributes

@@ -19,7 +19,7 @@ from stiction.analysis.protocols.friction_test import (
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.analysis.signals.straight_line import line_of_few
-from stiction.arrays import Floats
+from stiction.arrays import Floats, ShortRepr
 from stiction.drive import ConstantVelocity, LoadProgram, load_stretches
 from stiction.errors import ResultError
 from stiction.text.lists import say_left_out
@@ -28,8 +28,8 @@ from stiction.text.sections import Section, SectionReport, Table
 from stiction.trajectory import Trajectory
 
 
-@dataclass(frozen=True)
-class LoadDependence(SectionReport):
+@dataclass(frozen=True, repr=False)
+class LoadDependence(SectionReport, ShortRepr):
     """Friction at each level of the normal load, and the line through it.
 
     Attributes

@@ -13,7 +13,7 @@ from stiction.analysis.protocols.common_mean import common_mean
 from stiction.analysis.protocols.inversion.spring_slider import Law
 from stiction.analysis.protocols.steady_levels import TravelTrend
 from stiction.analysis.signals.correlated_noise import ERRORS_95
-from stiction.arrays import Floats
+from stiction.arrays import Floats, ShortRepr
 from stiction.text.lists import coefficient_texts, in_list
 from stiction.text.quantity.wording import in_words, to_error, with_error
 from stiction.text.sections import Section, SectionReport, Table
@@ -22,8 +22,8 @@ from stiction.text.sections import Section, SectionReport, Table
 STIFF = 100.0
 
 
-@dataclass(frozen=True)
-class VelocityStep:
+@dataclass(frozen=True, repr=False)
+class VelocityStep(ShortRepr):
     """One jump of the drive's velocity.
 
     Attributes
@@ -85,8 +85,8 @@ class VelocityStep:
     stiffness_ratio_error: float = 0.0
 
 
-@dataclass(frozen=True)
-class VelocitySteps(SectionReport):
+@dataclass(frozen=True, repr=False)
+class VelocitySteps(SectionReport, ShortRepr):
     """The jumps of a velocity-step test.
 
     Attributes

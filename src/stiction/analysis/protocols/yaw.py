@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from stiction.analysis.protocols.friction_test import constant_stretches
-from stiction.arrays import Floats, xr
+from stiction.arrays import Floats, ShortRepr, xr
 from stiction.drive import drive_stretches, load_stretches
 from stiction.errors import ResultError
 from stiction.linear_stability import steady_sliding
@@ -18,8 +18,8 @@ from stiction.system.slider import Slider, slider_of
 from stiction.text.sections import Section, SectionReport, Table
 
 
-@dataclass(frozen=True)
-class ApparentFriction(SectionReport):
+@dataclass(frozen=True, repr=False)
+class ApparentFriction(SectionReport, ShortRepr):
     """Forces of a yaw sweep over the normal load.
 
     Attributes

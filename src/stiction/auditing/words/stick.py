@@ -102,10 +102,7 @@ def _why(found: Audit, inertia: float) -> tuple[str, str]:
     if has_state(found.slider.law) and seen.shares.creep > 0.0:
         if not misaligned:
             return "The creep is due to the law of friction.", ""
-        return (
-            "Friction with internal state creeps by itself.",
-            "An audit of the same apparatus with phi=0deg shows how much the misalignment adds.",
-        )
+        return "Friction with internal state creeps by itself.", ""
     moments = _rests_for_moments(seen) if misaligned else ""
     if moments or (misaligned and seen.shares.creep - inertia > seen.shares.rest):
         distance = seen.mean("creep_distance")

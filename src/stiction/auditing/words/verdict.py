@@ -19,6 +19,7 @@ from stiction.auditing.simulated_test import OSCILLATES, SLIDES, SMALL, UNSETTLE
 from stiction.auditing.words.stick import answer
 from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
+from stiction.linear_stability.examination import beside_critical_stiffness
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.system.load_cell import ACROSS
 from stiction.text.quantity.wording import in_words, to_error, with_error
@@ -47,7 +48,33 @@ def verdict(found: Audit) -> list[str]:
     if early:
         ended = f"The simulated test ended early: {early[0].run.status.value}."
         return [*doubts, ended, stability(found)]
-    return [*doubts, answer(found), *motions(found), stability(found), margin(found)]
+    lines = [answer(found), *motions(found), *without_misalignment(found), stability(found)]
+    return [*doubts, *lines, *critical_stiffness(found), margin(found)]
+
+
+def without_misalignment(found: Audit) -> list[str]:
+    """Return the motion without misalignment, where friction creeps by itself, for comparison."""
+    other = found.aligned
+    if other is None or not other.run.status.ok:
+        return []
+    return [
+        f"Without misalignment, all else as it is, the load cell shows {describe_motion(other)}: "
+        "the difference is what the misalignment adds."
+    ]
+
+
+def critical_stiffness(found: Audit) -> list[str]:
+    """Return the stiffness beside the critical one of rate and state, and its meaning."""
+    said = beside_critical_stiffness(found.slider)
+    if not said or "k_c" not in said[0]:
+        return said
+    if found.sliding.stable:
+        return [*said, "On a spring softer than k_c the same friction sticks and slips."]
+    return [
+        *said,
+        "A spring so soft cannot follow friction as it weakens: stick-slip is that of spring and "
+        "friction together, and with a stiffer spring, or less load, the same friction slides.",
+    ]
 
 
 def motions(found: Audit) -> list[str]:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
-from math import degrees, sin
+from math import degrees, isfinite, sin
 from textwrap import wrap
 from typing import Any
 
 from stiction import theory
 from stiction.analysis.motion.rest import stuck_share
+from stiction.analysis.protocols.friction_test import without_harmonics
 from stiction.analysis.slip import is_undersampled
 from stiction.drive import ConstantVelocity
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
@@ -66,12 +67,32 @@ def _askew(angle: float) -> str:
 
 
 def _base(slider: Slider) -> str:
-    """Return the drive's velocity; nothing if only the pieces of a program have one."""
+    """Return the drive's velocity, or its range; nothing if it is recorded, or not known."""
     drive = slider.motion
     V = drive.velocity
+    if (ends := velocity_range(slider)) is not None:
+        low, high = (in_words(end, "m/s") for end in ends)
+        return f", $V$ = {low} to {high}"
     if V == 0.0 and not isinstance(drive, ConstantVelocity) and drive.program:
         return ""
     return f", $V$ = {in_words(V, 'm/s')}"
+
+
+def velocity_range(slider: Slider) -> tuple[float, float] | None:
+    """Return the least and the largest velocity of the pieces of a program, m/s; None without one.
+
+    Harmonics are beside it. A recorded piece says its own.
+    """
+    drive = slider.motion
+    if isinstance(drive, ConstantVelocity):
+        return None
+    if any(isinstance(piece, RECORDS) for piece in drive.program):
+        return None
+    start, seen = 0.0, set()
+    for end, course in without_harmonics(drive).stretches:
+        seen |= {float(course.rate(at)[0]) for at in (start, end) if isfinite(at)}
+        start = end
+    return (min(seen), max(seen)) if len(seen) > 1 else None
 
 
 def protocol_in_words(slider: Slider) -> list[str]:
@@ -79,7 +100,8 @@ def protocol_in_words(slider: Slider) -> list[str]:
     lines: list[str] = []
     drive, load = slider.motion, slider.load
     if not isinstance(drive, ConstantVelocity):
-        lines += program_in_words(f"{slider.driven} driven", drive.program, drive.repeat)
+        moves = "spring driven" if slider.driven == "spring" else "plate driven (drawn at rest)"
+        lines += program_in_words(moves, drive.program, drive.repeat)
         for way, harmonic in (("along", drive.along), ("across", drive.across)):
             if harmonic is not None:
                 lines.append(f"{way}: ±{harmonic_in_words(harmonic, 'm/s')}")
@@ -166,7 +188,7 @@ def scales_in_words(slider: Slider) -> list[str]:
         rf"$\omega_x/2\pi$ = {in_words(f_x, 'Hz')}, $\omega_y/2\pi$ = {in_words(f_y, 'Hz')}",
     ]
     V, phi = slider.drive_speed, abs(slider.misalignment)
-    if V > 0 and sin(phi) > 0:
+    if V > 0 and sin(phi) > 0 and velocity_range(slider) is None:
         A = theory.damping_number_of(slider, V)
         zeta = plain(A * sin(phi) ** 3)
         lines.append(rf"$A$ = {plain(A)}, $\zeta(\theta=\varphi)$ = {zeta}")

@@ -17,7 +17,7 @@ from stiction.plotting.page.style import BLUE, GREY, ORANGE, UNSTABLE, style
 
 LARGE = 3000.0  # times small growth rates, the largest: a linear axis shows no crossing of these
 FINEST = 1e-3  # of the largest, up to which the axis is linear then
-CLOSE = 0.13  # of the axis: closer numbers would overlap
+CLOSE = 0.2  # of the axis: closer values, with their unit, would overlap
 
 
 def plot_modes(
@@ -57,9 +57,12 @@ def plot_modes(
             ax.set(xscale=modes.attrs["scale"], xlim=scale.in_unit(ends))
             for value in marked:
                 ax.axvline(value, color=GREY, linewidth=0.8, dashes=(4, 2), zorder=1)
+        if len(marked):
+            above.plot([], [], color=GREY, linewidth=0.8, dashes=(4, 2), label="critical")
         for value, side in zip(marked, sides(above, marked), strict=True):
+            named = scale.quantity(value / scale.factor)
             above.annotate(
-                f"{value:.4g}",
+                named if len(marked) == 1 else named.partition(" = ")[2],
                 (value, 1.0),
                 (0, 2),
                 xycoords=("data", "axes fraction"),
@@ -71,6 +74,8 @@ def plot_modes(
         if log:
             below.xaxis.set_major_formatter(PLAIN)
         below.set_xlabel(scale.label)
+        if any(line.get_alpha() for line in below.lines):
+            above.plot([], [], color=BLUE, linewidth=3.0, alpha=0.5, label="grows")
         above.legend(loc="lower center", bbox_to_anchor=(0.5, 1.07), ncols=3)
     return np.array([above, below], dtype=object)
 
@@ -101,7 +106,9 @@ def draw_growth_rates(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
     if top > LARGE * least:
         thresh = max(least, FINEST * top)
         ax.set_yscale("symlog", linthresh=10.0 ** np.floor(np.log10(thresh)))
-    ax.set(ylim=(-2.5 * top, 1.25 * top), ylabel="growth rate (1/s)")
+    highest = growth.max(axis=1)  # of the mode that decides; a slower decay is of interest, too
+    bottom = max(-2.5 * top, 2.5 * min(highest.min(), -0.2 * top))
+    ax.set(ylim=(bottom, 1.25 * top), ylabel="growth rate (1/s)")
     ax.axhspan(0.0, 1.25 * top, color=UNSTABLE, linewidth=0, zorder=0, label="unstable")
     ax.axhline(0.0, color=GREY, linewidth=0.6)
     at = scale.in_unit(modes["value"].values)
@@ -127,7 +134,8 @@ def draw_frequencies(ax: Axes, modes: xr.Dataset, scale: Scale) -> None:
     for f, rate in zip(frequency.T, modes["growth_rate"].values.T, strict=True):
         shown = np.where(f > 0, f, np.nan)
         ax.plot(at, shown, color=BLUE, linewidth=1.2)
-        ax.plot(at, np.where(rate > 0, shown, np.nan), color=BLUE, linewidth=3.0, alpha=0.5)
+        if (grows := rate > 0).any():
+            ax.plot(at, np.where(grows, shown, np.nan), color=BLUE, linewidth=3.0, alpha=0.5)
     if ringing.max() < 10.0 * ringing.min():
         ax.set_ylim(0.0, 1.1 * ringing.max())
     else:
