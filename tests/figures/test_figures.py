@@ -53,7 +53,7 @@ from stiction.plotting.page.style import (
     new_figure,
     style,
 )
-from stiction.plotting.page.words import plain
+from stiction.plotting.page.words import plain, scales_in_words, system_in_words
 from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.law import plot_law
 from stiction.plotting.run.lines import draw_line, envelope, mean_course, oscillations
@@ -1308,3 +1308,24 @@ def test_a_record_without_the_force_across_has_no_figure_of_its_rotation(
     assert "rotation" in overview.figures(turning)
     with pytest.raises(st.ResultError, match="no rotation of the force to draw: the record has"):
         st.plotting.plot_rotation(found)
+
+
+def test_an_overview_has_no_empty_panels(slider: st.Slider) -> None:
+    """Of an aligned rock rig three of eight were empty, and rounding was a "fast oscillation"."""
+    law = st.laws.RateStateAgeing(a=0.008, b=0.014, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    rig = {"mass": 1.0, "k_x": 1e7, "k_y": 1e9, "phi": "0 deg", "normal_load": 5e3}
+    rock = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("10 um/s"))
+    axes = st.simulate(rock, "60 s", sample_rate="20 Hz").plot()
+    assert not {"direction", "stuck"} & axes.keys()
+    assert len(axes["force"].get_legend().get_texts()) == 2
+    axes = st.simulate(slider, "1 s", sample_rate="1 kHz").plot()
+    assert {"direction", "stuck"} <= axes.keys()
+
+
+def test_the_words_of_a_ramp_have_the_range_of_its_velocity(slider: st.Slider) -> None:
+    p = st.protocols
+    ramp = slider.replace(drive=p.DriveProgram(velocity=1e-4, program=[p.Ramp(5e-3, duration=2.0)]))
+    assert "$V$ = 100 µm/s to 5 mm/s" in " ".join(system_in_words(ramp))
+    assert "zeta" in " ".join(scales_in_words(slider))
+    assert "zeta" not in " ".join(scales_in_words(ramp))  # which was that of the start
+    assert "$V$ = 1 mm/s" in " ".join(system_in_words(slider))

@@ -510,6 +510,11 @@ def test_friction_with_state_is_no_artefact_of_the_misalignment():
     found = examine(block)
     text = text_of(found)
     assert "Friction with internal state creeps by itself" in text
+    assert "Without misalignment, all else as it is, the load cell shows stick-slip" in text
+    assert found.aligned.run.slider.misalignment == 0.0
+    assert re.search(r"k_x = 0\.05\d* k_c", text)
+    assert "A spring so soft cannot follow friction" in text
+    assert examine(PAPER).aligned is None
     assert "~ " in rows_of(found)
     assert "artefact" not in text
     assert "During creep the mass oscillates" not in text

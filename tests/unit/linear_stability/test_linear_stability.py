@@ -584,3 +584,15 @@ def test_examinations_and_their_copies_are_equal(slider):
     assert again == found
     assert found.criticals[0] != found.criticals[0]._replace(values=np.zeros(1))
     assert found != st.stability(slider.replace(mass=1.0), over="phi")
+
+
+def test_where_stability_changes_has_the_stiffness_of_rate_and_state():
+    law = st.laws.RateStateAgeing(a=0.008, b=0.012, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    rig = {"mass": 1.0, "k_x": 2e5, "k_y": 2e7, "phi": "1 deg", "normal_load": 1e3}
+    rock = st.Slider(**rig, friction=law, drive=st.ConstantVelocity("10 um/s"))
+    rows = st.stability(rock).tables()[1].table.rows
+    assert [row[0] for row in rows if row[0]] == ["phi", "drive.velocity", "k_x"]
+    rows = st.stability(rock, over="phi").tables()[1].table.rows
+    assert [row[0] for row in rows if row[0]] == ["phi"]
+    rows = st.stability(st.presets.nakano_popov_2020()).tables()[1].table.rows
+    assert "k_x" not in {row[0] for row in rows}

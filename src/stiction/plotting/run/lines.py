@@ -166,8 +166,9 @@ def _draw_range(
     """Draw the range of oscillations as a band; return the values with their mean in its place."""
     starts, low, high, shown = _ranges(time, values, found, min(BINS, len(time) // 2))
     middle = 0.5 * (time[starts] + time[np.r_[starts[1:], len(time)] - 1])
-    band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
-    band.set_facecolor((color, BAND))
+    if np.isfinite(low).any():  # else all of it was part of quick slips
+        band = ax.fill_between(middle, low, high, color=color, linewidth=EDGE)
+        band.set_facecolor((color, BAND))
     return shown
 
 

@@ -31,7 +31,9 @@ from stiction.trajectory import Trajectory
 LINE, GAP = 10.5, 3.0  # of text, pt
 DRAWING, LAW = 2.1, 1.7  # heights of the system's drawing and of the law, in
 
-SERIES = ("force", "friction", "direction", "position", "speed", "stuck")
+SERIES = {  # and their heights relative to each other
+    "force": 1.4, "friction": 1.0, "direction": 1.0, "position": 1.0, "speed": 1.2, "stuck": 0.6,
+}  # fmt: skip
 SHOWN_PANELS = ("force", "direction", "speed")
 HEIGHT = 1.9  # in
 
@@ -54,7 +56,8 @@ def plot_run(
     axes : mapping of str to Axes, optional
         What to draw, and where: any of "system", "words", "law", "drive_X", "drive_Y",
         "normal_load" (where these change), "force", "friction", "direction", "position",
-        "speed", "stuck". All, on a new figure as wide as a page by default.
+        "speed", "stuck". By default all on a new figure as wide as a page, without "direction"
+        of an aligned rig, whose friction never turns, and "stuck" where nothing sticks.
     window : tuple of float or str, optional
         Start and end in the run, s; all of it by default.
 
@@ -109,10 +112,23 @@ def _panels(run: Trajectory, words: Words) -> dict[str, Axes]:
         [["system"], ["words"], ["law"]], height_ratios=[DRAWING, written, LAW]
     )
     imposed = [name for name, *_ in time_series.imposed_quantities(run)]
-    heights = [0.85] * len(imposed) + [1.4, 1, 1, 1, 1.2, 0.6]
-    series = right.subplots(len(heights), 1, sharex=True, height_ratios=heights)
+    heights = dict.fromkeys(imposed, 0.85) | {name: SERIES[name] for name in _moving(run)}
+    series = right.subplots(len(heights), 1, sharex=True, height_ratios=[*heights.values()])
     fix_ticks([*panels.values(), *series])
-    return {**panels, **dict(zip((*imposed, *SERIES), series, strict=True))}
+    return {**panels, **dict(zip(heights, series, strict=True))}
+
+
+def _moving(run: Trajectory) -> list[str]:
+    """Return the names of the series without those that would be empty: no turn, no stick.
+
+    The words beside them tell that the rig is aligned, or that nothing sticks.
+    """
+    empty = set()
+    if run.slider.misalignment == 0.0 and not time_series.friction_turns(run):
+        empty.add("direction")
+    if not len(run.stick_intervals):
+        empty.add("stuck")
+    return [name for name in SERIES if name not in empty]
 
 
 def _law(ax: Axes, run: Trajectory) -> None:
@@ -169,8 +185,11 @@ def _forces(ax: Axes, run: Trajectory) -> None:
     forces = [run.samples[f"spring_{axis}"] for axis in "xy"]
     factor, prefix = metric_prefix(np.concatenate(forces))
     times = run.samples["time"]
+    whole = np.concatenate(forces) * factor
+    height = float(np.fmax.reduce(whole) - np.fmin.reduce(whole))
+    window = float(times[-1] - times[0]), height  # of both: that of one may be rounding alone
     for axis, color, force in zip("xy", (RED, ORANGE), forces, strict=True):
-        line = draw_line(ax, times, force * factor, color)
+        line = draw_line(ax, times, force * factor, color, window=window)
         line.set_label(f"$k_{axis} u_{axis}$")
         line.set_zorder(2.2 if axis == "x" else 2.0)  # the transverse force would hide it
     ax.set_ylabel(f"spring force ({prefix}N)")

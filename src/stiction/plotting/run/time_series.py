@@ -94,6 +94,13 @@ def _after_start(run: Trajectory, variable: str) -> Floats:
     return values
 
 
+def friction_turns(run: Trajectory) -> bool:
+    """Return whether the friction angle psi changes by more than its panel would show."""
+    angles = cut_open(_after_start(run, "psi"))
+    known = angles[np.isfinite(angles)]
+    return len(known) > 0 and float(np.ptp(known)) > STILL
+
+
 def draw_direction(ax: Axes, run: Trajectory) -> Line2D:
     """Draw the friction angle psi (deg) to the drive direction over time."""
     angles = cut_open(_after_start(run, "psi"))
