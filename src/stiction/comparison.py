@@ -110,11 +110,11 @@ def row(label: str, run: Trajectory, o: Outcome) -> tuple[str, ...]:
         for v in (o.fastest, o.slowest, o.creep)
     ]
     speeds[0] = f"> {speeds[0]}" if o.hidden else speeds[0]
-    stuck = _share_in_words(o.time_stuck, float(run.samples["time"][-1] - run.samples["time"][0]))
+    stuck = share_in_words(o.time_stuck, float(run.samples["time"][-1] - run.samples["time"][0]))
     return label, str(o.sticks), stuck, f"{o.peak:.4f}", *speeds
 
 
-def _share_in_words(lasts: float, whole: float) -> str:
+def share_in_words(lasts: float, whole: float) -> str:
     """Return how long something lasts (s): not the whole time, if it is less."""
     text = in_words(lasts, "s", 3)
     if lasts >= whole or text != in_words(whole, "s", 3):

@@ -12,7 +12,7 @@ from stiction import theory
 from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.protocols.friction_test import without_harmonics
 from stiction.analysis.slip import is_undersampled
-from stiction.drive import ConstantVelocity
+from stiction.drive import ConstantVelocity, drive_stretches
 from stiction.drive.pieces import DRIVE_PIECES, LOAD_PIECES, Modulation
 from stiction.drive.recorded.piece import RECORDS, Recorded, RecordedLoad
 from stiction.friction import Anisotropic, name_of, states
@@ -89,7 +89,7 @@ def velocity_range(slider: Slider) -> tuple[float, float] | None:
     if any(isinstance(piece, RECORDS) for piece in drive.program):
         return None
     start, seen = 0.0, set()
-    for end, course in without_harmonics(drive).stretches:
+    for end, course in drive_stretches(without_harmonics(drive)):
         seen |= {float(course.rate(at)[0]) for at in (start, end) if isfinite(at)}
         start = end
     return (min(seen), max(seen)) if len(seen) > 1 else None

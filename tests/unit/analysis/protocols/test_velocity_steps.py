@@ -644,3 +644,11 @@ def test_the_error_of_the_trend_counts_once():
     error = np.hypot(own, share)
     steps = [replace(ONE, a_minus_b=1e-3, a_minus_b_error=error, trend_share=share)] * 5
     assert common_value(steps).error == pytest.approx(share, rel=0.01)
+
+
+def test_the_repr_of_a_step_has_its_arrays_in_short():
+    """A step of 400 samples filled a notebook with three arrays."""
+    step = replace(ONE, slip=np.linspace(0.0, 1e-3, 400), mu=np.full(400, np.nan))
+    text = repr(VelocitySteps((step,), np.nan))
+    assert "slip=<400 values, 0 to 0.001>, mu=<400 values, nan>" in text
+    assert len(text) < 1000
