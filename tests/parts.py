@@ -6,20 +6,17 @@ import stiction as st
 from stiction.analysis.assessment import Assessment, assess_record, assess_run
 from stiction.analysis.creep.findings import CreepFound, find_creep
 from stiction.analysis.measurement.run_record import as_record
-from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.regime.classify import regime_of
+from stiction.analysis.motion.regime.classify import classify_record
 
 
 def assess(record: st.Record) -> Assessment:
     """Return cycles, friction, stated values and warnings as `st.analyse` finds them."""
     record = as_record(record)
-    found = swings(record)
-    return assess_record(record, found, regime_of(record, found))
+    return assess_record(record, *classify_record(record)[1:])
 
 
 def creep_of(run: st.Trajectory) -> CreepFound:
     """Return the creep of a run as `st.analyse` finds it, without an energy budget."""
     record = as_record(run)
-    found = swings(record)
-    its = assess_run(run, record, found, regime_of(record, found))
+    its = assess_run(run, record, *classify_record(record, run)[1:])
     return find_creep(run, record, its.sticking.as_dataset(), None)

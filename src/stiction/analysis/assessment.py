@@ -9,7 +9,6 @@ from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import cycles_apart
 from stiction.analysis.motion.changes.initial_rest import InitialRest
-from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import cut_off, noisy_end, without_cut_off
@@ -79,7 +78,7 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     apart = cycles_apart(cycles)
     usual = cycles.part(~apart)
     of_force = _friction(record, found, usual, regime, turns)
-    clean = record if found.cell is None else record.with_force(found.force)
+    clean = record if found.cell is None else record.with_force(found.force_at_load)
     drift = find_drift(clean, cycles)
     shown = drift if is_shown(drift, regime.kind) else None
     ends = flat_ends(record.force) or noisy_end(clean, cycles)
@@ -90,9 +89,11 @@ def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
     zero = zero_shown(clean, of_force, alike)
     slips_on = regime.kind in (STICK_SLIP, TRANSITIONAL) and not (turns or ends)
-    seen = clean.with_force(found.force) if found.lines else clean
+    seen = clean.with_force(found.force_at_load) if found.lines else clean
     rings = swings_of_cell(seen, usual) if slips_on else None
-    doubts = warnings(clean, regime.kind, alike, of_force, stated, drift, ends, rings, zero)
+    doubts = warnings(
+        clean, regime.kind, alike, of_force, stated, drift, ends, rings, zero, found.load
+    )
 
     # the friction of the force, with one error after the other, then without what is unreal
     drifts = drift if clean.load_variation() <= VARIES else NO_DRIFT
@@ -148,9 +149,9 @@ def _friction(
     or none at all.
     """
     changed = found.lines or found.ringing or found.cell
-    clean = record.with_force(found.force) if changed else record
+    clean = record.with_force(found.force_at_load) if changed else record
     if regime.has("levels"):
-        first = clean.before(levels(clean)[0].end)
+        first = clean.before(found.levels[0].end)
         several = "the force stays at several levels, each with its own: see the parts"
         return friction_of(first, regime, usual).without_kinetic(several)
     friction = with_smear(friction_of(clean, regime, usual), clean, usual)

@@ -188,8 +188,6 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
     _, found, regime = classify_record(record, run)
-    if found.load is not None:  # friction is force over load at the same instant, as measured
-        found = found._replace(force=found.force + found.load.share)
     missing: dict[str, str] = {}
     dataset = cache(CycleTable.as_dataset)  # some of the tables are one and the same
     cycles = dataset(found.lasting)
@@ -198,7 +196,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     sticking = dataset(its.sticking)
     width = _free_of_hum(oscillation, sticking) if run is None else None
     taken_out = subtracted_lines(found.lines, found.ringing, found.cell)
-    answered = record if found.cell is None else record.with_force(found.force)
+    answered = record if found.cell is None else record.with_force(found.force_at_load)
     creep = find_creep(run or answered, answered, sticking, width)
     phases = None
     if run is not None and oscillation is not None:
@@ -207,7 +205,8 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         source, record, regime, dataset(its.cycles), summary(dataset(its.usual)),
         creep.curves, creep.mean, creep.divergence, creep.misalignment, oscillation, phases,
         missing | creep.missing | its.missing, its.friction,
-        its.warnings + taken_out, {"metadata": its.stated, "zero": its.zero},
+        its.warnings + taken_out,
+        {"metadata": its.stated, "zero": its.zero, "levels": found.levels},
     )  # fmt: skip
     return _with_parts(analysis)
 

@@ -10,6 +10,7 @@ import numpy as np
 from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.changes.cycles import built_up
 from stiction.analysis.motion.changes.few_slips import FEW_SLIPS, few_slips
+from stiction.analysis.motion.changes.levels import Level, levels
 from stiction.analysis.motion.changes.mean_load import FollowedLoad, under_mean_load
 from stiction.analysis.motion.changes.quick_falls import EVEN_CHANCE, quick_falls
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
@@ -172,6 +173,8 @@ class Swings(NamedTuple):
         The load cell whose swings would count as cycles; `force` is without them.
     load : FollowedLoad or None
         The load that the force follows: swings and `force` are those under its mean.
+    levels : tuple of Level
+        Where there is no swing, the levels at which the force stays one after the other.
     """
 
     table: CycleTable
@@ -188,11 +191,17 @@ class Swings(NamedTuple):
     driven: int = 0
     cell: RingingCell | None = None
     load: FollowedLoad | None = None
+    levels: tuple[Level, ...] = ()
 
     @property
     def lasting(self) -> CycleTable:
         """The swings that are cycles: none if they die out, and none that only build up."""
         return self.table.part(slice(0) if self.dying else built_up(self.table["drop"]))
+
+    @property
+    def force_at_load(self) -> Floats:
+        """The force (n,), N, under the load as it was measured, over which it is friction."""
+        return self.force if self.load is None else self.force + self.load.share
 
     @property
     def cycles(self) -> xr.Dataset:
@@ -207,6 +216,8 @@ def swings(record: Record) -> Swings:
     """
     found = _swings_of_any_drive(record)
     its = found.table if len(found.table) or found.few is None else found.few
+    if not len(its) and record.slip_speed is None:
+        return found._replace(levels=levels(record.with_force(found.force)))
     if not len(its) or not made_by_jumps(its, velocity_jumps(record)):
         return found
     none = found.table.part(slice(0))

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from stiction.analysis.motion.changes.cycles import parts_of
-from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.arrays import Floats, xr
 from stiction.storage.table_files import number
@@ -86,7 +85,7 @@ def find(found: Analysis) -> xr.Dataset | None:
     """Return the means over each part of a record, with standard errors; None for one part."""
     cycles = found.cycles
     if found.regime.has("levels"):
-        its = levels(found.record)
+        its = found.parts["levels"]
         return xr.Dataset(
             {
                 name: ("part", [getattr(each, name) for each in its], {"units": unit})

@@ -38,14 +38,14 @@ class Level(NamedTuple):
     coefficient_error: float
 
 
-def levels(record: Record) -> list[Level]:
+def levels(record: Record) -> tuple[Level, ...]:
     """Return the levels of sliding in a force that stays at two levels or more; else none.
 
     They are sought in the force under one load, if the load is measured. One at which the spring
     is unloaded, as before and after a test, is none of sliding: one may be left.
     """
     if len(record) < 4 * RECORD_MEANS:
-        return []
+        return ()
     raw, times = (part_means(x, RECORD_MEANS) for x in (record.force, record.time))
     means = (
         raw
@@ -53,15 +53,15 @@ def levels(record: Record) -> list[Level]:
         else part_means(record.force / record.relative_load(), RECORD_MEANS)
     )
     if not np.isfinite(means).all():
-        return []
+        return ()
     noise = white_noise(means, order=1)
     if not np.ptp(means) > CHANGED * noise:
-        return []
+        return ()
     runs = _runs(means, noise)
     if len(runs) < 2 or sum(run.stop - run.start for run in runs) < SHARE_OF_LEVELS * RECORD_MEANS:
-        return []
+        return ()
     if not all(_changes(means, noise, *pair) for pair in pairwise(runs)):
-        return []
+        return ()
     half, load = 0.5 * (times[1] - times[0]), record.normal_load or np.nan
     found, step = [], resolution(record.force)
     for run in runs:
@@ -72,7 +72,7 @@ def levels(record: Record) -> list[Level]:
         error, mu_error = hypot(error, rounding), hypot(mu_error, rounding / load)
         found.append(Level(*ends, force, error, mu, mu_error))
     least = NO_LOAD * max(abs(each.force) for each in found)
-    return [each for each in found if abs(each.force) > least]
+    return tuple(each for each in found if abs(each.force) > least)
 
 
 def _runs(means: Floats, noise: float) -> list[slice]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from stiction.analysis.measurement.run_record import across_force
 from stiction.analysis.motion.changes.initial_rest import InitialRest
-from stiction.analysis.motion.changes.mean_load import followed_load
+from stiction.analysis.motion.changes.mean_load import FollowedLoad
 from stiction.analysis.motion.changes.ringing import Ringing
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.doubts.clipping import doubt_clipping
@@ -79,17 +79,19 @@ def warnings(
     ends: Sequence[FlatEnd],
     rings: CellSwings | None,
     zero: InitialRest | None,
+    load: FollowedLoad | None,
 ) -> tuple[str, ...]:
     """Return warnings as sentences, the most important first.
 
     These are of numbers that cannot be true, then those that shift friction, then those of cycles
     and samples. `stated` is what was compared, `drift` that of the force, sure or not, `ends` where
-    it is cut off, `rings` the swings of the load cell, `zero` the one that the record shows.
+    it is cut off, `rings` the swings of the load cell, `zero` the one that the record shows,
+    `load` the one that the force follows.
     """
     seen = numbers_of(_largest_mu(friction, cycles), stated)
     wrong = {each.quantity: each for each in stated if each.agrees is False}
     found = [
-        *_doubt_load(record),
+        *_doubt_load(record, load),
         *_implausible_friction(record, seen),
         *doubt_clipping(ends),
         *doubt_mean_period(cycles),
@@ -158,10 +160,9 @@ def subtracted_lines(
     return tuple(found)
 
 
-def _doubt_load(record: Record) -> Iterator[str]:
+def _doubt_load(record: Record, load: FollowedLoad | None) -> Iterator[str]:
     """Say that a measured load varies, and which analysis suits it."""
     varies = record.load_variation()
-    load = followed_load(record)
     if load is not None:
         yield (
             f"The normal load varies by {percent(varies)} of its mean, and the force follows it, "

@@ -8,7 +8,6 @@ import numpy as np
 
 from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.changes.cycles import BELOW
-from stiction.analysis.motion.changes.levels import levels
 from stiction.analysis.motion.changes.mean_load import followed_load
 from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
@@ -148,9 +147,8 @@ def _by_cycles_or_course(record: Record, found: Swings) -> Regime:
     if found.few is not None:
         return Regime(UNDETERMINED, 0.0, _single_slip(record, found, found.few), STICK_SLIP)
     seen = _beside_gaps(record, _while_it_slides(record, found))
-    stays = levels(record) if record.slip_speed is None else []
-    if len(stays) > 1:
-        return seen._replace(evidence=seen.evidence | {"levels": len(stays)})
+    if len(found.levels) > 1:
+        return seen._replace(evidence=seen.evidence | {"levels": len(found.levels)})
     frequency = seen.evidence.get("hump")
     return _or_hum(record, 1.0 / frequency, WIDE - 1.0, seen) if frequency else seen
 

@@ -46,6 +46,19 @@ def test_the_coefficient_is_that_of_each_instant() -> None:
         assert "and the force follows it, by 0.3 of it" in said
 
 
+def test_levels_under_a_load_that_varies_are_those_under_its_mean() -> None:
+    random = np.random.default_rng([SEED, 0])
+    load = 10.0 * (1.0 + 0.2 * np.sin(2.0 * np.pi * TIME / 3.7))
+    friction = 0.3 * load + 0.12 * (TIME > 30.0)
+    for zero in (0.0, 0.5):  # with which force over load varies as the load does
+        force = friction + zero + 0.005 * random.normal(size=len(TIME))
+        found = st.analyse(st.Record(time=TIME, force=force, load=load))
+        assert found.regime.evidence["levels"] == 2
+        assert found.parts["changes"]["force"].values == pytest.approx(
+            np.array([3.0, 3.12]) + zero, abs=0.01
+        )
+
+
 def test_the_load_of_slips_is_left_alone() -> None:
     """Friction tilts a rig, so that its load follows each slip, by less than a tenth of it."""
     for number in range(20):
