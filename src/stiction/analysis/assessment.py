@@ -8,23 +8,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.motion.changes.cycles import cycles_apart
-from stiction.analysis.motion.changes.initial_rest import InitialRest
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings
 from stiction.analysis.motion.doubts.clipping import cut_off, noisy_end, without_cut_off
 from stiction.analysis.motion.doubts.creep_distance import unseen_creep
-from stiction.analysis.motion.doubts.load_cell import with_ringing
+from stiction.analysis.motion.doubts.findings import Findings
+from stiction.analysis.motion.doubts.hum import with_ringing
 from stiction.analysis.motion.doubts.sampling import with_smear, with_supposed_filter
-from stiction.analysis.motion.doubts.warnings import VARIES, turns_round, warnings, warnings_of_run
-from stiction.analysis.motion.doubts.zero import why_no_friction, with_zero, zero_shown
-from stiction.analysis.motion.drift import NO_DRIFT, Drift, find_drift, is_shown, with_drift
+from stiction.analysis.motion.doubts.unsteady import VARIES, turns_round, warnings_of_run
+from stiction.analysis.motion.doubts.warnings import warnings
+from stiction.analysis.motion.drift import NO_DRIFT, Drift, find_drift, with_drift
 from stiction.analysis.motion.friction import Friction, friction_of, without_loading
 from stiction.analysis.motion.load_cell.swings import swings_of_cell
 from stiction.analysis.motion.metadata.comparison import compare_metadata
 from stiction.analysis.motion.metadata.loading_rate import LOADING_RATE, other_velocity
 from stiction.analysis.motion.metadata.quantity import StatedQuantity
 from stiction.analysis.motion.regime.evidence import Regime
-from stiction.analysis.motion.regime.kinds import STICK_SLIP, TRANSITIONAL, UNDETERMINED
+from stiction.analysis.motion.regime.kinds import STICK_SLIP, UNDETERMINED
+from stiction.analysis.motion.zero import ZeroShown, why_no_friction, with_zero, zero_shown
 from stiction.analysis.record import Record
 from stiction.analysis.signals.clipping import flat_ends
 from stiction.analysis.signals.digitised import resolution
@@ -56,7 +57,7 @@ class Assessment(NamedTuple):
     warnings: tuple[str, ...]  # to be read first
     # the reason for each column that is blank, and for creep where no cycle shows it
     missing: dict[str, str]
-    zero: InitialRest | None = None  # that which a record shows before its first loading
+    zero: ZeroShown | None = None  # the zero that a record shows
 
 
 def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -> Assessment:
@@ -74,55 +75,73 @@ def assess_run(run: Trajectory, record: Record, found: Swings, regime: Regime) -
 
 def assess_record(record: Record, found: Swings, regime: Regime) -> Assessment:
     """Return the assessment of a record, whose stated parameters may contradict its force."""
-    cycles, turns = found.lasting, imposed_reversal(None, regime)
-    apart = cycles_apart(cycles)
-    usual = cycles.part(~apart)
-    of_force = _friction(record, found, usual, regime, turns)
-    clean = record if found.cell is None else record.with_force(found.force_at_load)
-    drift = find_drift(clean, cycles)
-    shown = drift if is_shown(drift, regime.kind) else None
+    its = _findings(record, found, regime)
+    friction, unreal = _with_all_errors(its)
+    cycles, apart = its.cycles, cycles_apart(its.cycles)
+    other = other_velocity(its.stated, cycles)
+    if other.any() and its.record.position is None:
+        cycles = cycles.blank(("stiffness", *BY_STIFFNESS), other)
+    sticking, why = _sticking(its.record, cycles, regime, other, apart)
+    missing = _unknown(its, cycles) | unreal
+    given = cycles.blank(missing)
+    if why:
+        missing |= dict.fromkeys(("creep", "misalignment"), f"not determined: {why}")
+    return Assessment(
+        given, given.part(~apart), sticking, friction, its.stated, warnings(its), missing, its.zero
+    )
+
+
+def _findings(record: Record, found: Swings, regime: Regime) -> Findings:
+    """Find all by which the numbers of a record are doubted."""
+    turns, cycles = imposed_reversal(None, regime), found.lasting
+    clean = found.without_cell(record)
     ends = flat_ends(record.force) or noisy_end(clean, cycles)
+    friction = _friction(record, found, cycles.part(~cycles_apart(cycles)), regime, turns)
+    drift = find_drift(clean, cycles)
+    its = Findings(clean, regime, turns, cycles, friction, drift, ends, found.load)
     kind, slips = regime.kind, cycles
     if regime.has("slips_at") and found.few is not None:
         kind, slips = STICK_SLIP, found.few
-    stated = compare_metadata(clean, kind, slips, shown, ends)
-    alike = cycles.part(slice(0)) if turns else cycles  # those of two strokes are none
-    zero = zero_shown(clean, of_force, alike)
-    slips_on = regime.kind in (STICK_SLIP, TRANSITIONAL) and not (turns or ends)
-    seen = clean.with_force(found.force_at_load) if found.lines else clean
-    rings = swings_of_cell(seen, usual) if slips_on else None
-    doubts = warnings(
-        clean, regime.kind, alike, of_force, stated, drift, ends, rings, zero, found.load
+    rings = None
+    if its.slips and not (turns or ends):
+        lineless = clean.with_force(found.force_at_load) if found.lines else clean
+        rings = swings_of_cell(lineless, its.usual)
+    return its._replace(
+        stated=compare_metadata(clean, kind, slips, its.shown_drift, ends),
+        rings=rings,
+        zero=zero_shown(clean, friction, its.alike),
     )
 
-    # the friction of the force, with one error after the other, then without what is unreal
-    drifts = drift if clean.load_variation() <= VARIES else NO_DRIFT
-    drifting = with_drift(of_force, clean, cycles, drifts)
-    filtered = with_supposed_filter(drifting, clean, usual, stated)
-    whole = with_zero(with_ringing(filtered, rings), clean, zero)
-    unreal = why_no_friction(clean, whole, cycles)
-    real = whole.without_static(unreal).without_kinetic(unreal) if unreal else whole
-    friction = without_cut_off(real, clean, usual, ends)
 
-    other = other_velocity(stated, cycles)
-    suits = cycles
-    if other.any() and clean.position is None:
-        suits = cycles.blank(("stiffness", *BY_STIFFNESS), other)
-    sticking, why = _sticking(clean, suits, regime, other, apart)
-    missing = _meaningless(clean, suits, regime, stated, shown)
-    cut = cut_off(clean, usual, ends)
-    if cut and clean.position is None:
-        missing |= {name: cut for name in BY_DROP if name not in missing}
-    if len(cycles):
-        reasons = {"mu_static": unreal, "mu_kinetic": turns or unreal}
-        missing |= {name: reason for name, reason in reasons.items() if reason}
+def _with_all_errors(its: Findings) -> tuple[Friction, dict[str, str]]:
+    """Return the friction with the error of each doubt, without values that are unreal or hidden.
+
+    The reasons are those for which columns of cycles are not friction.
+    """
+    record, cycles, usual = its.record, its.cycles, its.usual
+    drift = its.drift if record.load_variation() <= VARIES else NO_DRIFT
+    friction = with_drift(its.friction, record, cycles, drift)
+    friction = with_supposed_filter(friction, record, usual, its.stated)
+    friction = with_ringing(friction, its.rings)
+    friction = with_zero(friction, record, its.zero)
+    unreal = why_no_friction(record, friction, cycles)
+    if unreal:
+        friction = friction.without_static(unreal).without_kinetic(unreal)
+    seen = without_cut_off(friction, record, usual, its.ends)
+    why = {"mu_static": unreal, "mu_kinetic": its.turns or unreal} if len(cycles) else {}
     for name in ("static", "kinetic"):
-        if getattr(real, name) is not None and getattr(friction, name) is None:
-            missing[f"mu_{name}"] = cut
-    given = suits.blank(missing)
-    if why:
-        missing |= dict.fromkeys(("creep", "misalignment"), f"not determined: {why}")
-    return Assessment(given, given.part(~apart), sticking, friction, stated, doubts, missing, zero)
+        if getattr(friction, name) is not None and getattr(seen, name) is None:
+            why[f"mu_{name}"] = cut_off(record, usual, its.ends)
+    return seen, {name: reason for name, reason in why.items() if reason}
+
+
+def _unknown(its: Findings, cycles: CycleTable) -> dict[str, str]:
+    """Return the columns of the cycles that a record does not show, and why."""
+    missing = _meaningless(its.record, cycles, its.regime, its.stated, its.shown_drift)
+    cut = cut_off(its.record, its.usual, its.ends)
+    if cut and its.record.position is None:
+        missing |= {name: cut for name in BY_DROP if name not in missing}
+    return missing
 
 
 def _sticking(

@@ -20,7 +20,7 @@ from stiction.analysis.measured_line import strongest_line
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.cycle_columns import CycleTable, summary
-from stiction.analysis.motion.doubts.warnings import subtracted_lines
+from stiction.analysis.motion.doubts.hum import subtracted_lines
 from stiction.analysis.motion.friction import Friction
 from stiction.analysis.motion.regime.classify import classify_record
 from stiction.analysis.motion.regime.evidence import Regime
@@ -196,7 +196,7 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     sticking = dataset(its.sticking)
     width = _free_of_hum(oscillation, sticking) if run is None else None
     taken_out = subtracted_lines(found.lines, found.ringing, found.cell)
-    answered = record if found.cell is None else record.with_force(found.force_at_load)
+    answered = found.without_cell(record)
     creep = find_creep(run or answered, answered, sticking, width)
     phases = None
     if run is not None and oscillation is not None:

@@ -15,10 +15,11 @@ from stiction.analysis.motion.doubts.cycles import (
     doubt_loading,
     doubt_mean_period,
 )
-from stiction.analysis.motion.doubts.warnings import subtracted_lines
-from stiction.analysis.motion.doubts.zero import ABOUT_ZERO, ZERO
+from stiction.analysis.motion.doubts.hum import subtracted_lines
+from stiction.analysis.motion.doubts.zero import ZERO
 from stiction.analysis.motion.regime.evidence import Evidence, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK, UNDETERMINED
+from stiction.analysis.motion.zero import ABOUT_ZERO
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95
 from stiction.arrays import Floats

@@ -8,8 +8,8 @@ from tests.parts import assess
 
 import stiction as st
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.doubts.zero import zero_shown
 from stiction.analysis.motion.drift import find_drift
+from stiction.analysis.motion.zero import zero_shown
 
 MOST = 0.15  # beyond two errors, of some 40 cases: 5 % and three standard deviations
 TIME = np.arange(0.0, 20.0, 5e-3)

@@ -198,6 +198,10 @@ class Swings(NamedTuple):
         """The swings that are cycles: none if they die out, and none that only build up."""
         return self.table.part(slice(0) if self.dying else built_up(self.table["drop"]))
 
+    def without_cell(self, record: Record) -> Record:
+        """Return a record with the force to which its load cell answered, if that rings."""
+        return record if self.cell is None else record.with_force(self.force_at_load)
+
     @property
     def force_at_load(self) -> Floats:
         """The force (n,), N, under the load as it was measured, over which it is friction."""

@@ -5,11 +5,10 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.changes.initial_rest import InitialRest
 from stiction.analysis.motion.cycle_columns import with_spread
-from stiction.analysis.motion.doubts.zero import is_hidden, is_stated
 from stiction.analysis.motion.friction import Measured
 from stiction.analysis.motion.regime.kinds import UNDETERMINED
+from stiction.analysis.motion.zero import ZeroShown, is_hidden, is_stated
 from stiction.arrays import xr
 from stiction.recording.noise import white_noise
 from stiction.storage.table_files import number
@@ -94,7 +93,7 @@ def _zero(found: Analysis) -> str:
 
     Where it shows none, return what a zero that is off would change.
     """
-    shown: InitialRest | None = found.parts["zero"]
+    shown: ZeroShown | None = found.parts["zero"]
     if is_hidden(found.record, found.friction, shown):
         force = max(abs(each.force) for each in found.friction[:3] if each is not None)
         return (
@@ -103,7 +102,9 @@ def _zero(found: Analysis) -> str:
             "the errors do not allow for it."
         )
     errors = [each.error for each in found.friction[:3] if each is not None]
-    if shown is None or not errors or abs(shown.reading) < MAKES * min(errors):
+    if shown is None or shown.by != "rest" or not errors:
+        return ""
+    if abs(shown.reading) < MAKES * min(errors):
         return ""
     read = in_words(shown.reading, "N")
     return f" The errors allow for that which the rest at the start shows, {read}."

@@ -14,7 +14,7 @@ from stiction.analysis.motion.changes.cycles import (
     slip_in_each,
 )
 from stiction.analysis.motion.cycle_columns import mean_in_words, table_of
-from stiction.analysis.motion.doubts.warnings import turns_round
+from stiction.analysis.motion.doubts.unsteady import turns_round
 from stiction.analysis.motion.friction import BACKWARD
 from stiction.analysis.motion.regime.evidence import TO_AND_FRO, Evidence
 from stiction.analysis.motion.regime.kinds import (

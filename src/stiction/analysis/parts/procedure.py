@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from stiction.analysis.motion.doubts.warnings import say_unsteady, variations
+from stiction.analysis.motion.doubts.unsteady import say_unsteady, variations
 from stiction.analysis.motion.regime.kinds import STICK_SLIP
 from stiction.analysis.record import Record
 from stiction.arrays import xr

@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
-from stiction.analysis.motion.doubts.warnings import VARIES
+from stiction.analysis.motion.doubts.unsteady import VARIES
 from stiction.analysis.rotation.findings import (
     BOTH,
     GROWING,

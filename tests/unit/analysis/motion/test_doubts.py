@@ -21,7 +21,7 @@ from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
 from stiction.analysis.motion.doubts.clipping import noisy_end
 from stiction.analysis.motion.doubts.creep_distance import hidden_way
-from stiction.analysis.motion.doubts.load_cell import with_ringing
+from stiction.analysis.motion.doubts.hum import with_ringing
 from stiction.analysis.motion.doubts.sampling import usual_fall, with_smear, with_supposed_filter
 from stiction.analysis.motion.friction import Friction, Measured, friction_of
 from stiction.analysis.motion.load_cell.swings import CellSwings

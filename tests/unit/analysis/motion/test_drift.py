@@ -7,7 +7,7 @@ import stiction as st
 from stiction.analysis.motion.changes.shared import LASTS, _shapes, _shifts, shared_change
 from stiction.analysis.motion.cycle_columns import COLUMNS, CycleTable
 from stiction.analysis.motion.cycles import swings
-from stiction.analysis.motion.doubts.warnings import _drift
+from stiction.analysis.motion.doubts.drift import doubt_drift
 from stiction.analysis.motion.drift import Drift, find_drift, is_shown, with_drift
 from stiction.analysis.motion.friction import Friction, Measured
 from stiction.analysis.motion.regime.kinds import (
@@ -131,7 +131,7 @@ def test_a_steady_motion_shows_whether_its_force_drifts(kind):
 def test_a_drift_is_told_of_a_motion_that_shows_it(kind, told):
     for start, where in ((BEGIN, "in all"), (BEGIN + 20.0, "from 120 s to 150 s")):
         drift = KNOWN._replace(stands_out=True, change=-0.5, start=start)
-        said = [*_drift(LOADED, drift, kind, table([], []))]
+        said = [*doubt_drift(LOADED, drift, kind, table([], []))]
         first = ["The force drifts by -10 mN/s", f" -500 mN {where}"]
         assert [each.split(",")[:2] for each in said] == [first] * told
 
@@ -141,8 +141,8 @@ def test_a_drift_that_may_be_by_chance_is_told_from_2_percent_of_the_peaks_on(sh
     lasts = TIME[-1] - TIME[0]
     drift = KNOWN._replace(sure=False, likely=-share * 0.02 * 6.0 / lasts)
     cycles = table([5.9, 6.1], [4.0, 4.0])
-    assert bool([*_drift(LOADED, drift, STICK_SLIP, cycles)]) == told
-    assert not [*_drift(LOADED, drift, STICK_SLIP, table([], []))]
+    assert bool([*doubt_drift(LOADED, drift, STICK_SLIP, cycles)]) == told
+    assert not [*doubt_drift(LOADED, drift, STICK_SLIP, table([], []))]
 
 
 def test_a_force_at_several_levels_shows_no_drift():
@@ -280,10 +280,10 @@ def test_friction_has_the_error_of_a_zero_that_settles():
 @pytest.mark.parametrize(("share", "told"), [(0.95, False), (1.05, True)])
 def test_a_change_that_is_not_steady_is_told_from_1_percent_of_the_peaks_on(share, told):
     drift = KNOWN._replace(sure=False, shared=share * 0.01 * 6.0)
-    [*said] = _drift(LOADED, drift, STICK_SLIP, table([6.0, 6.01, 5.99, 6.0], [4.0] * 4))
+    [*said] = doubt_drift(LOADED, drift, STICK_SLIP, table([6.0, 6.01, 5.99, 6.0], [4.0] * 4))
     assert ["not steadily" in each for each in said] == [True] * told
     scattered = table([5.5, 6.5, 5.5, 6.5], [4.0] * 4)
-    assert not [*_drift(LOADED, drift, STICK_SLIP, scattered)]
+    assert not [*doubt_drift(LOADED, drift, STICK_SLIP, scattered)]
 
 
 def sliding(zero: np.ndarray, seed: int) -> st.Record:
@@ -322,8 +322,8 @@ def test_a_zero_that_does_not_settle_adds_no_error():
 @pytest.mark.parametrize(("share", "told"), [(0.95, False), (1.05, True)])
 def test_a_force_that_settles_is_told_from_2_percent_of_its_largest_on(kind, share, told):
     drift = KNOWN._replace(sure=False, shared=share * 0.02 * np.abs(LOADED.force).max())
-    said = [*_drift(LOADED, drift, kind, table([], []))]
+    said = [*doubt_drift(LOADED, drift, kind, table([], []))]
     assert ["settles by" in each for each in said] == [True] * told
     if kind == STEADY:  # a steady drift is told instead
-        (said,) = _drift(LOADED, drift._replace(stands_out=True), kind, table([], []))
+        (said,) = doubt_drift(LOADED, drift._replace(stands_out=True), kind, table([], []))
         assert "drifts by" in said
