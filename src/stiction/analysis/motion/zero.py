@@ -5,7 +5,7 @@ from __future__ import annotations
 from math import hypot, inf
 from typing import Literal, NamedTuple
 
-from stiction.analysis.motion.changes.initial_rest import initial_rest
+from stiction.analysis.motion.changes.initial_rest import NOISE, first_level, initial_rest
 from stiction.analysis.motion.course import BEGINS_UNLOADED
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.friction import Friction
@@ -23,8 +23,9 @@ class ZeroShown(NamedTuple):
 
     reading: float
     error: float
-    # the rest before the first loading, or the middle of the forces forth and back
-    by: Literal["rest", "strokes"]
+    # the rest before the first loading, the middle of the forces forth and back, or the reading
+    # from which a force is loaded at once
+    by: Literal["rest", "strokes", "start"]
 
 
 def is_about_zero(friction: Friction, cycles: CycleTable) -> bool:
@@ -75,7 +76,12 @@ def zero_shown(record: Record, friction: Friction, cycles: CycleTable) -> ZeroSh
     """Return the zero that a record shows where none is stated, if it is off."""
     if is_stated(record):
         return None
-    return _by_rest(record, friction, cycles) or _by_strokes(record)
+    start = reading_of_start(record, friction)
+    return (
+        _by_rest(record, friction, cycles)
+        or _by_strokes(record)
+        or (start if may_be_zero(start, friction) else None)
+    )
 
 
 def _by_rest(record: Record, friction: Friction, cycles: CycleTable) -> ZeroShown | None:
@@ -112,6 +118,40 @@ def _by_strokes(record: Record) -> ZeroShown | None:
     if abs(stroke.middle) <= least:
         return None
     return ZeroShown(stroke.way * stroke.middle, error, "strokes")
+
+
+def reading_of_start(record: Record, friction: Friction) -> ZeroShown | None:
+    """Return the first reading of a force that rises from the first sample on, if it is off.
+
+    It is the zero if the spring was unloaded, and nothing if it was loaded already. Where the
+    record begins in the middle of a loading, or after a turn of the drive, it is neither.
+    """
+    stroke = place_of_stroke(record)
+    if is_stated(record) or friction.break_away is None:
+        return None
+    if stroke is not None and stroke.after_turn:
+        return None
+    reading, noise = first_level(record.force)
+    least = max(AT_REST * largest_magnitude(record.force), NOISE * noise)
+    return ZeroShown(reading, noise, "start") if abs(reading) > least else None
+
+
+def may_be_zero(start: ZeroShown | None, friction: Friction) -> bool:
+    """Return whether a first reading is so small beside friction that it may be the zero."""
+    top = friction.break_away
+    if start is None or top is None:
+        return False
+    return abs(start.reading) <= BEGINS_UNLOADED * top.force
+
+
+def is_hidden(record: Record, friction: Friction, shown: ZeroShown | None) -> bool:
+    """Return whether a record begins with a loaded spring, and nothing else tells its zero."""
+    known = friction.static or friction.kinetic or friction.break_away
+    if known is None or is_stated(record) or shown is not None:
+        return False
+    if place_of_stroke(record) is not None:
+        return False
+    return abs(first_level(record.force)[0]) > BEGINS_UNLOADED * abs(known.force)
 
 
 def shift_of_zero(
