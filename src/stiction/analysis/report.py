@@ -99,10 +99,9 @@ class Analysis(Report):
     parts: dict[str, Any]
 
     def __eq__(self, other: object) -> bool:
-        """Compare source, record and report, from which all findings follow."""
-        return isinstance(other, Analysis) and (
-            (self.source, self.record, str(self)) == (other.source, other.record, str(other))
-        )
+        """Compare source and record, from which all findings follow."""
+        known = self.source, self.record
+        return isinstance(other, Analysis) and known == (other.source, other.record)
 
     @property
     def energy(self) -> xr.Dataset | None:

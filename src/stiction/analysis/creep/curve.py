@@ -92,7 +92,8 @@ def creep_curves(
             f"width must be above 0 s, is {echo(width)}; leave it out for one that suits"
         )
 
-    return curves_of(source, stick_phases(source, cycles), width)
+    sticks = source.stick_intervals if isinstance(source, Trajectory) else None
+    return curves_of(as_record(source), stick_phases(source, cycles), width, sticks)
 
 
 def stick_phases(source: Trajectory | Record, cycles: xr.Dataset) -> Floats:
@@ -107,20 +108,22 @@ def stick_phases(source: Trajectory | Record, cycles: xr.Dataset) -> Floats:
 
 
 def curves_of(
-    source: Trajectory | Record, phases: Floats, width: float | None = None
+    record: Record, phases: Floats, width: float | None = None, sticks: Floats | None = None
 ) -> xr.Dataset:
-    """Return the creep curves of stick phases from a start to an end (s), (n, 2)."""
-    record = as_record(source)
+    """Return the creep curves of stick phases from a start to an end (s), (n, 2).
+
+    `sticks` are the rests of a run, from a start to an end (s), (n, 2), which it knows exactly.
+    """
     position = _position(record)
     length = phases[:, 1] - phases[:, 0]
-    least = width or _least_width(record, position, length, isinstance(source, Trajectory))
+    least = width or _least_width(record, position, length, sticks is not None)
     edges = bin_edges(least, float(length.max(initial=0.0)))
     grain = _grain(record, position)
     table = np.full((len(Bins._fields), len(phases), len(edges) - 1), np.nan)
-    if isinstance(source, Trajectory):
+    if sticks is not None:
         for phase, (start, slip) in enumerate(phases):
             times = slip - edges[edges <= slip - start]
-            found = between_rests(record, position, source.stick_intervals, times, (start, slip))
+            found = between_rests(record, position, sticks, times, (start, slip))
             table[:, phase, : len(times) - 1] = found
     else:
         for first in range(0, len(phases), TOGETHER):

@@ -94,7 +94,7 @@ def find_creep(
     """
     missing: dict[str, str] = {}
     run = source if isinstance(source, Trajectory) else None
-    phases = stick_phases(source, cycles)
+    phases, sticks = stick_phases(source, cycles), run.stick_intervals if run else None
     steady = driven_steadily(record, *phases.T)
     if len(steady) and not steady.any():
         return CreepFound(None, None, None, None, dict.fromkeys(("creep", "misalignment"), PAUSES))
@@ -103,7 +103,7 @@ def find_creep(
     if record.position is None:
         by_force = attempt(missing, "misalignment", lambda: misalignment_from_force(record, driven))
     known = calibrate(record, driven, by_force)
-    curves = attempt(missing, "creep", lambda: curves_of(run or known, phases, width))
+    curves = attempt(missing, "creep", lambda: curves_of(known, phases, width, sticks))
     mean = None
     if curves is not None:
         curves = curves.where(xr.DataArray(steady, dims="phase"))
