@@ -20,45 +20,20 @@ from stiction.analysis.signals.clipping import FlatEnd
 
 
 class Findings(NamedTuple):
-    """The findings in a record by which its numbers are doubted.
+    """The findings in a record by which its numbers are doubted."""
 
-    Parameters
-    ----------
-    record : Record
-        With the force to which its load cell answered, if that rings.
-    regime : Regime
-        The kind of motion.
-    turns : str
-        The imposed reversal that leaves no mean as kinetic friction, in words, or empty.
-    cycles : CycleTable
-        All of them.
-    friction : Friction
-        That of the force, without the errors that doubts give it.
-    drift : Drift
-        Of the force, sure or not.
-    ends : sequence of FlatEnd
-        Values at which the force is cut off.
-    load : FollowedLoad or None
-        The load that the force follows.
-    stated : tuple of StatedQuantity
-        What is stated of the apparatus, beside what the force says.
-    rings : CellSwings or None
-        The swings of the load cell after each slip.
-    zero : ZeroShown or None
-        The zero that the record shows.
-    """
-
-    record: Record
+    record: Record  # with the force to which its load cell answered, if that rings
     regime: Regime
-    turns: str
+    turns: str  # the imposed reversal that leaves no mean as kinetic friction, in words, or empty
     cycles: CycleTable
-    friction: Friction
-    drift: Drift
-    ends: Sequence[FlatEnd]
-    load: FollowedLoad | None = None
+    friction: Friction  # of the force, without the errors that doubts give it
+    drift: Drift  # sure or not
+    ends: Sequence[FlatEnd]  # values at which the force is cut off
+    load: FollowedLoad | None = None  # the load that the force follows
+    # quantities that are stated of the apparatus, beside those that the force shows
     stated: tuple[StatedQuantity, ...] = ()
-    rings: CellSwings | None = None
-    zero: ZeroShown | None = None
+    rings: CellSwings | None = None  # of the load cell after each slip
+    zero: ZeroShown | None = None  # the zero that the record shows
 
     @property
     def slips(self) -> bool:
