@@ -356,7 +356,7 @@ def test_a_record_that_begins_amid_its_cycles_says_that_its_zero_is_hidden():
 
 
 def test_a_record_that_begins_in_motion_or_in_a_pause_shows_no_zero():
-    """Its errors are those of its slips."""
+    """Only one that is loaded from its first sample on has a reading that may be the zero."""
     for number in range(30):
         random = np.random.default_rng([6, number])
         known = slips(random) if number % 2 else from_the_start(random, rests=False)
@@ -367,7 +367,8 @@ def test_a_record_that_begins_in_motion_or_in_a_pause_shows_no_zero():
             time = float(np.median(np.diff(record.time))) * np.arange(len(force))
             record = record.model_copy(update={"time": time, "force": force})
         seen, cycles = assess(record), swings(record).lasting
-        assert zero_shown(record, seen.friction, cycles) is None
+        shown = zero_shown(record, seen.friction, cycles)
+        assert shown is None or (shown.by == "start" and number % 3 != 0)
         assert not any("start at" in each for each in seen.warnings)
 
 
