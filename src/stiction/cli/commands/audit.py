@@ -23,6 +23,7 @@ from stiction.cli.options import (
     rig_from,
 )
 from stiction.cli.terminal import say
+from stiction.cli.writing import check_output
 from stiction.errors import Faults
 
 
@@ -90,11 +91,8 @@ def audit(
     if output is not None:
         from stiction.plotting.page.html import page_path
 
-        with faults.of_part():
-            page_path(output)
-    if json is not None:
-        with faults.of_part():
-            placeable(json)
+        check_output(output, faults, page_path)
+    check_output(json, faults, placeable)
     with faults.of_part():
         seen = record_or_none(
             record, measured, trust, rig=rig, simulations=simulations, library=library, seed=seed

@@ -19,6 +19,7 @@ from stiction.cli.options import (
     description_from,
 )
 from stiction.cli.terminal import say
+from stiction.cli.writing import check_figure, check_output
 from stiction.errors import Faults
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def compare(
     from stiction import comparison
     from stiction.cli.tables import print_sections
     from stiction.plotting.page.canvas import figure_of
-    from stiction.plotting.page.save import drawable, write
+    from stiction.plotting.page.save import write
     from stiction.progress.display import show_progress
     from stiction.result.window import window_of
     from stiction.storage.files import usable_folder
@@ -87,11 +88,8 @@ def compare(
         description = description_from(config, preset, given, trust)
         with faults.of_part():
             window_of(description, window)
-    with faults.of_part():
-        drawable(output)
-    if data is not None:
-        with faults.of_part():
-            usable_folder(data)
+    check_figure(output, faults)
+    check_output(data, faults, usable_folder)
     faults.refuse()
     with show_progress("simulating and drawing") as report:
         found = comparison.compare(description, law, progress=report)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from stiction.cli.options import Output, Trust, Window
-from stiction.cli.terminal import say
+from stiction.cli.writing import check_figure, write_figure
 from stiction.errors import Faults
 
 
@@ -28,17 +28,11 @@ def plot(result: Path, /, *, output: Output, window: Window = None, trust: Trust
         Start and end in the run; all of it by default. Example: --window 1.5s 2.2s.
     """
     from stiction.plotting.door import plot as draw
-    from stiction.plotting.page.canvas import figure_of
-    from stiction.plotting.page.save import drawable, write
-    from stiction.progress.display import show_progress
     from stiction.trajectory import load
 
     faults = Faults()
-    with faults.of_part():
-        drawable(output)
+    check_figure(output, faults)
     with faults.of_part():
         run = load(result, trust=trust)
     faults.refuse()
-    with show_progress("drawing"):
-        written = write(figure_of(draw, run, window=window), output)
-    say(f"wrote {written}")
+    write_figure(output, draw, run, window=window)

@@ -15,6 +15,7 @@ from stiction.cli.options import (
     trust_in,
 )
 from stiction.cli.terminal import say
+from stiction.cli.writing import check_output
 from stiction.errors import Faults, argument
 from stiction.text.quantity.wording import percent
 
@@ -62,8 +63,7 @@ def run(
     given = changes(set, faults)
     with faults.of_part():
         description = description_from(config, preset, given, trust)
-    with faults.of_part():
-        placeable(output, NETCDF)
+    check_output(output, faults, placeable, NETCDF)
     faults.refuse()
     with show_progress("simulating") as report:
         result = simulation.run(description, progress=report)

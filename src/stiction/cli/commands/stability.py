@@ -16,7 +16,7 @@ from stiction.cli.options import (
     changes,
     slider_from,
 )
-from stiction.cli.terminal import say
+from stiction.cli.writing import check_figure, write_figure
 from stiction.errors import Faults
 
 
@@ -66,7 +66,6 @@ def stability(
     from stiction.cli.tables import print_sections
     from stiction.linear_stability.examination import OVER
     from stiction.linear_stability.examination import stability as examine
-    from stiction.progress.display import show_progress
 
     faults = Faults()
     given = changes(set, faults)
@@ -80,21 +79,12 @@ def stability(
                 "give --over once or twice, and --between as often or not at all, not "
                 f"{counts} times"
             )
-    if output is not None:
-        from stiction.plotting.page.save import drawable
-
-        with faults.of_part():
-            drawable(output)
+    check_figure(output, faults)
     faults.refuse()
     found = examine(slider, paths, ranges or None)
     print_sections(str(config or preset), found.tables())
     if output is not None:
-        from stiction.plotting.page.canvas import figure_of
-        from stiction.plotting.page.save import write
-
-        with show_progress("drawing"):
-            written = write(figure_of(found.plot), output)
-        say(f"wrote {written}")
+        write_figure(output, found.plot)
 
 
 def number(text: str) -> Any:

@@ -21,7 +21,7 @@ from stiction.cli.options import (
     record_in,
     record_or_none,
 )
-from stiction.cli.terminal import say
+from stiction.cli.writing import check_figure, check_output, write_figure
 from stiction.errors import Faults
 
 Several = Annotated[list[str] | None, Parameter(consume_multiple=True, negative=())]
@@ -103,13 +103,8 @@ def design(
 
     faults = Faults()
     altered = changes(set, faults)
-    if output is not None:
-        from stiction.plotting.page.save import drawable
-
-        with faults.of_part():
-            drawable(output)
-    with faults.of_part():
-        library_folder(library)
+    check_figure(output, faults)
+    check_output(library, faults, library_folder)
     if record is None:
         with faults.of_part():
             record_or_none(None, measured, trust)
@@ -133,9 +128,5 @@ def design(
     print_sections(str(rig), found.tables())
     if output is not None:
         from stiction.plotting.inference.design import plot_design
-        from stiction.plotting.page.canvas import figure_of
-        from stiction.plotting.page.save import write
 
-        with show_progress("drawing"):
-            written = write(figure_of(plot_design, found), output)
-        say(f"wrote {written}")
+        write_figure(output, plot_design, found)

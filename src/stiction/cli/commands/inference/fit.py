@@ -21,6 +21,7 @@ from stiction.cli.options import (
     records_in,
 )
 from stiction.cli.terminal import say
+from stiction.cli.writing import check_output, write_figure
 from stiction.errors import DescriptionError, Faults, ResultError
 from stiction.text.sections import Section
 
@@ -105,11 +106,8 @@ def fit(
     faults, known = Faults(), None
     read: dict[str, Record] = {}
     altered = changes(set, faults)
-    with faults.of_part():
-        placeable(output, NETCDF)
-    if figures is not None:
-        with faults.of_part():
-            usable_folder(figures)
+    check_output(output, faults, placeable, NETCDF)
+    check_output(figures, faults, usable_folder)
     if len(records) > 1 and measured is not None and measured.turned is not None:
         message = "would hold for each of these records; import the one that was turned with it"
         with faults.of_part():
@@ -176,14 +174,8 @@ def warnings(paths: Sequence[str], records: Sequence[Record]) -> list[Section]:
 def write_figures(plots: Mapping[str, Any], folder: Path) -> None:
     """Write figures by their names, drawn by `stiction.plotting`."""
     from stiction import plotting
-    from stiction.plotting.page.canvas import figure_of
-    from stiction.plotting.page.save import write
-    from stiction.progress.display import show_progress
     from stiction.storage.files import make_folder
 
     make_folder(folder)
     for name, what in plots.items():
-        with show_progress("drawing"):
-            drawn = figure_of(getattr(plotting, f"plot_{name}"), what)
-            written = write(drawn, folder / f"{name}.png")
-        say(f"wrote {written}")
+        write_figure(folder / f"{name}.png", getattr(plotting, f"plot_{name}"), what)

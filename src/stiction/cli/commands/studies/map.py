@@ -9,6 +9,7 @@ from cyclopts import Parameter
 
 from stiction.cli.options import MaybeOutput, Trust, parse_assignments
 from stiction.cli.terminal import say
+from stiction.cli.writing import check_figure
 from stiction.errors import Faults
 
 
@@ -54,16 +55,14 @@ def map(
     """
     from stiction.analysis.motion.regime.kinds import UNDETERMINED
     from stiction.plotting.page.canvas import figure_of
-    from stiction.plotting.page.save import drawable, write
+    from stiction.plotting.page.save import write
     from stiction.progress.display import show_progress
     from stiction.study.view.mapping import map as look
     from stiction.study.view.view import REGIME, kinds
 
     faults = Faults()
     cut = parse_assignments(at, "--at", faults)
-    if output is not None:
-        with faults.of_part():
-            drawable(output)
+    check_figure(output, faults)
     with show_progress("drawing"):
         with faults.of_part():
             found = look(study, of or (), cut, trust=trust)
