@@ -30,7 +30,7 @@ from stiction.inference.next_test.design import expectations, split
 from stiction.inference.next_test.expected import Expected, fill_in, typical
 from stiction.inference.next_test.further import Further, Wanted, further_tests
 from stiction.inference.observation import Conditions
-from stiction.inference.simulated.library import have_cycles, simulate_all
+from stiction.inference.simulated.library import Ensemble, have_cycles
 from stiction.inference.simulated.plan import Plan
 from stiction.progress.report import silent
 
@@ -135,8 +135,8 @@ def main() -> None:
     for name in options.rigs:
         wanted = tuple(options.channels), options.cycles, options.per_cycle
         trial, tests = plan_of(name, *wanted)
-        place = options.library and options.library / f"{trial.key}-{options.seed}"
-        scores, rows = simulate_all(trial, options.drawn, place, seed=options.seed)
+        made = Ensemble.within(options.library, trial, options.seed).simulate(options.drawn)
+        scores, rows = made.rows(options.drawn)
         print(name)
         print(COLUMNS.format("test", "rigs", "promised", "", "found", "stated"))
         logs, at = [], [*trial.priors].index(OF)

@@ -34,7 +34,6 @@ from stiction.inference.mechanism.classifier import (
     Discriminant,
     Simulations,
     learn_or_read,
-    place_of,
     simulate,
 )
 from stiction.inference.mechanism.likeness import Reference
@@ -46,7 +45,7 @@ from stiction.inference.observation import TREND, Conditions, steadiness, trend
 from stiction.inference.posterior import RARE
 from stiction.inference.priors import Prior, Uniform
 from stiction.inference.rig import Rig
-from stiction.inference.simulated.library import have_cycles, simulate_all
+from stiction.inference.simulated.library import Ensemble
 from stiction.inference.simulated.plan import Plan, plan
 from stiction.inference.simulated.synthetic import draw
 from stiction.storage.arrays import read_arrays, write_arrays
@@ -147,8 +146,8 @@ class Called(NamedTuple):
 
 def angles(rotation: Plan, count: int, folder: Path | None, seed: int) -> Floats:
     """Return the misalignment (deg) of each test record of rotation that has cycles."""
-    scores, features = simulate_all(rotation, count, place_of(rotation, folder, seed), seed=seed)
-    shares = ndtr(scores[have_cycles(features), [*rotation.priors].index("phi")])
+    made = Ensemble.within(folder, rotation, seed).simulate(count).library(count)
+    shares = ndtr(made.scores[:, [*rotation.priors].index("phi")])
     return np.degrees(rotation.priors["phi"].quantile(shares))
 
 
@@ -206,7 +205,7 @@ class AtRest(NamedTuple):
 
 def stored_shares(of: Plan, scores: Floats, folder: Path | None, seed: int) -> Floats:
     """Return how far the mass rests in simulations with these scores, simulated once."""
-    place = place_of(of, folder, seed)
+    place = Ensemble.within(folder, of, seed).folder
     path = None if place is None else place / f"rest-{len(scores)}.npz"
     found = (read_arrays(path) or {}).get("shares")
     if found is None:

@@ -34,8 +34,8 @@ from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
 from stiction.inference.simulated.library import (
+    Ensemble,
     Library,
-    build,
     library_folder,
     refuse_too_few,
     telling,
@@ -118,40 +118,42 @@ def fit(
     seen = observe_all(given, drive.rig.slider)
     end_reading()
     plan_of = plan_for(drive.rig, [each.conditions for each in seen])
-    folder = None if place is None else place / f"{plan_of.key}-{seed}"
     whole = progress or silent
-    refuse_early(plan_of, simulations, folder, seed)
-    simulated = build_enough(plan_of, simulations, folder, seed, part(whole, 0, 10, of=7))
-    found = compare(simulated, seen, folder, part(whole, 7, 10, of=3))
+    simulating, learning = part(whole, 0, 10, of=7), part(whole, 7, 10, of=3)
+    begun = Ensemble.within(place, plan_of, seed)
+    begun = refuse_early(begun, simulations, part(simulating, 0, 20))
+    simulated = build_enough(begun, simulations, part(simulating, 1, 20, of=19))
+    found = compare(simulated, seen, begun.folder, learning)
     whole(1.0)
     return replace(found, drive=drive)
 
 
-def refuse_early(plan_of: Plan, simulations: int, folder: Path | None, seed: int) -> None:
-    """Refuse a number of simulations once the first show that too few will have cycles."""
+def refuse_early(begun: Ensemble, simulations: int, progress: Progress = silent) -> Ensemble:
+    """Return the first simulations; refuse them if they show that too few will have cycles."""
     most = max(simulations, int(FEWEST_SIMULATIONS / USABLE))
     number = telling(most, FEWEST_SIMULATIONS)
     if simulations <= number:
-        return
-    first = build(plan_of, number, folder, seed=seed)
+        return begun
+    begun = begun.simulate(number, progress)
+    first = begun.library(number)
     if will_be_too_few(len(first.scores), number, most, FEWEST_SIMULATIONS):
         refuse_few_of(first)
+    return begun
 
 
-def build_enough(
-    plan_of: Plan, simulations: int, folder: Path | None, seed: int, progress: Progress
-) -> Library:
+def build_enough(begun: Ensemble, simulations: int, progress: Progress) -> Library:
     """Simulate a library, and more than are asked for where a few are lacking with cycles.
 
     Where fewer than half of them have cycles, the priors are at fault: then it is left as it is.
     """
-    library = build(plan_of, simulations, folder, seed=seed, progress=progress)
-    while USABLE * library.wanted <= len(library.scores) < FEWEST_SIMULATIONS:
-        share = len(library.scores) / library.wanted
-        lacking = FEWEST_SIMULATIONS - len(library.scores)
-        wanted = library.wanted + ceil(MORE * lacking / share)
-        library = build(plan_of, wanted, folder, seed=seed, progress=progress)
-    return library
+    wanted = simulations
+    while True:
+        begun = begun.simulate(wanted, progress)
+        library = begun.library(wanted)
+        usable = len(library.scores)
+        if not USABLE * wanted <= usable < FEWEST_SIMULATIONS:
+            return library
+        wanted += ceil(MORE * (FEWEST_SIMULATIONS - usable) / (usable / wanted))
 
 
 def refuse_few_of(library: Library) -> None:

@@ -7,15 +7,14 @@ from tests.uncertain import TEXT
 import stiction as st
 from stiction.cli.options import library_or_cache
 from stiction.errors import ResultError
-from stiction.inference import fit as fits
 from stiction.inference.columns import features_from
 from stiction.inference.mechanism import comparison
 from stiction.inference.next_test import design as designs
 from stiction.inference.simulated.library import (
     BLOCK,
     FIRST_SIMULATIONS,
+    Ensemble,
     library_folder,
-    simulate_all,
 )
 from stiction.storage import arrays
 from stiction.storage.arrays import cache_folder, read_arrays, write_arrays
@@ -44,7 +43,7 @@ def test_a_library_that_cannot_be_made_is_refused_before_simulating(
         raise AssertionError("something is simulated")
 
     for module, function in (
-        (fits, "build"), (comparison, "simulate"), (designs, "simulate_all"), (designs, "observe"),
+        (Ensemble, "simulate"), (comparison, "simulate"), (designs, "observe"),
     ):  # fmt: skip
         monkeypatch.setattr(module, function, simulate)
     given = (rig, record) if name == "design" else (record, rig)
@@ -94,9 +93,9 @@ def test_what_is_begun_is_not_simulated_again(monkeypatch):
         return np.array([number]), np.array([-number])
 
     monkeypatch.setattr("stiction.inference.simulated.library.simulate", simulate)
-    begun = simulate_all(None, 2 * BLOCK, None, seed=0)
+    begun = Ensemble(None, None, 0).simulate(2 * BLOCK)
     assert sorted(asked) == [*range(2 * BLOCK)]
-    scores, found = simulate_all(None, 2 * BLOCK + 1, None, seed=0, begun=begun)
+    scores, found = begun.simulate(2 * BLOCK + 1).rows(2 * BLOCK + 1)
     assert sorted(asked) == [*range(3 * BLOCK)]
     assert scores[:, 0].tolist() == (-found[:, 0]).tolist() == [*range(2 * BLOCK + 1)]
 
@@ -145,7 +144,7 @@ def test_progress_is_told_within_the_first_block(monkeypatch):
     row = np.zeros(2), np.zeros(3)
     monkeypatch.setattr("stiction.inference.simulated.library.simulate", lambda *_: row)
     told = []
-    scores, _ = simulate_all(None, 40, None, seed=0, progress=told.append)
+    scores, _ = Ensemble(None, None, 0).simulate(40, told.append).rows(40)
     assert scores.shape == (40, 2)
     assert told[0] == 1 / (2 * BLOCK)
     assert told == sorted(told)
@@ -156,4 +155,4 @@ def test_progress_is_told_within_the_first_block(monkeypatch):
 def test_no_simulations_are_refused(count):
     """A fit with -n 0 ended in a traceback."""
     with pytest.raises(st.DescriptionError, match=f"simulations: must be at least 1, is {count}"):
-        simulate_all(None, count, None, seed=0)
+        Ensemble(None, None, 0).simulate(count)

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from math import ceil
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,12 +13,11 @@ from scipy import signal
 import stiction as st
 from stiction.errors import ResultError
 from stiction.inference import fit as fits
-from stiction.inference.mechanism import comparison
 from stiction.inference.mechanism.likeness import CURVES, Likeness
 from stiction.inference.mechanism.odds import Odds
 from stiction.inference.observation import observe
 from stiction.inference.priors import Normal, Uniform
-from stiction.inference.simulated.library import FIRST_SIMULATIONS, Library
+from stiction.inference.simulated.library import BLOCK, FIRST_SIMULATIONS, Ensemble
 from stiction.inference.simulated.plan import plan
 from stiction.inference.suitability import dispute, explain_unlike, refuse_few
 from stiction.progress.report import silent
@@ -56,11 +56,10 @@ def record(*forces):
 
 @pytest.fixture
 def no_simulation(monkeypatch):
-    def build(*_, **__):
+    def simulate(*_, **__):
         raise AssertionError("something is simulated")
 
-    monkeypatch.setattr(fits, "build", build)
-    monkeypatch.setattr(comparison, "simulate", build)
+    monkeypatch.setattr(Ensemble, "simulate", simulate)
 
 
 @pytest.mark.parametrize("name", ["fit", "mechanism"])
@@ -197,37 +196,41 @@ def test_too_few_simulations_are_refused_after_the_first(monkeypatch, usable, re
     """
     asked = []
 
-    def build(of, count, *_, **__):
-        asked.append(count)
-        return Library(of, np.zeros((usable, 1)), np.zeros((usable, 1)), count)
+    def simulate(_, number, __):
+        asked.append(number)
+        return np.zeros(1), np.full(1, 0.0 if number < usable else np.nan)
 
-    monkeypatch.setattr(fits, "build", build)
-    of = plan(RIG.slider, {}, [observe(record(*[CYCLE] * 20), RIG.slider).conditions])
+    monkeypatch.setattr("stiction.inference.simulated.library.simulate", simulate)
+    none = Ensemble(None, None, 0)
     if refused:
         with pytest.raises(ResultError, match=f"{usable} of 96 simulated records have cycles"):
-            fits.refuse_early(of, 400, None, 0)
+            fits.refuse_early(none, 400)
     else:
-        fits.refuse_early(of, 400, None, 0)
-    assert asked == [FIRST_SIMULATIONS]
-    fits.refuse_early(of, FIRST_SIMULATIONS, None, 0)
-    assert asked == [FIRST_SIMULATIONS]
+        fits.refuse_early(none, 400)
+    assert sorted(asked) == [*range(FIRST_SIMULATIONS)]
+    fits.refuse_early(none, FIRST_SIMULATIONS)
+    assert len(asked) == FIRST_SIMULATIONS
 
 
 @pytest.mark.parametrize(("share", "enough"), [(0.997, True), (0.7, True), (0.3, False)])
 def test_a_few_simulations_that_lack_are_simulated(monkeypatch, share, enough):
     """299 of the fewest that are accepted had cycles: the fit was refused when they were done."""
 
-    def build(of, count, *_, **__):
-        rows = np.zeros((int(share * count), 1))
-        return Library(of, rows, rows, count)
+    asked = []
 
-    monkeypatch.setattr(fits, "build", build)
-    of = plan(RIG.slider, {}, [observe(record(*[CYCLE] * 20), RIG.slider).conditions])
-    library = fits.build_enough(of, fits.FEWEST_SIMULATIONS, None, 0, silent)
+    def simulate(_, number, __):
+        asked.append(number)
+        usable = int(share * (number + 1)) > int(share * number)
+        return np.zeros(1), np.full(1, 0.0 if usable else np.nan)
+
+    monkeypatch.setattr("stiction.inference.simulated.library.simulate", simulate)
+    begun = Ensemble(None, None, 0)
+    if enough:
+        begun = fits.refuse_early(begun, fits.FEWEST_SIMULATIONS)
+    library = fits.build_enough(begun, fits.FEWEST_SIMULATIONS, silent)
     assert (len(library.scores) >= fits.FEWEST_SIMULATIONS) == enough
     assert library.wanted < 1.7 * fits.FEWEST_SIMULATIONS
-    if enough:
-        fits.refuse_early(of, fits.FEWEST_SIMULATIONS, None, 0)
+    assert sorted(asked) == [*range(BLOCK * ceil(library.wanted / BLOCK))]  # each of them once
 
 
 @pytest.mark.parametrize(("theirs", "ours"), [(7, 5), (5, 7), (8, 5), (20, 15)])

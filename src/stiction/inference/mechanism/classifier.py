@@ -33,8 +33,7 @@ from stiction.inference.learning.summary import (
 from stiction.inference.mechanism.rivals import CLAIMED, Mechanism
 from stiction.inference.simulated.library import (
     BLOCK,
-    have_cycles,
-    simulate_all,
+    Ensemble,
     telling,
     will_be_too_few,
 )
@@ -97,7 +96,7 @@ def simulate(
         If by no mechanism enough of them have cycles of stick and slip, or only by one of those
         that are claimed; as soon as the first ones tell that.
     """
-    first = begin(rivals, count, folder, seed, part(progress, 0, 10))
+    begun = begin(rivals, count, folder, seed, part(progress, 0, 10))
     progress = part(progress, 1, 10, of=9)
     total = sum(len(rival.plans) for rival in rivals)
     done, found, parameters, absent = 0, {}, [], []
@@ -106,13 +105,10 @@ def simulate(
         parts, drawn = [], []
         for plan in rival.plans:
             wanted = -(-count // len(rival.plans))
-            scores, rows = simulate_all(
-                plan, wanted, place_of(plan, folder, seed), seed=seed,
-                progress=part(progress, done, total), begun=first.get(plan.key),
-            )  # fmt: skip
-            kept = have_cycles(rows)
-            parts.append(rows[kept])
-            drawn.append(scores[kept])
+            made = begun[plan.key].simulate(wanted, part(progress, done, total))
+            library = made.library(wanted)
+            parts.append(library.features)
+            drawn.append(library.scores)
             done += 1
         features = np.concatenate(parts)
         usable[rival.name] = len(features), count
@@ -129,28 +125,27 @@ def simulate(
 
 def begin(
     rivals: Sequence[Mechanism], count: int, folder: Path | None, seed: int, progress: Progress
-) -> dict[str, tuple[Floats, Floats]]:
-    """Return the first simulations of each plan, by its key; none where all are no more.
+) -> dict[str, Ensemble]:
+    """Return the first simulations of each plan, by its key; none of them where all are no more.
 
     They are refused if they tell that by no mechanism enough of all will have cycles, or only by
     one of those that are claimed.
     """
+    plans = [plan for rival in rivals for plan in rival.plans]
+    found = {plan.key: Ensemble.within(folder, plan, seed) for plan in plans}
     least = telling(count, FEWEST_SIMULATIONS)
     if count <= least:
-        return {}
-    total = sum(len(rival.plans) for rival in rivals)
-    found: dict[str, tuple[Floats, Floats]] = {}
-    usable = {}
+        return found
+    done, usable = 0, {}
     for rival in rivals:
         # whole blocks by each plan
         some = BLOCK * ceil(least / (BLOCK * len(rival.plans)))
         its = []
         for plan in rival.plans:
-            report, place = part(progress, len(found), total), place_of(plan, folder, seed)
-            found[plan.key] = simulate_all(plan, some, place, seed=seed, progress=report)
-            its.append(have_cycles(found[plan.key][1]))
-        own = np.concatenate(its)
-        usable[rival.name] = int(own.sum()), len(own)
+            found[plan.key] = found[plan.key].simulate(some, part(progress, done, len(plans)))
+            its.append(found[plan.key].library(some))
+            done += 1
+        usable[rival.name] = sum(len(x.scores) for x in its), sum(x.wanted for x in its)
     few, each = FEWEST_SIMULATIONS, usable.items()
     left = [name for name, its in each if not will_be_too_few(*its, count, few)]
     refuse_few_of_all(usable, left)
@@ -175,11 +170,6 @@ def refuse_few_of_all(usable: Mapping[str, tuple[int, int]], left: Sequence[str]
     most = max(usable, key=lambda name: usable[name][0] / usable[name][1])
     what = f"simulated records of {most}, and by no mechanism more,"
     refuse_few(what, *usable[most], FEWEST_SIMULATIONS)
-
-
-def place_of(plan: Plan, folder: Path | None, seed: int) -> Path | None:
-    """Return the folder of a plan's simulations; None where nothing is stored."""
-    return None if folder is None else folder / f"{plan.key}-{seed}"
 
 
 def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:

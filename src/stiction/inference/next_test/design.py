@@ -54,9 +54,9 @@ from stiction.inference.posterior import RARE, unlike
 from stiction.inference.rig import Rig, refuse_swapped
 from stiction.inference.simulated.library import (
     FIRST_SIMULATIONS,
+    Ensemble,
     have_cycles,
     library_folder,
-    simulate_all,
     will_be_too_few,
 )
 from stiction.inference.simulated.plan import Plan
@@ -171,22 +171,21 @@ def answer(
     signed = "force_across" in measured or present.yaw != 0.0
     trial = plan_for(known, [present, *records], signed)
     refuse_certain(name, trial)
-    folder = None if place is None else place / f"{trial.key}-{seed}"
     whole = progress or silent
     simulating, learning = part(whole, 0, 10, of=6), part(whole, 6, 10, of=4)
     count = wanted.simulations
-    first = simulate_all(
-        trial, FIRST_SIMULATIONS, folder, seed=seed, progress=part(simulating, 0, 20)
-    )
-    cycles, recorded = int(show_cycles(trial, measured, first[1]).sum()), seen is not None
+    begun = Ensemble.within(place, trial, seed)
+    begun = begun.simulate(FIRST_SIMULATIONS, part(simulating, 0, 20))
+    _, features = begun.rows(FIRST_SIMULATIONS)
+    cycles, recorded = int(show_cycles(trial, measured, features).sum()), seen is not None
     if will_be_too_few(cycles, FIRST_SIMULATIONS, count, FEWEST_RIGS):
         refuse_few(DRAWN, cycles, FIRST_SIMULATIONS, FEWEST_RIGS, recorded)
-    scores, features = simulate_all(
-        trial, count, folder, seed=seed, progress=part(simulating, 1, 20, of=19), begun=first
-    )
+    begun = begun.simulate(count, part(simulating, 1, 20, of=19))
+    scores, features = begun.rows(count)
     cycles = int(show_cycles(trial, measured, features).sum())
     refuse_few(DRAWN, cycles, count, FEWEST_RIGS, recorded)
-    path = None if folder is None else folder / f"tests-{count}-{'-'.join(measured)}.npz"
+    file = f"tests-{count}-{'-'.join(measured)}.npz"
+    path = None if begun.folder is None else begun.folder / file
     every = [Further("the present test", measured), *tests]
     found = learn_or_read(trial, every, scores, features, path, learning)
     doubt = ""

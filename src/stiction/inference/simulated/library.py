@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from math import ceil, log, log1p
 from pathlib import Path
 from threading import Lock
-from typing import NamedTuple
+from types import MappingProxyType
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -43,61 +44,81 @@ class Library(NamedTuple):
     wanted: int
 
 
+class Ensemble(NamedTuple):
+    """The simulations of a plan, of which more and more are made.
+
+    Number i is the same whatever the number of others: so the first may be judged before the rest.
+
+    Parameters
+    ----------
+    plan : Plan
+        What is simulated.
+    folder : Path or None
+        Where blocks of them are stored; what it holds already is not simulated again.
+    seed : int
+        Of the simulations.
+    blocks : mapping of int to (scores, features)
+        Normal scores (n, p) and features (n, f) of those that are made, by the number of their
+        block. Features of a record with too few cycles are NaN.
+    """
+
+    plan: Plan
+    folder: Path | None
+    seed: int
+    blocks: Mapping[int, tuple[Floats, Floats]] = MappingProxyType({})
+
+    @classmethod
+    def within(cls, place: Path | None, plan: Plan, seed: int) -> Self:
+        """Return those that a folder of several plans may store; none of them is made yet."""
+        return cls(plan, None if place is None else place / f"{plan.key}-{seed}", seed)
+
+    def simulate(self, count: int, progress: Progress = silent) -> Self:
+        """Return the ensemble with at least `count` simulations, in whole blocks."""
+        if count < 1:
+            raise DescriptionError.of("simulations", f"must be at least 1, is {count}")
+        done = {**self.blocks}
+        missing = [each for each in range(ceil(count / BLOCK)) if each not in done]
+        if self.folder is not None:
+            stored = {each: read_block(self.folder, each) for each in missing}
+            done |= {each: rows for each, rows in stored.items() if rows is not None}
+            missing = [each for each in missing if each not in done]
+        ready, lock = dict.fromkeys(missing, 0), Lock()
+
+        def report(block: int, rows: int) -> None:
+            """Report the number of simulations, also during the first blocks, which take long."""
+            with lock:
+                ready[block] = rows
+                progress(sum(ready.values()) / (BLOCK * len(missing)))
+
+        work = Simulate(self.plan, self.folder, self.seed, report)
+        for block, rows in Cores().results(work.block, missing):
+            done[block] = rows
+            report(block, BLOCK)
+        return self._replace(blocks=done)
+
+    def rows(self, count: int) -> tuple[Floats, Floats]:
+        """Return normal scores (n, p) and features (n, f) of the first `count` simulations."""
+        its = [self.blocks[each] for each in range(ceil(count / BLOCK))]
+        scores, found = (np.concatenate(each)[:count] for each in zip(*its, strict=True))
+        return scores, found
+
+    def library(self, count: int) -> Library:
+        """Return those of the first `count` simulations that have cycles."""
+        scores, found = self.rows(count)
+        kept = have_cycles(found)
+        return Library(self.plan, scores[kept], found[kept], count)
+
+
 def build(
     plan: Plan, count: int, folder: Path | None, *, seed: int = 0, progress: Progress = silent
 ) -> Library:
     """Simulate a library of `count` records, or continue one that is stored in a folder."""
-    scores, found = simulate_all(plan, count, folder, seed=seed, progress=progress)
-    kept = have_cycles(found)
-    return Library(plan, scores[kept], found[kept], count)
+    return Ensemble(plan, folder, seed).simulate(count, progress).library(count)
 
 
 def have_cycles(rows: Floats) -> NDArray[np.bool_]:
     """Return a mask of the rows of features (n, f) of records with cycles."""
     return np.asarray(np.isfinite(rows).all(axis=1))
-
-
-def simulate_all(
-    plan: Plan, count: int, folder: Path | None, *, seed: int, progress: Progress = silent,
-    begun: tuple[Floats, Floats] | None = None,
-) -> tuple[Floats, Floats]:  # fmt: skip
-    """Return normal scores (n, p) and features (n, f) of `count` simulations.
-
-    Features of a record with too few cycles are NaN. What a folder holds already is not simulated
-    again, nor are the first ones if they are given as `begun`, whole blocks: simulation number i is
-    the same whatever the number of others.
-    """
-    if count < 1:
-        raise DescriptionError.of("simulations", f"must be at least 1, is {count}")
-    blocks = range((count + BLOCK - 1) // BLOCK)
-    done = (
-        {}
-        if folder is None
-        else {each: rows for each in blocks if (rows := read_block(folder, each)) is not None}
-    )
-    if begun is not None:
-        done |= dict(enumerate(zip(*(in_blocks(its) for its in begun), strict=True)))
-    missing = [each for each in blocks if each not in done]
-
-    ready, lock = dict.fromkeys(missing, 0), Lock()
-
-    def report(block: int, rows: int) -> None:
-        """Report the number of simulations, also during the first blocks, which take long."""
-        with lock:
-            ready[block] = rows
-            progress(sum(ready.values()) / (BLOCK * len(missing)))
-
-    work = Simulate(plan, folder, seed, report)
-    for block, rows in Cores().results(work.block, missing):
-        done[block] = rows
-        report(block, BLOCK)
-    scores, found = (np.concatenate([done[each][i] for each in blocks])[:count] for i in (0, 1))
-    return scores, found
-
-
-def in_blocks(rows: Floats) -> list[Floats]:
-    """Return whole blocks of rows, (n, m)."""
-    return np.split(rows, range(BLOCK, len(rows), BLOCK))
 
 
 def tell_nobody(block: int, rows: int) -> None:
