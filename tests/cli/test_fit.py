@@ -9,6 +9,7 @@ import xarray as xr
 from tests.uncertain import CYCLES, SIMULATIONS, TEXT, copy_blocks
 
 import stiction as st
+from stiction.analysis.motion.regime.classify import classify_record
 from stiction.auditing import tolerance
 from stiction.auditing.page import DRAWN
 from stiction.auditing.words.verdict import RECORD
@@ -141,7 +142,7 @@ def test_odds_that_cannot_be_given_are_refused_before_the_fit(
     output, library = tmp_path / "fit.nc", ("--library", libraries)
     command = ("fit", record_file, *units, "--rig", tmp_path / "rig.toml", "-o", output, *library)
     with monkeypatch.context() as patch:
-        patch.setattr("stiction.inference.fit.fit", None)
+        patch.setattr("stiction.inference.fit.fit_observed", None)
         assert inside(*command, "--mechanism", "-n", 300) == 2
         said = " ".join(capsys.readouterr().err.split())
         assert "must be at least 100, is 75; write -n 400 or more" in said
@@ -151,8 +152,16 @@ def test_odds_that_cannot_be_given_are_refused_before_the_fit(
     def refuse(*_, **__):
         raise ResultError("only by one")
 
-    monkeypatch.setattr("stiction.inference.mechanism.comparison.mechanism", refuse)
+    monkeypatch.setattr("stiction.inference.mechanism.comparison.odds_of_observed", refuse)
+    seen = []
+
+    def classify(record):
+        seen.append(record)
+        return classify_record(record)
+
+    monkeypatch.setattr("stiction.inference.observation.classify_record", classify)
     assert inside(*command, "--mechanism", "-n", SIMULATIONS) == 0
+    assert len(seen) == 1  # observed once, for what is refused, for the fit and for the odds
     assert "Not compared: only by one." in capsys.readouterr().out
     assert set(xr.open_dataset(output)) == {"phi", "k_x", "k_y", "mu_0", "mu_inf", "jitter"}
 

@@ -17,20 +17,20 @@ from stiction.arrays import Floats
 from stiction.auditing.words.verdict import RECORD
 from stiction.errors import DescriptionError, ResultError
 from stiction.inference.features import USED
-from stiction.inference.fit import check, fit
-from stiction.inference.measured.drive_of_records import with_measured_drive
-from stiction.inference.mechanism.comparison import mechanism
+from stiction.inference.fit import check, fit_observed
+from stiction.inference.measured.observed_rig import observe_with_one
+from stiction.inference.mechanism.comparison import check_comparable, odds_of_observed
 from stiction.inference.mechanism.likeness import BENT
 from stiction.inference.mechanism.odds import SHARE, TURNING, UNDECIDED, Odds, near_one
 from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION
-from stiction.inference.observation import Conditions, Observation, observe
+from stiction.inference.observation import Conditions, Observation
 from stiction.inference.posterior import RARE, Estimate, Fit, at_most, middle
 from stiction.inference.predictive import Predictive, predict
 from stiction.inference.rig import Rig
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.simulated.synthetic import NOT_OF_THE_SLIDER
-from stiction.progress.report import silent
+from stiction.progress.report import part, silent
 from stiction.system.load_cell import stiffness_of_cell
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
@@ -135,23 +135,19 @@ def compare(
         If nothing of the rig is uncertain, or it is not of a kind that can be fitted.
     """
     check(rig, simulations)
-    library_folder(library)  # refused at once, and not as a reason why there is no verdict
+    place = library_folder(library)  # refused at once, and not as a reason for no verdict
     report, stated = progress or silent, with_description(record, rig)
     try:
-        seen = observe(record, with_measured_drive(rig, [record]).rig.slider)
-        found = fit(
-            record, rig, simulations=simulations, library=library, seed=seed,
-            progress=lambda fraction: report(0.5 * fraction),
-        )  # fmt: skip
+        its = observe_with_one(record, rig)
+        found = fit_observed(its, simulations, place, seed, part(report, 0, 20, of=10))
     except ResultError as error:
         return RecordComparison(record, reason=str(error), stated=stated)
-    made = predict(found, seen, lambda fraction: report(0.5 + 0.05 * fraction))
+    (seen,) = its.seen
+    made = predict(found, seen, part(report, 10, 20))
     odds, why = None, ""
     try:
-        odds = mechanism(
-            record, rig, simulations=simulations // SHARE, library=library, seed=seed,
-            progress=lambda fraction: report(0.55 + 0.45 * fraction),
-        )  # fmt: skip
+        check_comparable(rig, simulations // SHARE)
+        odds = odds_of_observed(its, simulations // SHARE, place, seed, part(report, 11, 20, of=9))
     except (ResultError, DescriptionError) as error:
         why = str(error)
     return withdraw(
@@ -238,15 +234,15 @@ def say_once(parts: Sequence[Section], shared: Sequence[str]) -> list[Section]:
     [['No. A pause.'], ['Why?']]
     """
     told, found = set[str](), []
-    for part in parts:
+    for section in parts:
         sentences = []
-        for sentence in part.sentences:
+        for sentence in section.sentences:
             again = [words for words in shared if words in sentence and words in told]
             told |= {words for words in shared if words in sentence}
             for words in again:
                 sentence = " ".join(sentence.replace(words, "").split())
             sentences += [sentence] * bool(sentence)
-        found.append(part._replace(sentences=sentences))
+        found.append(section._replace(sentences=sentences))
     return found
 
 

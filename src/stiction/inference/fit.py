@@ -18,19 +18,17 @@ from stiction.friction import Anisotropic, has_state
 from stiction.friction.registry import LAWS
 from stiction.inference.learning.calibration import learn_or_read, learn_or_read_summary
 from stiction.inference.learning.summary import FeatureSummary
-from stiction.inference.measured.drive_of_records import with_measured_drive
+from stiction.inference.measured.observed_rig import ObservedRig, observe_rig
 from stiction.inference.observation import (
     VELOCITY,
     Conditions,
     Observation,
     Source,
-    observe_all,
-    read_all,
     sign_seen,
 )
 from stiction.inference.posterior import Fit
 from stiction.inference.priors import Prior, middle
-from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
+from stiction.inference.rig import Rig, refuse_swapped, rig_of
 from stiction.inference.simulated import SIMULATIONS
 from stiction.inference.simulated.jitter import coefficients
 from stiction.inference.simulated.library import (
@@ -113,19 +111,22 @@ def fit(
     known = rig_of(rig)
     check(known, simulations)
     place = library_folder(library)
-    given = read_all(records, load_of_records(known))
-    drive = with_measured_drive(known, given)
-    seen = observe_all(given, drive.rig.slider)
+    its = observe_rig(records, known)
     end_reading()
-    plan_of = plan_for(drive.rig, [each.conditions for each in seen])
-    whole = progress or silent
-    simulating, learning = part(whole, 0, 10, of=7), part(whole, 7, 10, of=3)
-    begun = Ensemble.within(place, plan_of, seed)
+    return fit_observed(its, simulations, place, seed, progress or silent)
+
+
+def fit_observed(
+    its: ObservedRig, simulations: int, place: Path | None, seed: int, progress: Progress
+) -> Fit:
+    """Do as `fit` for records that are observed, with libraries in the folder `place`."""
+    simulating, learning = part(progress, 0, 10, of=7), part(progress, 7, 10, of=3)
+    begun = Ensemble.within(place, plan_for(its.rig, its.conditions), seed)
     begun = refuse_early(begun, simulations, part(simulating, 0, 20))
     simulated = build_enough(begun, simulations, part(simulating, 1, 20, of=19))
-    found = compare(simulated, seen, begun.folder, learning)
-    whole(1.0)
-    return replace(found, drive=drive)
+    found = compare(simulated, its.seen, begun.folder, learning)
+    progress(1.0)
+    return replace(found, drive=its.drive)
 
 
 def refuse_early(begun: Ensemble, simulations: int, progress: Progress = silent) -> Ensemble:

@@ -276,17 +276,18 @@ def test_a_fit_takes_all_strokes_together(tmp_path, monkeypatch, capsys):
     """It was advised, and refused."""
     fitted = []
 
-    def infer(records, *_, **__):
+    def observe(records, _):
         fitted.extend(records)
         raise st.ResultError("enough")
 
-    monkeypatch.setattr("stiction.inference.fit.fit", infer)
+    monkeypatch.setattr("stiction.inference.measured.observed_rig.observe_rig", observe)
     path = stick_slip_to_and_fro(tmp_path)
     rig = tmp_path / "rig.toml"
     rig.write_text(st.presets.nakano_popov_2020().to_toml())
     output = ["-o", str(tmp_path / "fit.nc"), "--library", str(tmp_path / "library")]
+    output += ["--stroke", "all"]
     with pytest.raises(SystemExit):
-        main(["fit", str(path), "--rig", str(rig), "--stroke", "all", *output])
+        main(["fit", str(path), "--rig", str(rig), "--set", "phi=2 +- 1 deg", *output])
     assert "enough" in capsys.readouterr().err
     assert [each.force.tolist() for each in fitted] == [
         each.force.tolist() for each in st.read_records(path, stroke="all")

@@ -14,7 +14,7 @@ from stiction.arrays import Floats
 from stiction.errors import DescriptionError, Fault, Instruction
 from stiction.inference.columns import bend_features
 from stiction.inference.fit import check, plan_for
-from stiction.inference.measured.drive_of_records import with_measured_drive
+from stiction.inference.measured.observed_rig import ObservedRig, observe_rig
 from stiction.inference.mechanism import classifier, likeness
 from stiction.inference.mechanism.classifier import Simulations, begin, simulate
 from stiction.inference.mechanism.odds import SHARE, SIMULATIONS, Odds, surely
@@ -24,12 +24,10 @@ from stiction.inference.mechanism.static_check import ELASTIC, StaticCheck
 from stiction.inference.observation import (
     Observation,
     Source,
-    observe_all,
-    read_all,
     steadiness,
     trend_of,
 )
-from stiction.inference.rig import Rig, load_of_records, refuse_swapped, rig_of
+from stiction.inference.rig import Rig, refuse_swapped, rig_of
 from stiction.inference.simulated.library import library_folder
 from stiction.inference.suitability import explain_unlike
 from stiction.progress.audience import with_progress
@@ -93,17 +91,21 @@ def mechanism(
     known = rig_of(rig)
     check_comparable(known, simulations)
     place = library_folder(library)
-    given = read_all(records, load_of_records(known))
-    known = with_measured_drive(known, given).rig
-    seen = observe_all(given, known.slider)
+    its = observe_rig(records, known)
     end_reading()
-    rivals = mechanisms(known, [each.conditions for each in seen])
-    whole = progress or silent
-    simulating = part(whole, 0, 10, of=8)
+    return odds_of_observed(its, simulations, place, seed, progress or silent)
+
+
+def odds_of_observed(
+    its: ObservedRig, simulations: int, place: Path | None, seed: int, progress: Progress
+) -> Odds:
+    """Do as `mechanism` for records that are observed, with libraries in the folder `place`."""
+    rivals = mechanisms(its.rig, its.conditions)
+    simulating, comparing = part(progress, 0, 10, of=8), part(progress, 8, 10, of=2)
     simulated = simulate(rivals, simulations, place, seed=seed, progress=simulating)
     kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}"
-    found = compare(simulated, known, seen, kept, part(whole, 8, 10, of=2), simulations)
-    whole(1.0)
+    found = compare(simulated, its.rig, its.seen, kept, comparing, simulations)
+    progress(1.0)
     return found
 
 
@@ -127,24 +129,13 @@ def check_comparable(rig: Rig, simulations: int = SIMULATIONS) -> None:
 
 
 def refuse_incomparable(
-    records: Source | Sequence[Source],
-    rig: Rig,
-    *,
-    simulations: int,
-    library: str | Path | None,
-    seed: int,
-    progress: Progress = silent,
+    its: ObservedRig, simulations: int, place: Path | None, seed: int, progress: Progress
 ) -> None:
-    """Refuse records and a rig for which `mechanism` has no answer, before a fit of them.
+    """Refuse records and a rig for which `odds_of_observed` has no answer, before a fit of them.
 
     As far as the first simulations of each mechanism tell; a library keeps them.
     """
-    check_comparable(rig, simulations)
-    given = read_all(records, load_of_records(rig))
-    rig = with_measured_drive(rig, given).rig
-    seen = observe_all(given, rig.slider)
-    rivals = mechanisms(rig, [each.conditions for each in seen])
-    begin(rivals, simulations, library_folder(library), seed, progress)
+    begin(mechanisms(its.rig, its.conditions), simulations, place, seed, progress)
 
 
 def key(rivals: Sequence[Mechanism]) -> str:

@@ -95,11 +95,16 @@ def fit(
         group "mechanism" of the output.
     """
     from stiction.cli.tables import print_sections
-    from stiction.inference.fit import fit as infer
-    from stiction.inference.mechanism.comparison import mechanism as find
-    from stiction.inference.mechanism.comparison import refuse_incomparable
+    from stiction.inference.fit import check, fit_observed
+    from stiction.inference.measured.observed_rig import observe_rig
+    from stiction.inference.mechanism.comparison import (
+        check_comparable,
+        odds_of_observed,
+        refuse_incomparable,
+    )
     from stiction.inference.mechanism.odds import SHARE
     from stiction.inference.rig import Rig, load_of_records
+    from stiction.inference.simulated.library import library_folder
     from stiction.progress.display import show_progress
     from stiction.storage.files import NETCDF, placeable, usable_folder
 
@@ -123,25 +128,25 @@ def fit(
     faults.refuse()
     assert known is not None
     given, names = [*read.values()], [*read]
-    kept = library_or_cache(library)
-    of_each = simulations // SHARE
+    kept, of_each = library_or_cache(library), simulations // SHARE
+    if mechanism:
+        check_comparable(known, of_each)
+    else:
+        check(known, simulations)
+    place = library_folder(kept)
+    with show_progress("observing the records"):
+        its = observe_rig(given, known)
     if mechanism:  # a fit takes long
         with show_progress("simulating the first of each mechanism") as report:
-            refuse_incomparable(
-                given, known, simulations=of_each, library=kept, seed=seed, progress=report
-            )
+            refuse_incomparable(its, of_each, place, seed, report)
     with show_progress("simulating and learning") as report:
-        found = infer(
-            given, known, simulations=simulations, library=kept, seed=seed, progress=report
-        )
+        found = fit_observed(its, simulations, place, seed, report)
     sections, groups = found.tables(), {}
     plots: dict[str, Any] = {"posterior": found, "corner": found}
     if mechanism:
         with show_progress("simulating and telling mechanisms apart") as report:
             try:
-                odds = find(
-                    given, known, simulations=of_each, library=kept, seed=seed, progress=report
-                )
+                odds = odds_of_observed(its, of_each, place, seed, report)
             except ResultError as error:  # seldom: the first simulations did not tell it
                 sections = [*sections, Section("Mechanism", [f"Not compared: {error}."])]
             else:
