@@ -15,18 +15,19 @@ from stiction.errors import Faults, ResultError, echo
 from stiction.formats import TextLayout, read_tables
 from stiction.formats.channels import CHANNELS, plain
 from stiction.formats.table import FileTable, Remark, number_of
-from stiction.recording.guess.choice import (
-    FILL,
-    GAP,
-    Choice,
-    Chosen,
-    UnclearColumns,
-    choose_columns,
-    own_clock,
+from stiction.recording.guess.channel_times import (
+    FEWEST_SAMPLES,
+    note_uneven,
+    notes_on_times,
+    own_times,
+    times_of_rows,
+    values_at,
 )
-from stiction.recording.guess.clock import Block, blocks, check_stated, rate_of
+from stiction.recording.guess.choice import Choice, Chosen, choose_columns
+from stiction.recording.guess.clock import Block, blocks, rate_of
 from stiction.recording.guess.displacement import unwrap
 from stiction.recording.guess.remarks import Said, what_is_said
+from stiction.recording.guess.remedies import FILL, GAP, UnclearColumns
 from stiction.recording.noise import noise_level
 from stiction.recording.origin import Origin, Use
 from stiction.recording.request import (
@@ -45,10 +46,8 @@ from stiction.text.suggestion import Suggestion
 T = TypeVar("T")
 FORCES = {"force", "force_across"}
 DISPLACEMENTS = ("position", "drive_position")
-FEWEST_SAMPLES = 2  # samples of a block
 BESIDE = 0.05  # of the rows of the longest table: a shorter one holds results, say
 STEPS = ("step", "stroke", "cycle", "block", "segment", "pass", "schritt", "zyklus", "hub")
-UNEVEN = 0.01  # relative: intervals that differ by more are reported
 
 
 class Measurement(NamedTuple):
@@ -162,7 +161,7 @@ def _measurements(path: Path, table: FileTable, asked: Request) -> list[Measurem
     if not by_interval and interval is not None:  # a column of times comes first
         by_interval = not _has_times(path, table, reading)
     choice = choose_columns(path, table, reading.columns, timed=by_interval)
-    clock, name = _clock(table, choice, interval)
+    clock, name = times_of_rows(table, choice, interval)
     parts = blocks(path, table, clock, reading.times, name)
     found = []
     before = -1
@@ -188,18 +187,6 @@ def _has_times(path: Path, table: FileTable, reading: ReadingOptions) -> bool:
         return "time" not in error.lacking
 
 
-def _clock(table: FileTable, choice: Choice, interval: float | None) -> tuple[Floats, str]:
-    """Return the times of all rows, s, and the name of their column."""
-    chosen = choice.channels.get("time")
-    if chosen is not None:
-        return chosen.column.values * chosen.size, f"column {chosen.column}"
-    force = choice.channels["force"].column
-    if force.clock is not None:
-        return force.clock, "the clock"
-    assert interval is not None
-    return np.arange(len(table), dtype=np.float64) * interval, "the clock"
-
-
 def _remarks(table: FileTable, before: int, first: int) -> Sequence[Remark]:
     """Return the remarks between two rows."""
     if table.lines is None:
@@ -212,12 +199,12 @@ def _measurement(block: TableBlock, said: Said, by_interval: bool, parts: int) -
     """Return the measurement of one block."""
     path, table, asked, choice, part = block
     notes = [*table.notes, *choice.notes, *part.notes]
-    notes += _notes_on_clock(table, part, said, by_interval, parts)
+    notes += notes_on_times(table, part, said, by_interval, parts)
     whole, lost = _with_force(block)
     time = part.time[whole]
     if len(time) < FEWEST_SAMPLES:
         raise ResultError(f"{path}: {len(time)} samples with a force; a record needs two")
-    notes += [*lost, *_spacing(time)]
+    notes += [*lost, *note_uneven(time)]
     found: dict[str, MeasuredChannel] = {}
     for name in choice.channels:
         if name == "time":
@@ -277,89 +264,19 @@ def _channel(
     block: TableBlock, name: str, time: Floats, whole: NDArray[np.bool_]
 ) -> tuple[MeasuredChannel | None, list[str]]:
     """Return a channel at the times of the force, None if it has no values there; and notes."""
-    path, table, asked, choice, part = block
-    chosen = choice.channels[name]
+    chosen, part = block.choice.channels[name], block.part
     values = chosen.column.values[part.rows] * chosen.size
-    other = _other_clock(path, table, choice, name, part)
-    its, notes = _on(values, part.time if other is None else other, time, name, whole)
+    other = own_times(block.path, block.table, block.choice, name, part)
+    its, notes = values_at(values, part.time if other is None else other, time, name, whole)
     if its is None:
         return None, notes
-    sensor = asked.sensors.get(name)
+    sensor = block.asked.sensors.get(name)
     if sensor is not None:
         its = sensor.value(its, time)
     if name in DISPLACEMENTS:
-        its, wraps = _unwrap(its, time, asked.reading.wrap, name)
+        its, wraps = _unwrap(its, time, block.asked.reading.wrap, name)
         notes += wraps
     return MeasuredChannel(its, _with_noise(sensor, its, name)), notes
-
-
-def _notes_on_clock(
-    table: FileTable, part: Block, said: Said, by_interval: bool, parts: int
-) -> list[str]:
-    """Return how times are found, and whether as many are there as the file says."""
-    if by_interval:
-        notes = [f"times are the number of the sample times {said.stated or 'the interval'}"]
-    else:
-        notes = [*check_stated(part.time, said.interval, said.stated)]
-    promised, count = said.promised or table.promised, len(part.rows)
-    if promised is not None and promised > count and (parts == 1 or said.promised):
-        notes.append(f"the file promises {promised} samples and has {count}: it is cut off")
-    return notes
-
-
-def _other_clock(
-    path: Path, table: FileTable, choice: Choice, name: str, part: Block
-) -> Floats | None:
-    """Return the times of a channel with its own clock; None if it shares the force's."""
-    column, force = choice.channels[name].column, choice.channels["force"].column
-    if column.clock is not None and force.clock is not None:
-        own = column.clock[part.rows]
-        return None if np.array_equal(own, part.time) else own
-    chosen = choice.channels.get("time")
-    if chosen is None:
-        return None
-    times = [
-        x for x in table.columns if x.name == chosen.column.name and x.unit == chosen.column.unit
-    ]
-    if len(times) < 2:
-        return None
-    own_times = own_clock(path, table, column, times)
-    own = own_times.values[part.rows] * chosen.size
-    return None if np.array_equal(own, part.time, equal_nan=True) else own
-
-
-def _on(
-    values: Floats,
-    own: Floats,
-    time: Floats,
-    name: str,
-    whole: NDArray[np.bool_],
-) -> tuple[Floats | None, list[str]]:
-    """Return a channel at the times of the force, None if it has no values there; and notes."""
-    known = np.isfinite(values) & np.isfinite(own)
-    if len(own) == len(whole) and known[whole].all() and np.array_equal(own[whole], time):
-        return np.asarray(values[whole]), []
-    meaning = CHANNELS[name].meaning
-    if np.count_nonzero(known) < FEWEST_SAMPLES:
-        return None, [f"the {meaning} has no values and is left out"]
-    notes = [f"the {meaning} is interpolated to the times of the force by straight lines"]
-    order = np.argsort(own[known], kind="stable")
-    at, its = own[known][order], values[known][order]
-    outside = int(np.count_nonzero((time < at[0]) | (time > at[-1])))
-    if outside:
-        count = number_of(outside, "sample")
-        notes.append(f"{count} outside its times: its first and last value stand there")
-    return np.interp(time, at, its), notes
-
-
-def _spacing(time: Floats) -> list[str]:
-    """Return a note on intervals that differ."""
-    steps = np.diff(time)[1:]
-    usual = float(np.median(steps)) if len(steps) else 0.0
-    if usual <= 0.0 or float(np.abs(steps - usual).max()) <= UNEVEN * usual:
-        return []
-    least, most = (in_words(float(x), "s") for x in (steps.min(), steps.max()))
-    return [f"intervals differ: {least} to {most}, mostly {in_words(usual, 's')}"]
 
 
 def _unwrap(

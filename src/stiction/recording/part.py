@@ -8,8 +8,9 @@ import numpy as np
 
 from stiction.errors import ResultError
 from stiction.formats.table import number_of
+from stiction.recording.guess.channel_times import FEWEST_SAMPLES
 from stiction.recording.guess.clock import rate_of
-from stiction.recording.measurement import FEWEST_SAMPLES, Measurement
+from stiction.recording.measurement import Measurement
 from stiction.recording.request import KnownApparatus
 from stiction.text.quantity.wording import in_words
 from stiction.text.suggestion import Suggestion

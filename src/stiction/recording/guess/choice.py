@@ -3,34 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple, NoReturn
+from typing import NamedTuple
 
 import numpy as np
 
-from stiction.arrays import Floats
 from stiction.errors import Faults, ResultError, echo
 from stiction.formats.channels import CHANNELS, LENGTH, OWN, RATIO, plain
 from stiction.formats.table import FileColumn, FileTable
 from stiction.formats.units import is_electric, is_ratio, size_of, split_unit
-from stiction.text.quantity.wording import in_words
+from stiction.recording.guess.remedies import (
+    UnclearColumns,
+    refuse_ambiguous,
+    refuse_column,
+    refuse_lack,
+    refuse_unit,
+    say_ratio,
+    say_time,
+)
 from stiction.text.suggestion import Suggestion
-
-DAYS = 2e4, 1e5  # since 1900, as spreadsheets number them: 1954 to 2173
-SHOWN_COLUMNS = 3  # columns that a message suggests
-EVEN_STEPS = 0.01  # of a step: displacements whose steps differ by more have no interval
-# of a suggestion: what only the user knows. A number instead would be run as it stands
-GAP = "?"
-FILL = f"with its number in place of {GAP}"
-AN_AREA = f"{GAP} mm^2"  # that turns a stress into a force
-
-
-class UnclearColumns(ResultError):
-    """The error that no column, or several, can be a channel; `lacking` channels have none."""
-
-    def __init__(self, message: str, *lacking: str) -> None:
-        """Store the message, and the names of the channels."""
-        super().__init__(message)
-        self.lacking = lacking
 
 
 class Chosen(NamedTuple):
@@ -98,7 +88,9 @@ def choose_columns(path: object, table: FileTable, said: dict[str, str], *, time
                 taken.append(column)
                 found[name] = _with_size(path, table, name, column, wish.unit)
             elif name in said:
-                _refuse_lack(path, table, name, _say_ratio(table, taken) if name == "force" else "")
+                refuse_lack(
+                    path, table, name, say_ratio(_ratios(table, taken)) if name == "force" else ""
+                )
             elif name == "force":
                 found[name] = _ratio(path, table, taken)
                 taken.append(found[name].column)
@@ -138,7 +130,7 @@ def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
     if equals:
         column = _find(path, table, name, head.strip()) if head.strip() else None
         if head.strip() and column is None:
-            _refuse(path, table, name, f"no column is called {echo(head.strip())}, for")
+            refuse_column(path, table, name, f"no column is called {echo(head.strip())}, for")
         return _Wish(column, unit.strip())
     column = _find(path, table, name, text.strip())
     is_unit = size_of(text, CHANNELS[name].unit) is not None
@@ -151,7 +143,7 @@ def _read_wish(path: object, table: FileTable, name: str, text: str) -> _Wish:
         return _Wish(column, "")
     if not is_unit:
         example = CHANNELS[name].example
-        _refuse(
+        refuse_column(
             path, table, name, f"{echo(text)} is neither a column nor a unit such as {example} of"
         )
     return _Wish(None, text.strip())
@@ -167,7 +159,7 @@ def _find(path: object, table: FileTable, name: str, text: str) -> FileColumn | 
         [x for x in columns if text == str(x.number)],
     ):
         if len(matches) > 1:
-            _ambiguous(path, name, matches)
+            refuse_ambiguous(path, name, matches)
         if matches:
             return matches[0]
     return None
@@ -206,7 +198,7 @@ def _by_name(
             )
     matches = [x for x in matches if plain(x.name) in OWN] or matches
     if len(matches) > 1:
-        _ambiguous(path, name, matches)
+        refuse_ambiguous(path, name, matches)
     return matches[0] if matches else None
 
 
@@ -230,7 +222,7 @@ def _by_unit(
         raw = [x for x in free if is_electric(x.unit) and not _is_other(x, name)]
         matches = raw if len(raw) == 1 or wish.unit else []
     if len(matches) > 1:
-        _ambiguous(path, name, matches)
+        refuse_ambiguous(path, name, matches)
     return matches[0] if matches else None
 
 
@@ -251,22 +243,13 @@ def _ratios(table: FileTable, taken: Sequence[FileColumn]) -> list[FileColumn]:
     return [x for x in free if RATIO.fullmatch(plain(x.name)) and is_ratio(x.unit or "-")]
 
 
-def _say_ratio(table: FileTable, taken: Sequence[FileColumn]) -> str:
-    """Return how a friction coefficient is read, where a force was asked for; '' without one."""
-    return "".join(
-        f"column {each} is a friction coefficient: leave out {Suggestion('force')}, and say "
-        f"{Suggestion('normal_load', f'{GAP} N')}, {FILL}"
-        for each in _ratios(table, taken)[:1]
-    )
-
-
 def _ratio(path: object, table: FileTable, taken: Sequence[FileColumn]) -> Chosen:
     """Return a friction coefficient in place of the force."""
     matches = _ratios(table, taken)
     if len(matches) > 1:
-        _ambiguous(path, "force", matches)
+        refuse_ambiguous(path, "force", matches)
     if not matches:
-        _refuse_lack(path, table, "force")
+        refuse_lack(path, table, "force")
     column = matches[0]
     size = 0.01 if column.unit == "%" else 1.0
     note = f"column {column} is a friction coefficient: the force is that times the normal load"
@@ -291,29 +274,13 @@ def _times(
     if not matches and _has_no_names(table) and wish.unit:
         matches = [x for x in free if x.number == 1]
     if not matches:
-        _refuse_lack(path, table, "time", _say_time(table, free))
+        refuse_lack(path, table, "time", say_time(table, free))
     first = matches[0]
     same = all(np.array_equal(x.values, first.values, equal_nan=True) for x in matches)
     alike = same and len({x.unit for x in matches}) == 1
     if force is not None and not alike:
         return own_clock(path, table, force.column, matches)
     return first
-
-
-def _say_time(table: FileTable, columns: Sequence[FileColumn]) -> str:
-    """Return how times are given: by a column, an interval, or the steps of a displacement."""
-    for column in columns:
-        if size_of(column.unit, "m") is not None and _increases(column.values):
-            steps = np.diff(column.values)
-            step = float(np.median(steps))
-            if np.abs(steps - step).max() <= EVEN_STEPS * step:
-                interval = Suggestion("interval", f"{GAP} s")
-                return (
-                    f"column {column} rises in steps of {step:.4g} {column.unit}: say the time of "
-                    f"one, a step over the drive velocity, {interval}, {FILL}"
-                )
-    by_column = _say(table, "time")
-    return f"{by_column}; or give {Suggestion('interval', f'{GAP} ms')}, {FILL}"
 
 
 def own_clock(
@@ -330,7 +297,7 @@ def own_clock(
     adjacent = any(number + 1 in numbers for number in numbers)
     before = [x for x in times if x.number < column.number]
     if adjacent or not before or numbers[0] != min(x.number for x in table.columns):
-        _ambiguous(path, "time", times)
+        refuse_ambiguous(path, "time", times)
     return before[-1]
 
 
@@ -345,109 +312,4 @@ def _with_size(path: object, table: FileTable, name: str, column: FileColumn, un
         if "/" not in unit and (headed is None or abs(headed.value) != abs(size.value)):
             note = f"column {column} is read in {unit}, as asked, not in what its heading says"
         return Chosen(column, size.value, text, note)
-    example = _say_units(name, column)
-    if not text or (is_ratio(text) and not unit):
-        raise ResultError(
-            f"{path}: column {column} states no unit of {_article(channel.meaning)}; {example}"
-        )
-    if is_electric(text):
-        hints = [
-            x
-            for x in table.remarks
-            if "/V" in x.text or "V/" in x.text or "scale" in x.text.lower()
-        ]
-        hint = f"; line {hints[0].line} says {hints[0].text.strip()[:60]!r}" if hints else ""
-        raise ResultError(
-            f"{path}: column {column} is in {text}, and its scale is needed; say "
-            f"{Suggestion(name, f'{column.number}={_scale(channel.unit, text)}')}, {FILL}{hint}"
-        )
-    raise ResultError(
-        f"{path}: column {column} is in {echo(text)}, not a unit of "
-        f"{_article(channel.meaning)}; {example}"
-    )
-
-
-def _say_units(name: str, column: FileColumn) -> str:
-    """Return the usual units of a channel, and the column's values in each."""
-    channel = CHANNELS[name]
-    units = dict.fromkeys((channel.unit, channel.example))
-    known = column.values[np.isfinite(column.values)]
-    values = known if len(known) else np.zeros(1)
-    said = []
-    for unit in units if len(units) > 1 else (channel.unit, f"k{channel.unit}"):
-        size = size_of(unit, channel.unit)
-        ends = (size.value if size else 1.0) * np.array([values.min(), values.max()])
-        if name == "time":
-            lasts = float(np.ptp(ends))
-            rate = in_words((len(values) - 1) / lasts, "Hz", 2) if lasts > 0.0 else "any rate"
-            means = f"{in_words(lasts, 's', 2)} at {rate}"
-        else:
-            means = f"{in_words(ends[0], channel.unit, 2)} to {in_words(ends[1], channel.unit, 2)}"
-        said.append(f"{Suggestion(name, f'{column.number}={unit}')} makes it {means}")
-    return f"say its unit: {', '.join(said)}"
-
-
-def _article(meaning: str) -> str:
-    return "time" if meaning == "time" else f"the {meaning}"
-
-
-def _ambiguous(path: object, name: str, matches: Sequence[FileColumn]) -> NoReturn:
-    choices = ", ".join(str(each) for each in matches)
-    each_of_them = " or ".join(
-        str(Suggestion(name, each.number)) for each in matches[:SHOWN_COLUMNS]
-    )
-    raise ResultError(
-        f"{path}: {len(matches)} columns may be the {CHANNELS[name].meaning}: {choices}; say which "
-        f"by its number: {each_of_them}"
-    )
-
-
-def _refuse(path: object, table: FileTable, name: str, why: str) -> NoReturn:
-    raise ResultError(_with_columns(path, table, name, why))
-
-
-def _refuse_lack(path: object, table: FileTable, name: str, remedy: str = "") -> NoReturn:
-    raise UnclearColumns(_with_columns(path, table, name, "no column is", remedy), name)
-
-
-def _with_columns(path: object, table: FileTable, name: str, why: str, remedy: str = "") -> str:
-    """Return why a channel has no column, the existing columns, and the remedy."""
-    columns = ", ".join(str(each) for each in table.columns) or "none"
-    remedy = remedy or _say(table, name)
-    return f"{path}: {why} the {CHANNELS[name].meaning}; columns: {columns}; {remedy}"
-
-
-def _say(table: FileTable, name: str) -> str:
-    """Return how to declare a column as a channel, with a gap for the user's knowledge."""
-    example = _example(table, name)
-    fill = f", {FILL}" if GAP in example else ""
-    fill = fill.replace("number", "unit") if example.endswith(GAP) else fill
-    stress = "; a stress times the area that it acts on is a force" if AN_AREA in example else ""
-    return f"say for example {Suggestion(name, example)}{fill}{stress}"
-
-
-def _example(table: FileTable, name: str) -> str:
-    """Return number and unit of a column that may be a channel; times increase."""
-    channel, increasing = CHANNELS[name], name == "time"
-    likely = [x for x in table.columns if _increases(x.values) == increasing]
-    column = (likely or [*table.columns])[0] if table.columns else None
-    number = column.number if column else 2
-    if column and is_electric(column.unit):
-        return f"{number}={_scale(channel.unit, column.unit)}"
-    if column and channel.unit == "N" and size_of(column.unit, "Pa") is not None:
-        return f"{number}={AN_AREA}*{column.unit}"
-    if column and size_of(column.unit, channel.unit) is not None:
-        return str(number)  # its heading has the unit
-    if increasing and column and DAYS[0] < float(np.nanmean(column.values)) < DAYS[1]:
-        return f"{number}=d"
-    return f"{number}={GAP}"
-
-
-def _scale(unit: str, signal: str) -> str:
-    """Return the scale of a raw signal, without its number."""
-    return f"{GAP} {unit}/({signal})" if "/" in signal else f"{GAP} {unit}/{signal}"
-
-
-def _increases(values: Floats) -> bool:
-    known = values[np.isfinite(values)]
-    return len(known) > 1 and bool((np.diff(known) >= 0.0).all() and known[-1] > known[0])
+    refuse_unit(path, table, name, column, text, asked=bool(unit))
