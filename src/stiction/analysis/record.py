@@ -18,6 +18,7 @@ from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arrays import Floats, Indices, xr
 from stiction.errors import DescriptionError, Fault, echo
+from stiction.formats.channels import CHANNELS as COLUMNS
 from stiction.formats.table import number_of
 from stiction.names import draw, own_picture
 from stiction.recording.guess.clock import rate_of, spread_evenly
@@ -56,9 +57,7 @@ SHARP = 1e-3  # of the load: noise of it that is averaged away
 # correlated, that is known half as well as by the noise itself
 CERTAIN = 10.0
 LONGEST_MEAN = 1 / 400  # of the record: over so much of it the load is averaged at most
-CHANNELS = (  # (n,), beside the time
-    *("force", "force_across", "load", "position", "drive_position", "slip_speed"),
-)
+CHANNELS = tuple(name for name in COLUMNS if name != "time")  # (n,), beside the time
 UNITS = {name: f"{name}_unit" for name in ("time", *CHANNELS)}
 
 

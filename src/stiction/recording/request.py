@@ -24,9 +24,11 @@ from stiction.text.units import (
     Stiffness,
     Whole,
     fault,
+    hints_of,
     reader,
     split_uncertain,
     to_si,
+    unit_of,
 )
 from stiction.text.validation import Described, unknown_name
 
@@ -61,10 +63,8 @@ class KnownApparatus(Described):
     turned: Angle | None = None
 
 
-KNOWN = {  # its fields and their units
-    "normal_load": "N", "stiffness": "N/m", "stiffness_across": "N/m", "drive_velocity": "m/s",
-    "mass": "kg", "zero": "N", "turned": "rad",
-}  # fmt: skip
+# its fields and their units
+KNOWN = {name: unit_of(hints_of(KnownApparatus)[name]) for name in KnownApparatus.model_fields}
 
 
 def _column(value: object) -> str:

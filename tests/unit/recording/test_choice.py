@@ -1,9 +1,14 @@
 """An error of the columns of a file names what is to be said of this file."""
 
+from dataclasses import fields
+
 import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.measurement.reading import ReadArguments
+from stiction.cli.options import RecordOptions
+from stiction.recording.request import KNOWN, ReadingOptions
 
 NUMBERS = np.arange(50.0)
 
@@ -12,6 +17,12 @@ def table(tmp_path, heads, *columns):
     path = tmp_path / "data.csv"
     np.savetxt(path, np.column_stack(columns), delimiter=";", header=heads, comments="")
     return path
+
+
+def test_python_and_the_command_line_take_the_same_statements():
+    names = {*ReadingOptions.model_fields, *KNOWN}
+    assert {*ReadArguments.__annotations__} == names
+    assert {each.name for each in fields(RecordOptions)} == names | {"sidecar"}
 
 
 def test_a_force_over_an_even_displacement_is_told_how_to_get_times(tmp_path):

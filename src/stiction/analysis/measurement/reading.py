@@ -17,7 +17,7 @@ from stiction.recording.strokes import ALL, all_strokes, stroke_of
 from stiction.result.file import FIT_KIND, RECORD_KIND, refuse_kinds
 from stiction.storage.kinds import use_of
 from stiction.text.suggestion import Suggestion, as_argument, as_argument_elsewhere, suggest
-from stiction.text.units import Quantity
+from stiction.text.units import Quantity, Radians
 from stiction.trajectory import Trajectory, load
 
 TOGETHER = Instruction(
@@ -357,7 +357,7 @@ def _record(path: str | Path, found: Measurement) -> Record:
     """Return the record of a measurement, with faults that name the file."""
     known = {**found.known}
     if isinstance(turned := known.get("turned"), float):
-        known["turned"] = f"{turned!r} rad"  # of an angle a record asks for the unit
+        known["turned"] = Radians(turned)
     try:
         return Record(**found.channels, **known, sensors=found.sensors, origin=found.origin)
     except DescriptionError as error:
