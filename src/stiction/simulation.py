@@ -20,7 +20,7 @@ from stiction.result.file import SHORTEST
 from stiction.result.table import VARIABLES, ColumnTable, sample_table
 from stiction.solver.accuracy import tolerance
 from stiction.solver.compilation.refusal import REFUSED, reasons
-from stiction.solver.integrate import Room, Solution, integrate
+from stiction.solver.integrate import BUDGET, Room, Solution, integrate
 from stiction.storage.version import own_version
 from stiction.system.description import STAND_IN, Description, description_of, system_and_start
 from stiction.system.initial import Initial
@@ -219,12 +219,13 @@ def solve(
     max_steps: int = MOST_STEPS,
     progress: Callable[[float], None] | None = None,
     inside: float = 0.0,
+    pause: int = BUDGET,
     room: Room = np.empty,
 ) -> Solution:
     """Integrate a description sampled at `times` (ascending, s): `run` without the labels.
 
-    `inside` is the relative error of the slip that samples inside steps may have; `room` makes the
-    array of samples.
+    `inside` is the relative error of the slip that samples inside steps may have; `progress` is
+    told of the time after so many steps, `pause`; `room` makes the array of samples.
 
     Raises
     ------
@@ -244,7 +245,7 @@ def solve(
         message = f"is below the resolution of time at t = {initial.time:g} s; start earlier"
         raise DescriptionError.of("run.duration", message)
     try:
-        return integrate(description, times, max_steps, progress, inside=inside, room=room)
+        return integrate(description, times, max_steps, progress, None, inside, pause, room)
     except REFUSED:
         found = [Fault("friction", reason) for reason in reasons(description.slider.law)]
         if not found:
@@ -268,6 +269,31 @@ def solve_coarsely(
     return solve(
         description, times, max_steps=max_steps, progress=progress, inside=inside, room=room
     )
+
+
+def step_times(
+    description: Description, most: float, progress: Callable[[float], None] | None = None
+) -> Floats | None:
+    """Return the times (n,), s, at which steps of the solver and sticks end; None for too many.
+
+    They are None, too, of a run that does not reach its end. Steps are at most so many, and sticks
+    are left out where these are more: many cycles that are taken at once are one step. Each step
+    takes 20 us of Python.
+    """
+    start, duration = description.initial.time, description.run.duration
+    shares: list[float] = []
+
+    def note(share: float) -> None:
+        shares.append(share)
+        if progress is not None:
+            progress(share)
+
+    ends, inside = np.array([start, start + duration]), tolerance(description.run.rtol)
+    solution = solve(description, ends, max_steps=int(most), progress=note, inside=inside, pause=1)
+    if not STATUSES[solution.code].ok:
+        return None
+    times, sticks = start + duration * np.array(shares), solution.sticks.ravel()
+    return np.union1d(times, sticks) if len(sticks) + len(times) <= most else np.unique(times)
 
 
 def kind(description: Description) -> str:

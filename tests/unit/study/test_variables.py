@@ -23,6 +23,7 @@ from stiction.study.variables.fast_regime import KINDS, SwingShapes, by_shape
 from stiction.study.variables.features import bottom, features, summit, zigzag
 from stiction.study.variables.measures import MEASURES
 from stiction.study.variables.observed_run import observe_run
+from stiction.study.variables.sampling import least_rate
 
 PAPER = st.presets.nakano_popov_2020()
 TURN = 2.0 * np.pi
@@ -196,7 +197,7 @@ def test_a_trough_behind_the_last_sample_but_one_ends_a_cycle_if_the_force_rises
         for after, count in ((0.0099, 4), (0.0102, 5), (0.02, 5)):
             t = 2.5 + after - step * np.arange(160)[::-1]
             turns = features(
-                t, np.cos(TURN * t), -TURN * np.sin(TURN * t), t, 1e-3, 0.0, len(t), 4
+                t, np.cos(TURN * t), -TURN * np.sin(TURN * t), t, 1e-3, 0.0, len(t), 4, True
             ).turn_time
             late = turns[turns > 0.2]
             assert len(late) == count
@@ -314,7 +315,9 @@ def test_turning_points_of_a_known_signal():
     """A sine's extrema are found, to within the ripple on it and rates that are differences."""
     t = np.arange(0.0, 1.0, 1.0 / 320.0)
     signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
-    found = features(t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0, len(t), 32)
+    found = features(
+        t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0, len(t), 32, True
+    )
     exact = (np.pi / 2 - 0.3 + np.pi * np.arange(20)) / (2.0 * np.pi * 10.0)
     np.testing.assert_allclose(found.turn_time, exact, atol=1e-4)
     np.testing.assert_allclose(np.abs(found.turn_value), 1.0, atol=3e-4)
@@ -516,24 +519,73 @@ def test_a_vibrated_rig_has_the_period_of_its_vibration():
 
 
 def test_too_few_samples_for_a_vibration_determine_nothing(monkeypatch):
-    """At one sample a period the vibration seems at rest; what has no samples is known still."""
-    monkeypatch.setattr("stiction.study.variables.observed_run.MOST_SAMPLES", 320)
+    """At one sample a period the vibration seems slow; its range and its sticks are known still."""
+    monkeypatch.setattr("stiction.study.variables.sampling.MOST_SAMPLES", 317)
     p = st.protocols
     shaken = p.DriveProgram(velocity="1 mm/s", along=p.Modulation("3 mm/s", "320 Hz"))
     run = run_in_study(PAPER.replace(drive=shaken), "1 s")
     assert not run.resolved
-    assert np.isnan([value(name, run) for name in ("period", "peak_force", "creep_distance")]).all()
+    assert np.isnan([value(name, run) for name in ("period", "force_drop", "creep_distance")]).all()
     assert KINDS[value("regime", run)] == UNDETERMINED
     assert value("stick_count", run) > 100.0
+    monkeypatch.undo()
+    fine = run_in_study(PAPER.replace(drive=shaken), "1 s")
+    for name in ("peak_force", "mean_force", "amplitude"):
+        assert value(name, run) == pytest.approx(value(name, fine), rel=0.02)
+
+
+ROCK = st.Slider(
+    mass="1 kg", k_x="2.4 MN/m", k_y="200 MN/m", phi="0 deg", normal_load="5 kN",
+    friction=st.laws.RateStateAgeing(a=0.008, b=0.014, D_c="10 um", mu_star=0.6, V_star="1 um/s"),
+    drive=st.ConstantVelocity("10 um/s"),
+)  # fmt: skip
+HELD = ROCK.replace(friction=st.Coulomb(mu_0=0.55, mu_static=0.65))
+TURNED = ROCK.replace(
+    mass="1 g", k_y="24 MN/m", phi="6 deg",
+    friction=st.ExponentialWeakening(mu_0=0.6, mu_inf=0.5, v_f="10 um/s"),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("slider", "duration"),
+    [(ROCK, 300.0), (ROCK.replace(k_x="3.4 MN/m"), 300.0), (HELD, 300.0), (TURNED, 300.0)],
+)
+def test_a_slow_motion_of_a_light_mass_is_seen_by_the_steps_of_the_solver(slider, duration):
+    """It has 70 000 to 1e7 periods of the mass on its spring, and a dozen cycles or none."""
+    run = run_in_study(slider, duration)
+    assert run.resolved
+    assert not run.sampling.even
+    assert len(run.time) < 0.1 * duration * least_rate(run.description)
+    fine = st.simulate(slider, duration)
+    found = st.analyse(fine)
+    assert run.regime == found.regime.kind
+    assert value("cycles", run) == (found.cycles.sizes["cycle"] if run.regime == STICK_SLIP else 0)
+    assert value("peak_force", run) == pytest.approx(fine.samples["spring_x"].max(), rel=1e-4)
+    if run.regime == STICK_SLIP:
+        period = float(found.cycles["period"].mean())
+        assert value("period", run) == pytest.approx(period, rel=1e-4)
+
+
+def test_samples_by_the_solver_s_steps_show_the_same_as_even_ones(monkeypatch):
+    """Of the paper's system, in which both do."""
+    slider = PAPER.replace(k_y="3 kN/m")
+    even = run_in_study(slider, "5 s")
+    monkeypatch.setattr("stiction.study.variables.sampling.MANY_SAMPLES", 1000)
+    run = run_in_study(slider, "5 s")
+    assert even.sampling.even
+    assert not run.sampling.even
+    for name in MEASURES:
+        loose = 0.05 if name == "transverse_oscillation" else 2e-3
+        assert value(name, run) == pytest.approx(value(name, even), rel=loose, nan_ok=True), name
 
 
 def test_few_samples_suffice_where_the_motion_is_slow(monkeypatch):
     """Loading to the first slip needs no samples of each natural period."""
     slow = run_in_study(PAPER, "1 s")
-    monkeypatch.setattr("stiction.study.variables.observed_run.MOST_SAMPLES", 200)
+    monkeypatch.setattr("stiction.study.variables.sampling.MOST_SAMPLES", 200)
     coarse = run_in_study(PAPER, "1 s")
     assert coarse.resolved
-    assert not coarse.enough
+    assert not coarse.sampling.enough
     assert value("peak_force", coarse) == pytest.approx(value("peak_force", slow), rel=5e-3)
 
 

@@ -34,14 +34,11 @@ from stiction.study.store.store import (
     StoreAddress,
     open_store,
 )
-from stiction.study.variables.observed_run import MOST_SAMPLES, ObservedRun, observe_run
+from stiction.study.variables.observed_run import ObservedRun, observe_run
 from stiction.study.variables.own import MeasureError
 from stiction.study.view.summary import Summary, summary
 
-TOO_FEW = (
-    f"not determined: {MOST_SAMPLES:,} samples do not show motion so fast for so long; shorten the "
-    "run"
-)
+TOO_FEW = "its motion is too fast for so long a run, a million samples do not show it; shorten it"
 
 
 class Unwanted(Exception):

@@ -86,8 +86,9 @@ def features(
     least: float,
     driven: int,
     parts: int,
+    even: bool,
 ) -> Features:
-    """Return the features of evenly spaced samples.
+    """Return the features of samples.
 
     Parameters
     ----------
@@ -102,6 +103,8 @@ def features(
         Number of samples until the drive stops for good.
     parts : int
         Number of means.
+    even : bool
+        Whether the samples are evenly spaced; else each counts for the time about it.
     """
     n = len(time)
     low, high, fastest = force[0], force[0], velocity[0]
@@ -110,17 +113,17 @@ def features(
         fastest = max(fastest, velocity[i])
         if 0 < i < n - 1 and velocity[i - 1] < velocity[i] >= velocity[i + 1]:
             fastest = max(fastest, vertex(time, velocity, i)[1])
-    late, late_low, late_high, total = 3 * n // 4, np.inf, -np.inf, 0.0
+    late, late_low, late_high = place(time, 3, 4, n, even), np.inf, -np.inf
     for i in range(late, n):
         late_low, late_high = min(late_low, force[i]), max(late_high, force[i])
-        total += force[i]
+    late_mean = mean(time, force, late, n, even)
     means = np.zeros(parts)
     for part in range(parts):
-        begin, end = part * n // parts, max((part + 1) * n // parts, part * n // parts + 1)
-        for i in range(begin, end):
-            means[part] += force[min(i, n - 1)] / (end - begin)
+        begin = place(time, part, parts, n, even)
+        end = max(place(time, part + 1, parts, n, even), begin + 1)
+        means[part] = mean(time, force, begin, end, even)
     end_low, end_high = force[driven - 1], force[driven - 1]
-    for i in range(3 * driven // 4, driven):
+    for i in range(place(time, 3, 4, driven, even), driven):
         end_low, end_high = min(end_low, force[i]), max(end_high, force[i])
     height = max(reversal * (end_high - end_low), least * max(high, -low))
     index = zigzag(force, height)
@@ -142,11 +145,39 @@ def features(
         if force[n - 1] - value > height:
             turn_time[count], turn_value[count] = at, value
             count += 1
-    late_mean, late_span = total / (n - late), late_high - late_low
+    late_span = late_high - late_low
     return Features(
         high, late_mean, late_span, fastest, means, turn_time[:count], turn_value[:count], trough,
         force[0], force[n - 1],
     )  # fmt: skip
+
+
+@compiled_with_arrays
+def place(time: np.ndarray, part: int, parts: int, n: int, even: bool) -> int:
+    """Return the index at which a part of the time of the first n samples begins."""
+    if even or part == parts:
+        return part * n // parts
+    begins = time[0] + (time[n - 1] - time[0]) * part / parts
+    low, high = 0, n - 1
+    while low < high:
+        middle = (low + high) // 2
+        if time[middle] < begins:
+            low = middle + 1
+        else:
+            high = middle
+    return low
+
+
+@compiled_with_arrays
+def mean(time: np.ndarray, values: np.ndarray, begin: int, end: int, even: bool) -> float:
+    """Return the mean of samples over time, from one to before another."""
+    total, weight = 0.0, 0.0
+    for i in range(begin, end):
+        at = min(i, len(values) - 1)
+        share = 1.0 if even else time[min(at + 1, len(time) - 1)] - time[max(at - 1, 0)]
+        total += share * values[at]
+        weight += share
+    return total / weight
 
 
 @compiled_with_arrays
@@ -190,7 +221,8 @@ def summit(
 @compiled_with_arrays
 def vertex(time: np.ndarray, values: np.ndarray, i: int) -> tuple[float, float]:
     """Return time and value of the vertex of the parabola through a sample and its neighbours."""
-    bend = values[i - 1] - 2.0 * values[i] + values[i + 1]
-    slope = 0.5 * (values[i + 1] - values[i - 1])
+    before, after = time[i] - time[i - 1], time[i + 1] - time[i]
+    rise, fall = (values[i] - values[i - 1]) / before, (values[i + 1] - values[i]) / after
+    bend, slope = 2.0 * (fall - rise), rise * after + fall * before
     shift = -slope / bend if bend != 0.0 else 0.0
-    return time[i] + shift * (time[i + 1] - time[i]), values[i] + 0.5 * slope * shift
+    return time[i] + shift, values[i] + 0.5 * slope / (before + after) * shift

@@ -26,7 +26,8 @@ class Measure(NamedTuple):
     flags : tuple of str, optional
         Meanings of 0, 1, ..., if the number encodes a kind.
     known : callable, optional
-        From the observed run to whether the samples show it; by default `ObservedRun.resolved`.
+        From the observed run to whether the samples show it; by default `ObservedRun.resolved`. A
+        million samples show the range of any force, though not in which order it came.
     """
 
     unit: str
@@ -44,6 +45,10 @@ def _mean(values: np.ndarray) -> float:
     return float(values.sum()) / len(values) if len(values) else nan
 
 
+def _always(run: ObservedRun) -> bool:
+    return True
+
+
 def _over_load(force: float, run: ObservedRun) -> float:
     """Return a force over the normal load, NaN where that varies."""
     slider = run.description.slider
@@ -51,26 +56,27 @@ def _over_load(force: float, run: ObservedRun) -> float:
 
 
 MEASURES: dict[str, Measure] = {
-    "regime": Measure(
-        "1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS, lambda run: True
-    ),
+    "regime": Measure("1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS, _always),
     "peak_force": Measure(
-        "N", "largest spring force along x, k_x u_x", lambda run: run.features.peak
+        "N", "largest spring force along x, k_x u_x", lambda run: run.peak, known=_always
     ),
     "mu_static": Measure(
         "1",
         "apparent static friction coefficient: largest spring force along x over a constant load",
-        lambda run: _over_load(run.features.peak, run),
+        lambda run: _over_load(run.peak, run),
+        known=_always,
     ),
     "mean_force": Measure(
         "N",
         "mean spring force along x in the last quarter",
         lambda run: run.features.late_mean,
+        known=_always,
     ),
     "amplitude": Measure(
         "N",
         "half the span of the spring force along x in the last quarter",
-        lambda run: 0.5 * run.features.late_span,
+        lambda run: 0.5 * run.late_span,
+        known=_always,
     ),
     "cycles": Measure(
         "1",
@@ -104,24 +110,25 @@ MEASURES: dict[str, Measure] = {
         "1",
         "amplitude of the fast oscillation's rate over the drive's",
         lambda run: run.transverse_oscillation,
+        known=_always,
     ),
     "time_stuck": Measure(
         "s",
         "sum of all stick intervals",
         lambda run: run.solution.counts.stuck,
-        known=lambda run: True,
+        known=_always,
     ),
     "stick_count": Measure(
         "1",
         "number of stick intervals",
         lambda run: float(run.solution.counts.sticks),
-        known=lambda run: True,
+        known=_always,
     ),
     "steps": Measure(
         "1",
         "slip steps of the solver",
         lambda run: float(run.solution.counts.steps),
-        known=lambda run: True,
+        known=_always,
     ),
 }
 FORMERLY = {"song": "transverse_oscillation"}  # old names, which work until the next version

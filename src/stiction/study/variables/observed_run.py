@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import ceil, nan, pi, sqrt
+from math import nan
 
 import numpy as np
 
@@ -19,11 +19,12 @@ from stiction.analysis.motion.rest import (
     still_shares,
     stops_with_drive,
 )
-from stiction.analysis.motion.vibration import FAST_PERIODS, FastOscillation
-from stiction.arrays import Floats
+from stiction.analysis.motion.vibration import FastOscillation
+from stiction.arrays import TINY, Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
-from stiction.simulation import sample_times, solve, solve_coarsely, trajectory_of
+from stiction.errors import STATUSES
+from stiction.simulation import solve, solve_coarsely, trajectory_of
 from stiction.solver.integrate import Room, Solution
 from stiction.study.variables.fast_regime import (
     Circumstances,
@@ -33,20 +34,10 @@ from stiction.study.variables.fast_regime import (
     swings,
 )
 from stiction.study.variables.features import Features, even_columns, features, summit
+from stiction.study.variables.sampling import Sampling, even_times, refined, sampling_of
 from stiction.system.description import Description
-from stiction.system.slider import Slider
-from stiction.system.tensors import stiffness_and_mass_along
 from stiction.trajectory import Trajectory
 
-# With samples this dense, cubics find peaks to 4e-6 of the amplitude for a harmonic, and to 5e-7
-# for the paper's system. The samples cost a fifth of the run's time.
-PER_SLOW_PERIOD = 32
-PER_COUPLED_PERIOD = 16  # of the mass moving only along the drive
-# Of what varies drive or load: friction that turns with it has half its period
-PER_IMPOSED_PERIOD = 2 * PER_SLOW_PERIOD
-LEAST_SAMPLES, MOST_SAMPLES = 64, 1_000_000  # of a run
-# The fast oscillation is measured over its last periods.
-PER_FAST_PERIOD = 16
 # `REVERSAL`, the smallest reversal of the force that counts, is a share of its span in the last
 # quarter of the time until the drive stops for good; afterwards friction holds the force. It is ten
 # times the fast oscillation of the paper's system, and small enough to see swings die out. It is at
@@ -59,12 +50,15 @@ AT_ONCE = 8  # samples, in which a stiff system comes from its initial state int
 # Times the way of the drive between two samples: creep by more is known to 1e-3 from these; and the
 # number of closer ones about the slip, where it is less
 CLEARLY, CLOSE = 10.0, 4097
+# Samples that follow the solver are refined so often, until each change is explained to this share;
+# what is not explained falls with the third power of their distance
+ROUNDS, REFINED, MOST_PARTS = 5, 0.1, 32.0
 JUMPS = 0.01  # of the samples: with so few a drive may jump between
 
 
 @dataclass(frozen=True)
 class ObservedRun:
-    """A run as the solver returns it: evenly spaced samples, denser near its end.
+    """A run as the solver returns it: samples, denser near its end.
 
     Parameters
     ----------
@@ -72,19 +66,13 @@ class ObservedRun:
         The description of the run.
     solution : Solution
         Samples, stick intervals and counts.
-    fine : int
-        Index of the first of the denser samples.
-    parts : int
-        Number of denser samples per even one.
-    enough : bool
-        Whether the samples are as dense as the known frequencies of the system need.
+    sampling : Sampling
+        The times of the samples.
     """
 
     description: Description
     solution: Solution
-    fine: int
-    parts: int
-    enough: bool
+    sampling: Sampling
 
     @property
     def start(self) -> float:
@@ -98,17 +86,21 @@ class ObservedRun:
 
     @cached_property
     def time(self) -> Floats:
-        """(n,), s, evenly spaced."""
+        """(n,), s, without the denser samples."""
         return self._thin_out(self.solution.times)
 
     def _thin_out(self, values: Floats) -> Floats:
-        return np.concatenate([values[: self.fine], values[self.fine :: self.parts]])
+        fine = self.sampling.fine
+        return np.concatenate([values[:fine], values[fine :: self.sampling.parts]])
 
     @cached_property
     def trajectory(self) -> Trajectory:
-        """The run at its even samples, as `stiction.run` returns it, in memory of its own."""
-        samples = self._thin_out(self.solution.samples)
-        even = self.solution._replace(times=self.time, samples=samples)
+        """The run at even samples, as `stiction.run` returns it, in memory of its own."""
+        if self.sampling.even:
+            samples = self._thin_out(self.solution.samples)
+            even = self.solution._replace(times=self.time, samples=samples)
+        else:
+            even = solve_coarsely(self.description, even_times(self.description))
         found = trajectory_of(self.description, even)
         for column in found.samples.columns.values():  # several measures see them
             column.values.flags.writeable = False
@@ -119,8 +111,8 @@ class ObservedRun:
         """(5, n), force and its rate, velocity, slip speed and elongation at `time`."""
         slider = self.description.slider
         found: Floats = even_columns(
-            self.solution.samples, self.fine, self.parts, self.drive, self.way, slider.k_x,
-            *slider.direction,
+            self.solution.samples, self.sampling.fine, self.sampling.parts, self.drive, self.way,
+            slider.k_x, *slider.direction,
         )  # fmt: skip
         return found
 
@@ -131,10 +123,9 @@ class ObservedRun:
         Samples farther apart than a period show a slower motion, which is not there; the force then
         changes by other amounts than its rates tell.
         """
-        if self.enough:
+        if self.sampling.enough:
             return True
-        missed = np.abs(residual_changes(self.time, self.force, self.rate))[AT_ONCE:]
-        least = float(np.min(self.cycles.drop, initial=np.ptp(self.force)))
+        missed, least = self.missed[AT_ONCE:], self.least_drop
         if missed.max() > UNEXPLAINED * least:
             return False
         if len(self.cycles.drop):
@@ -142,10 +133,20 @@ class ObservedRun:
         counts = max(REVERSAL * self.features.late_span, self.description.run.rtol * abs(least))
         return bool(missed[3 * len(missed) // 4 :].max() <= counts)
 
+    @property
+    def least_drop(self) -> float:
+        """The smallest drop of a cycle, N; without cycles the span of the force."""
+        return float(np.min(self.cycles.drop, initial=np.ptp(self.force)))
+
+    @property
+    def missed(self) -> Floats:
+        """(n - 1,), change of the force between two samples that their rates do not explain, N."""
+        return np.abs(residual_changes(self.time, self.force, self.rate))
+
     @cached_property
     def resolved_velocities(self) -> bool:
         """Whether the samples show the velocities of mass and drive, too."""
-        if self.enough or not self.resolved:
+        if self.sampling.enough or not self.resolved:
             return self.resolved
         travel = self.description.slider.motion.travel(0.0, self.time)[0]
         drive = np.broadcast_to(self.drive, self.time.shape)
@@ -207,14 +208,28 @@ class ObservedRun:
 
     @cached_property
     def features(self) -> Features:
-        """Features of the evenly spaced samples."""
+        """Features of the samples at `time`."""
         least, driven = self.description.run.rtol, len(self.time)
         if len(self.drive) > 1 and self.drive.any():
             driven = int(np.flatnonzero(self.drive)[-1]) + 1
         found: Features = features(
-            self.time, self.force, self.rate, self.velocity, REVERSAL, least, driven, COURSE_PARTS
-        )
+            self.time, self.force, self.rate, self.velocity, REVERSAL, least, driven, COURSE_PARTS,
+            self.sampling.even,
+        )  # fmt: skip
         return found
+
+    @property
+    def peak(self) -> float:
+        """The largest force, N; between samples where these resolve the motion."""
+        return self.features.peak if self.resolved else float(self.force.max())
+
+    @property
+    def late_span(self) -> float:
+        """Span of the force in the last quarter (N), whose ends lie between samples likewise."""
+        if self.resolved:
+            return self.features.late_span
+        late = self.time >= self.start + 0.75 * (self.end - self.start)
+        return float(np.ptp(self.force[late]))
 
     @cached_property
     def first_slip(self) -> tuple[float, float]:
@@ -230,7 +245,7 @@ class ObservedRun:
             return nan, nan
         rate = self.drive - self.way * self.velocity
         found = self._slip_near(self.time, self.elongation, rate, at)
-        passed = np.abs(self.drive).max() * (self.time[1] - self.time[0])
+        passed = np.abs(self.drive).max() * (self.time[at] - self.time[at - 1])
         if found[1] > CLEARLY * passed:
             return found
         times = np.linspace(self.time[max(at - 1, 0)], self.time[min(at + 1, len(rate) - 1)], CLOSE)
@@ -290,7 +305,7 @@ class ObservedRun:
     def fast_oscillation(self) -> FastOscillation:
         """The final fast oscillation."""
         slider = self.description.slider
-        rate = self.solution.samples[self.fine :, 2 + slider.stiffer_axis]
+        rate = self.solution.samples[self.sampling.fine :, 2 + slider.stiffer_axis]
         return FastOscillation.at_end(slider, rate)
 
     @cached_property
@@ -325,32 +340,24 @@ def observe_run(
     description: Description, report: Callable[[float], None] | None, room: Room = np.empty
 ) -> ObservedRun:
     """Run a description, sampled as densely as measures need, at least as it states."""
-    start, duration = description.initial.time, description.run.duration
-    slow, fast = description.slider.natural_frequencies
-    along = PER_COUPLED_PERIOD * coupled_frequency(description.slider)
-    imposed = PER_IMPOSED_PERIOD * max(description.slider.modulation_frequencies, default=0.0)
-    least = max(PER_SLOW_PERIOD * slow, along, imposed, LEAST_SAMPLES / duration)
-    rate = min(max(description.run.sample_rate or 0.0, least), MOST_SAMPLES / duration)
-    even = sample_times(start, duration, rate)
-    parts = max(ceil(PER_FAST_PERIOD * fast / rate), 1)
-    steps = min(ceil(FAST_PERIODS * rate / fast), len(even) - 1)
-    fine = len(even) - 1 - steps
-    # over the last even samples, each step is divided into parts
-    dense = even[fine] + np.arange(steps * parts + 1) / (rate * parts)
-    times = np.minimum(np.concatenate([even[:fine], dense]), start + duration)
-    solution = solve_coarsely(description, times, progress=report, room=room)
-    return ObservedRun(description, solution, fine, parts, rate >= least)
+    sampling: Sampling | None = sampling_of(description, report)
+    for _ in range(ROUNDS):
+        assert sampling is not None
+        solution = solve_coarsely(description, sampling.times, progress=report, room=room)
+        run = ObservedRun(description, solution, sampling)
+        if sampling.even or not STATUSES[solution.code].ok or run.resolved:
+            break
+        most = max(REFINED * UNEXPLAINED * run.least_drop, TINY)
+        parts = np.clip(np.ceil(np.cbrt(run.missed / most)), 1.0, MOST_PARTS)
+        sampling = refined(sampling, parts, description.slider)
+        if sampling is None:
+            break
+    return run
 
 
 def residual_changes(time: Floats, values: Floats, rates: Floats) -> Floats:
     """Return the changes between samples, (n - 1,), less the integrals of their rates."""
     return np.asarray(np.diff(values) - 0.5 * np.diff(time) * (rates[1:] + rates[:-1]))
-
-
-def coupled_frequency(slider: Slider) -> float:
-    """Return the frequency (Hz) of a mass that friction confines to the drive's direction."""
-    stiffness, mass = stiffness_and_mass_along(slider, slider.direction)
-    return sqrt(stiffness / mass) / (2.0 * pi)
 
 
 def seconds_of(description: Description) -> float:
