@@ -34,7 +34,7 @@ from stiction.study.variables.fast_regime import (
     swings,
 )
 from stiction.study.variables.features import Features, even_columns, features, summit
-from stiction.study.variables.sampling import Sampling, even_times, refined, sampling_of
+from stiction.study.variables.sampling import SampleTimes, even_times, refine, sampling_of
 from stiction.system.description import Description
 from stiction.trajectory import Trajectory
 
@@ -66,13 +66,13 @@ class ObservedRun:
         The description of the run.
     solution : Solution
         Samples, stick intervals and counts.
-    sampling : Sampling
+    sampling : SampleTimes
         The times of the samples.
     """
 
     description: Description
     solution: Solution
-    sampling: Sampling
+    sampling: SampleTimes
 
     @property
     def start(self) -> float:
@@ -340,7 +340,7 @@ def observe_run(
     description: Description, report: Callable[[float], None] | None, room: Room = np.empty
 ) -> ObservedRun:
     """Run a description, sampled as densely as measures need, at least as it states."""
-    sampling: Sampling | None = sampling_of(description, report)
+    sampling: SampleTimes | None = sampling_of(description, report)
     for _ in range(ROUNDS):
         assert sampling is not None
         solution = solve_coarsely(description, sampling.times, progress=report, room=room)
@@ -349,7 +349,7 @@ def observe_run(
             break
         most = max(REFINED * UNEXPLAINED * run.least_drop, TINY)
         parts = np.clip(np.ceil(np.cbrt(run.missed / most)), 1.0, MOST_PARTS)
-        sampling = refined(sampling, parts, description.slider)
+        sampling = refine(sampling, parts, description.slider)
         if sampling is None:
             break
     return run

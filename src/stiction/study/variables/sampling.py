@@ -34,7 +34,7 @@ CLOSEST = 1e-5  # of a fast period: samples closer than that are one
 FINEST = 4 * PER_FAST_PERIOD  # steps in a fast period: shorter ones only begin or end a segment
 
 
-class Sampling(NamedTuple):
+class SampleTimes(NamedTuple):
     """The times at which a run is sampled, denser near its end.
 
     Parameters
@@ -58,7 +58,7 @@ class Sampling(NamedTuple):
     even: bool
 
 
-def sampling_of(description: Description, report: Callable[[float], None] | None) -> Sampling:
+def sampling_of(description: Description, report: Callable[[float], None] | None) -> SampleTimes:
     """Return times as dense as measures need, at least as dense as a description states."""
     start, duration = description.initial.time, description.run.duration
     least = max(least_rate(description), LEAST_SAMPLES / duration)
@@ -92,7 +92,7 @@ def coupled_frequency(slider: Slider) -> float:
     return sqrt(stiffness / mass) / (2.0 * pi)
 
 
-def by_steps(description: Description, steps: Floats, least: float) -> Sampling:
+def by_steps(description: Description, steps: Floats, least: float) -> SampleTimes:
     """Return times that divide the steps of the solver, and the course of the run.
 
     The last of them, over which the fast oscillation is measured, are at the least even rate.
@@ -109,27 +109,27 @@ def by_steps(description: Description, steps: Floats, least: float) -> Sampling:
     inside = inside[np.diff(inside, prepend=start) > least_gap]
     borders = np.concatenate([[start], inside, end[:1]])
     parts = np.maximum(np.ceil(np.diff(borders) * most), PER_STEP)
-    times = np.concatenate([divided(borders, parts)[:-1], end])
+    times = np.concatenate([divide(borders, parts)[:-1], end])
     return with_dense_end(times, least, fast, enough=False, even=False)
 
 
-def refined(sampling: Sampling, parts: Floats, slider: Slider) -> Sampling | None:
+def refine(sampling: SampleTimes, parts: Floats, slider: Slider) -> SampleTimes | None:
     """Return a sampling of which some intervals, before its end, are divided; None for too many."""
     fine = sampling.fine
     if len(sampling.times) + parts[:fine].sum() > MOST_SAMPLES:
         return None
     coarse = np.append(sampling.times[:fine], sampling.times[fine :: sampling.parts])
-    times = np.append(divided(coarse[: fine + 1], parts[:fine])[:-1], coarse[fine:])
+    times = np.append(divide(coarse[: fine + 1], parts[:fine])[:-1], coarse[fine:])
     rate, fast = 1.0 / float(coarse[-1] - coarse[-2]), slider.natural_frequencies[1]
     return with_dense_end(times, rate, fast, enough=False, even=False)
 
 
-def divided(borders: Floats, parts: Floats) -> Floats:
+def divide(borders: Floats, parts: Floats) -> Floats:
     """Return times that divide each interval into its number of equal parts.
 
     Examples
     --------
-    >>> divided(np.array([0.0, 1.0, 4.0]), np.array([2, 3]))
+    >>> divide(np.array([0.0, 1.0, 4.0]), np.array([2, 3]))
     array([0. , 0.5, 1. , 2. , 3. , 4. ])
     """
     counts = parts.astype(np.int64)
@@ -139,14 +139,16 @@ def divided(borders: Floats, parts: Floats) -> Floats:
     return np.append(times, borders[-1])
 
 
-def with_dense_end(times: Floats, rate: float, fast: float, enough: bool, even: bool) -> Sampling:
+def with_dense_end(
+    times: Floats, rate: float, fast: float, enough: bool, even: bool
+) -> SampleTimes:
     """Return a sampling of which the last intervals, at this rate, are divided into parts."""
     parts = max(ceil(PER_FAST_PERIOD * fast / rate), 1)
     steps = min(ceil(FAST_PERIODS * rate / fast), len(times) - 1)
     fine = len(times) - 1 - steps
     dense = times[fine] + np.arange(steps * parts + 1) / (rate * parts)
     found = np.minimum(np.concatenate([times[:fine], dense]), times[-1])
-    return Sampling(found, fine, parts, enough, even)
+    return SampleTimes(found, fine, parts, enough, even)
 
 
 def even_times(description: Description) -> Floats:
