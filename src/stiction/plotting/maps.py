@@ -18,6 +18,7 @@ from stiction.plotting.page.parameter import Scale, sparse
 from stiction.plotting.page.style import BLACK, BLUE, GREEN
 from stiction.plotting.shades import (
     COLORS,
+    MARKERS,
     NO_RESULT,
     NO_VALUE,
     kind_codes,
@@ -136,14 +137,41 @@ def draw_changes(
     )  # fmt: skip
 
 
-def draw_slice(ax: Axes, x: Side, values: Floats, label: str) -> None:
-    """Draw a measure over one parameter, a point for each run."""
+def draw_slice(
+    ax: Axes, x: Side, values: Floats, label: str, kinds: Sequence[str] = ()
+) -> list[Line2D]:
+    """Draw a measure over one parameter, a point for each run; return the handles of the legend.
+
+    A point has the colour and the marker of its run's kind of motion, if these are given.
+    """
     ax.plot(x.values, values, "-", color=BLUE, linewidth=0.8)
-    ax.plot(x.values, values, "o", color=BLUE, markersize=2.5)
+    handles: list[Line2D] = []
+    if not kinds:
+        ax.plot(x.values, values, "o", color=BLUE, markersize=2.5)
+    for name in present_kinds(np.array(kinds, dtype=object)):
+        here = np.array([kind == name for kind in kinds]) & np.isfinite(values)
+        if here.any():
+            handles += ax.plot(
+                x.values[here], values[here], MARKERS[name], color=COLORS[name], markersize=4.5,
+                markeredgecolor=BLACK, markeredgewidth=0.5, linestyle="none", label=legend_of(name),
+                zorder=3,
+            )  # fmt: skip
     ax.update_datalim([(each, 0.0) for each in x.values], updatey=False)  # runs without a value too
     ax.autoscale_view()
     _label_axis(ax, x, "x")
     ax.set_ylabel(label)
+    return handles
+
+
+def draw_critical(ax: Axes, x: Side) -> list[Line2D]:
+    """Draw the values at which steady sliding loses or gains stability; return the handle."""
+    lines = [ax.axvline(each, color=BLACK, linewidth=1.0, linestyle="--") for each in x.values]
+    if lines:
+        its = ", ".join(f"{each:.4g}" for each in x.values)
+        unit = "" if x.scale.unit == "1" else f" {x.scale.unit}"
+        label = f"steady sliding changes its stability: {its}{unit}"
+        lines[0].set_label(label)
+    return lines[:1]
 
 
 def draw_kinds(ax: Axes, x: Side, kinds: Sequence[str]) -> None:
@@ -156,8 +184,8 @@ def draw_kinds(ax: Axes, x: Side, kinds: Sequence[str]) -> None:
     for row, name in enumerate(rows):
         here = np.array([each == name for each in names])
         ax.plot(
-            x.values[here], np.full(here.sum(), row), "o", markersize=5.0, markeredgewidth=0.4,
-            markeredgecolor=BLACK, color=COLORS.get(name, "white"),
+            x.values[here], np.full(here.sum(), row), MARKERS.get(name, "x"), markersize=5.0,
+            markeredgewidth=0.4, markeredgecolor=BLACK, color=COLORS.get(name, "white"),
         )  # fmt: skip
     _label_axis(ax, x, "x")
     words = [legend_of(name) for name in rows]

@@ -30,6 +30,18 @@ COLORS = {
     "stuck": "#8A8A8A",
     "undetermined": "#FFFFFF",
 }
+# for points, of which the colours alone would be alike to some eyes and in print
+MARKERS = {
+    "stick-slip": "o",
+    "transitional oscillation": "s",
+    "harmonic vibration": "D",
+    "settling": "v",
+    "steady sliding": "^",
+    "transverse oscillation": "P",
+    "irregular vibration": "X",
+    "stuck": "p",
+    "undetermined": "*",
+}
 LEGENDS = {"stuck": "stuck or creeping"}  # a run may end before the creeping mass slips
 
 

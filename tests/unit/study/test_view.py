@@ -90,7 +90,31 @@ def test_kinds_over_one_parameter_are_named(store):
     data = xr.open_zarr(store)["regime"].sel({"friction.mu_inf": 0.15}).isel({"drive.velocity": 0})
     assert {*rows} == {KINDS[code] for code in data.values.tolist()}
     assert len(rows) > 1
-    assert sum(len(line.get_xdata()) for line in ax.lines) == 9
+    points = [line for line in ax.lines if line.get_linestyle() == "None"]
+    assert sum(len(line.get_xdata()) for line in points) == 9
+    assert len({line.get_marker() for line in points}) == len(rows)
+
+
+def test_a_slice_shows_kinds_critical_values_and_no_rounding_noise(tmp_path, monkeypatch):
+    """The critical stiffness is (b - a) W / D_c, 3 MN/m; what slides steadily has no amplitude."""
+    law = st.laws.RateStateAgeing(a=0.008, b=0.014, D_c="10 um", mu_star=0.6, V_star="1 um/s")
+    rock = st.Slider(
+        mass="1 kg", k_x="2.4 MN/m", k_y="200 MN/m", phi="0 deg", normal_load="5 kN",
+        friction=law, drive=st.ConstantVelocity("10 um/s"),
+    )  # fmt: skip
+    base = st.Description.of(rock, "600 s")
+    axes = {"k_x": st.Values(["2.4 MN/m", "3.8 MN/m"])}
+    study = st.Study(base=base, axes=axes, measures=["regime", "amplitude", "period"])
+    assert "not determined" not in str(st.sweep(study, tmp_path / "rock.zarr"))
+    (ax,) = st.map(tmp_path / "rock.zarr", "amplitude").plot()
+    words = [each.get_text() for each in ax.figure.legends[0].get_texts()]
+    assert [*words] == ["stick-slip", "settling", "steady sliding changes its stability: 3 MN/m"]
+    assert float(ax.lines[0].get_ydata()[1]) == 0.0 < float(ax.lines[0].get_ydata()[0])
+    monkeypatch.setattr("stiction.study.variables.sampling.MOST_SAMPLES", 997)
+    found = st.sweep(study, tmp_path / "few.zarr")
+    assert "2 of 2 runs not determined: its motion is too fast" in str(found)
+    (ax,) = st.map(tmp_path / "few.zarr", "period").plot()
+    assert "2 of 2 runs not determined" in ax.get_title(loc="left").replace("\n", " ")
 
 
 def test_what_has_no_value_is_explained(store):

@@ -148,6 +148,10 @@ class Store(NamedTuple):
         """Return why a run failed."""
         return str(self._array(MESSAGE)[index])
 
+    def messages(self) -> np.ndarray:
+        """Return the messages of all runs; '' where there is none."""
+        return np.asarray(self._array(MESSAGE)[...], dtype=object)
+
     def write(self, region: Region, block: BlockResults) -> None:
         """Write a block to the disk, then the mark that it is done.
 

@@ -96,7 +96,7 @@ def _field(of: Callable[[Slider], float], sliders: Sliders, size: Index, steps: 
 
 def _sliders(
     study: Study,
-    dims: tuple[str, str],
+    dims: tuple[str, ...],
     sides: Mapping[str, Mapping[str, Floats]],
     held: Mapping[str, tuple[float, str]],
 ) -> Sliders:
@@ -129,6 +129,28 @@ def _sliders(
         return slider
 
     return between
+
+
+def critical_values(study: Study, dim: str, at: Mapping[str, int]) -> Floats:
+    """Return the values along a dimension, in the store's unit, where stability changes.
+
+    None where a theory does not apply, or where several parameters vary along it.
+    """
+    its = along(study, dim)
+    values = its.get(dim, next(iter(its.values())))
+    sliders = _sliders(study, (dim,), {dim: its}, values_at(study.coordinates, at))
+
+    def growth(place: int) -> float:
+        try:
+            return stability.growth_rate(sliders((place,)))
+        except StictionError:
+            return nan
+
+    found = np.array([growth(i) for i in range(len(values))])
+    before, after = found[:-1], found[1:]
+    here = np.flatnonzero(before * after < 0.0)
+    share = before[here] / (before[here] - after[here])
+    return np.asarray(values[here] + share * (values[here + 1] - values[here]))
 
 
 def steps_between(study: Study, dim: str) -> int:

@@ -16,6 +16,7 @@ from stiction.errors import DescriptionError
 from stiction.plotting.maps import (
     Side,
     draw_changes,
+    draw_critical,
     draw_kinds,
     draw_measure,
     draw_points,
@@ -30,7 +31,9 @@ from stiction.plotting.page.style import COLUMN, PAGE, style
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.study.plan.coordinates import ascending, path_along, values_at
 from stiction.study.plan.layout import Index
-from stiction.study.view.boundaries import Plane, plane
+from stiction.study.store.store import COMPLETED
+from stiction.study.view.boundaries import Plane, critical_values, plane
+from stiction.study.view.summary import undetermined_in_words
 from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
 from stiction.text.quantity.wording import in_words
 from stiction.text.units import Quantity
@@ -40,6 +43,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+SWINGS = ("amplitude", "force_drop")  # measures that are zero without a motion
 WIDTH = 40  # characters of a title as wide as a column
 DAMPING = ("phi", "drive.velocity")  # coordinates that locate a run in the damping diagram
 
@@ -178,9 +182,12 @@ def plot_map(found: Map, axes: Axes | Sequence[Axes] | None = None) -> NDArray[n
             panels = _points(found.view, axes)
         else:
             panels = _curves(view, found.measures, axes)
-        if view.at:
+        said = [cut(view)] if view.at else []
+        said += [each] if (each := gaps_in_words(view)) else []
+        if said:
             wide = whole_figure(panels[0]).get_figwidth() / COLUMN
-            panels[0].set_title(fill(cut(view), int(WIDTH * wide)), loc="left")
+            lines = (fill(each, int(WIDTH * wide)) for each in said)
+            panels[0].set_title("\n".join(lines), loc="left")
         return np.array(panels, dtype=object)
 
 
@@ -195,6 +202,12 @@ def cut(view: View) -> str:
     known = values_at(view.study.coordinates, view.at)
     values = (f"{parameter_symbol(name)} = {in_words(*its)}" for name, its in known.items())
     return f"at {', '.join(values)}"
+
+
+def gaps_in_words(view: View) -> str:
+    """Return how many runs of a view ended well but are not determined, and why; '' for none."""
+    messages = view.data["message"].values[view.data["status"].values == COMPLETED]
+    return undetermined_in_words([str(each) for each in messages if each], view.data["status"].size)
 
 
 def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:
@@ -285,17 +298,43 @@ def _place(view: View, found: xr.Dataset, dims: tuple[str, str], share: float) -
 
 
 def _curves(view: View, measures: Sequence[str], axes: Any) -> list[Axes]:
-    (dim,) = view.data["status"].dims
+    dim = str(view.data["status"].dims[0])
     count = len(measures)
-    panels = grid_of(axes, (COLUMN, 0.6 + 1.7 * count), count, 1, sharex=True)
+    panels = grid_of(axes, (COLUMN, 1.1 + 1.7 * count), count, 1, sharex=True)
+    here, known = side(view, dim), list(kinds(view.data)) if REGIME in view.data else []
+    critical = side(view, dim, critical_values(view.study, dim, view.at))
+    handles: list[Any] = []
     for ax, name in zip(panels, measures, strict=True):
         if name == REGIME:
-            draw_kinds(ax, side(view, str(dim)), list(kinds(view.data)))
+            draw_kinds(ax, here, known)
         else:
-            draw_slice(ax, side(view, str(dim)), *measure_in_unit(view.data, name))
+            values, label = measure_in_unit(without_noise(view, name), name)
+            handles += draw_slice(ax, here, values, label, known)
+        handles += draw_critical(ax, critical)
         if ax is not panels[-1]:
             ax.set_xlabel("")
+    unique = {handle.get_label(): handle for handle in handles}
+    if unique and axes is None:
+        write_legend(whole_figure(panels[0]), [*unique.values()], 3)
+    elif unique:
+        panels[0].legend(handles=[*unique.values()], loc="lower left", bbox_to_anchor=(0.0, 1.0))
     return list(panels)
+
+
+def without_noise(view: View, name: str) -> xr.Dataset:
+    """Return a view's data in which swings below the tolerance of the runs are zero.
+
+    That is relative to the largest normal load: what steady sliding has of them is rounding.
+    """
+    if name not in SWINGS:
+        return view.data
+    base, known = view.study.base, view.study.coordinates
+    own = {"normal_load": base.slider.normal_load, "run.rtol": base.run.rtol}
+    load, rtol = (
+        float(np.max(known[path].values)) if path in known else value for path, value in own.items()
+    )
+    values = view.data[name]
+    return view.data.assign({name: values.where(~(abs(values) < rtol * load), 0.0)})
 
 
 def _points(view: View, axes: Any) -> list[Axes]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -43,6 +44,8 @@ class Summary(NamedTuple):
         The first failed run.
     store : Path
         The store of the runs.
+    undetermined : sequence of str
+        Why each run that ended well has no value for some measures.
     """
 
     runs: int
@@ -50,6 +53,7 @@ class Summary(NamedTuple):
     failed: Mapping[str, int]
     first: Failure | None
     store: Path = Path()
+    undetermined: Sequence[str] = ()
 
     def __repr__(self) -> str:
         """Return a one-line summary."""
@@ -67,6 +71,8 @@ class Summary(NamedTuple):
             counts = (f"{count} {end.replace('_', ' ')}" for end, count in self.failed.items())
             many = sum(self.failed.values())
             lines.append(f"{many} failed ({', '.join(counts)}); the first at {self.first}")
+        if self.undetermined:
+            lines.append(f"{undetermined_in_words(self.undetermined, self.runs)}.")
         return [Section(str(self.store), lines)]
 
     def _repr_html_(self) -> str:
@@ -81,6 +87,20 @@ class Summary(NamedTuple):
         return map(self.store).plot(axes)
 
 
+def undetermined_in_words(messages: Sequence[str], runs: int) -> str:
+    """Return how many runs are not determined, and why most of them; '' for none.
+
+    Examples
+    --------
+    >>> undetermined_in_words(["shorten it"], 5)
+    '1 of 5 runs not determined: shorten it'
+    """
+    if not messages:
+        return ""
+    (why, _), *others = Counter(messages).most_common()
+    return f"{len(messages)} of {runs} runs not determined: {why}{', and others' if others else ''}"
+
+
 def summary(study: Study, store: Store) -> Summary:
     """Count how the runs in a store ended."""
     status = store.status()
@@ -89,10 +109,12 @@ def summary(study: Study, store: Store) -> Summary:
     pending = found.pop(PENDING, 0)
     found.pop(COMPLETED, None)
     failed = {ENDS[code]: count for code, count in found.items()}
+    messages = store.messages()[status == COMPLETED]
+    unknown = [str(each) for each in messages if each]
     first = None
     if failed:
         flat = int(np.argmax(status.ravel() > COMPLETED))
         index = tuple(int(i) for i in np.unravel_index(flat, status.shape))
         at = dict(zip(store.layout.dims, index, strict=True))
         first = Failure(values_at(study.coordinates, at), ENDS[status[index]], store.message(index))
-    return Summary(status.size, pending, failed, first, store.path)
+    return Summary(status.size, pending, failed, first, store.path, unknown)
