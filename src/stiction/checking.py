@@ -23,6 +23,7 @@ from stiction.result.file import (
     TEXTS,
     DamageError,
     LayoutError,
+    SelectionError,
     is_netcdf,
     read_tables,
     repair_of,
@@ -165,7 +166,7 @@ def _check_result(path: Path, repair: bool, trust: bool) -> Check:
     try:
         read_tables(path)
         return Check(path, [], checked=SEAL in (attributes or ()))
-    except LayoutError:  # no damage, and not to be written anew by this version
+    except (LayoutError, SelectionError):  # no damage, and not to be written anew
         raise
     except DamageError as damage:
         told = damage.lost

@@ -462,3 +462,25 @@ def test_somebody_else_s_netcdf_is_no_damaged_run(tmp_path):
     xr.Dataset({"t2m": ("time", np.zeros(4))}).to_netcdf(path, engine="h5netcdf")
     with pytest.raises(st.ResultError, match="not the result of a run"):
         st.check(path)
+
+
+def test_a_cut_result_is_a_selection_and_not_repaired(tmp_path):
+    """A repair would put the whole run in its place."""
+    run = st.simulate(st.presets.nakano_popov_2020(), "20 ms", sample_rate="10 kHz")
+    path, cut = tmp_path / "r.nc", tmp_path / "cut.nc"
+    run.save(path)
+    with xr.open_dataset(path) as data:
+        data.sel(time=slice(0.005, 0.015)).to_netcdf(cut, engine="h5netcdf")
+    content = cut.read_bytes()
+    for read in (st.load, st.check, lambda each: st.check(each, repair=True)):
+        with pytest.raises(st.ResultError, match="is a part of a result") as error:
+            read(cut)
+        assert "st.read_record" in str(error.value)
+        assert "repair" not in str(error.value)
+    assert cut.read_bytes() == content
+    assert 95 <= len(st.read_record(cut).time) <= 105
+    with xr.open_dataset(path) as data:
+        data.load()["u_x"][3] += 1e-3
+        data.to_netcdf(cut, engine="h5netcdf")
+    with pytest.raises(st.ResultError, match="is damaged, or was changed"):
+        st.load(cut)

@@ -133,9 +133,38 @@ class DamageError(ResultError):
         super().__init__(f"{path}: is damaged, or was changed: {self.lost}; {again}")
         self._made_of = path, lost
 
-    def __reduce__(self) -> tuple[type[DamageError], tuple[str | Path, Sequence[str]]]:
+
+class SelectionError(ResultError):
+    """The arrays of a result are whole, but were cut or chosen from by another program."""
+
+    def __init__(self, path: str | Path) -> None:
+        """Name the way to read it; a repair would put the whole run in its place."""
+        as_record = Instruction(
+            f"stiction import {argument(path)} -o record.nc", f"st.read_record({str(path)!r})"
+        )
+        self._made_of = path
+        super().__init__(
+            f"{path}: is a part of a result, which another program wrote; read it as a record: "
+            f"{as_record}"
+        )
+
+    def __reduce__(self) -> tuple[type[SelectionError], tuple[str | Path]]:
         """Pickle the parts of the message."""
-        return type(self), self._made_of
+        return type(self), (self._made_of,)
+
+
+def is_selection(samples: ColumnTable, lost: Sequence[str]) -> bool:
+    """Return whether another program cut the samples of a run, by its parts that have changed.
+
+    A cut changes every array, by its length, and leaves times that ascend; damage changes some.
+    """
+    time = samples.columns.get("time")
+    if time is None or time.values.dtype.kind != "f" or DESCRIPTION in lost:
+        return False
+    whole = all(f"samples.{name}" in lost for name in samples.columns)
+    alike = all(len(each.values) == len(time.values) for each in samples.columns.values())
+    ascends = np.isfinite(time.values).all() and (np.diff(time.values) > 0.0).all()
+    return bool(whole and alike and ascends and len(time.values))
 
 
 class LayoutError(ResultError):
@@ -172,6 +201,8 @@ def read_tables(path: str | Path) -> tuple[ColumnTable, ColumnTable]:
             refuse_layout(path, data.attributes, RESULT_KIND, LAYOUT)
         sealed = data.attributes.get(SEAL)
         lost = damaged_parts(sealed, {"samples": data, "sticks": sticks}) if checked else []
+    if lost and whole is None and is_selection(data, lost):
+        raise SelectionError(path)
     if lost:
         raise DamageError(path, lost)
     about = {n: value for n, value in data.attributes.items() if n not in (SEAL, RESULT_KIND)}
