@@ -105,6 +105,25 @@ def test_help_has_an_example_of_each_option_and_speaks_of_what_the_command_takes
     assert "CONFIG" in words or not any("CONFIG" in text for text in words.values())
 
 
+def test_the_explorer_takes_changes_and_a_preset(monkeypatch, tmp_path, capsys):
+    opened = []
+    monkeypatch.setattr(
+        "stiction.explorer.door.explore", lambda source, **settings: opened.extend(source)
+    )
+    config = tmp_path / "my.toml"
+    text = st.Description.of(st.presets.nakano_popov_2020(), "5 s").to_toml()
+    config.write_text(text, "utf-8")
+    assert inside("explore", config, "--set", "duration=100s", "--set", "phi=3deg") == 0
+    assert inside("explore", "--preset", "leine-belt", "--set", "V=2mm/s") == 0
+    assert opened[0].run.duration == 100.0
+    assert opened[0].slider.misalignment == pytest.approx(np.radians(3.0))
+    assert opened[1].slider.drive.velocity == pytest.approx(2e-3)
+    assert inside("explore", "--set", "phi=3deg") == 2
+    assert inside("explore", config, "--preset", "leine-belt") == 2
+    assert len(opened) == 2
+    assert "name its file or a preset" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("name", ["analyse", "audit", "design", "explore", "fit", "import"])
 def test_help_has_the_options_of_a_record_s_file_behind_those_of_the_command(name, capsys):
     """Twenty of them stood in one list with the four of `stiction analyse`."""

@@ -7,15 +7,27 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from stiction.cli.options import RecordOptions, Trust, record_or_none, source_in
+from stiction.cli.options import (
+    Changes,
+    FromPreset,
+    RecordOptions,
+    Trust,
+    changes,
+    description_from,
+    record_or_none,
+    source_in,
+)
 from stiction.cli.terminal import note
+from stiction.errors import DescriptionError, Faults
 
 
 def explore(
     *source: Path,
     port: int = 0,
     browser: Annotated[bool, Parameter(negative="--no-browser")] = True,
+    preset: FromPreset = None,
     trust: Trust = False,
+    set: Changes = None,
     measured: RecordOptions | None = None,
 ) -> None:
     """Open the explorer: sliders for every parameter, and the whole motion at once.
@@ -30,6 +42,12 @@ def explore(
         stiction explore my.toml
 
         stiction explore my.toml force.csv --time ms --force mN
+
+    With another duration, or a published system:
+
+        stiction explore my.toml --set duration=100s
+
+        stiction explore --preset leine-belt
 
     Parameters
     ----------
@@ -48,7 +66,21 @@ def explore(
     read = {each: source_in(each, measured, trust) for each in records}
     if not records:
         record_or_none(None, measured, trust, "name its file")
-    opened = [read.get(each, each) for each in source]
+    opened: list[object] = [read.get(each, each) for each in source]
+    faults = Faults()
+    given = changes(set, faults)
+    faults.refuse()
+    if given or preset is not None:
+        configs = [each for each in source if each.suffix.lower() == ".toml"]
+        systems = [each for each in source if each not in records]
+        if systems != configs or len(configs) > 1:
+            message = "changes a description (.toml) or a preset; give one of these"
+            raise DescriptionError.of("--set" if given else "--preset", message)
+        config = configs[0] if configs else None
+        if config is None and preset is None:
+            raise DescriptionError.of("--set", "changes a description; name its file or a preset")
+        opened = [each for each in opened if each not in configs]
+        opened.append(description_from(config, preset, given, trust))
     try:
         open_explorer(opened, port=port, browser=browser, trust=trust)
     except KeyboardInterrupt:  # the usual end
