@@ -33,8 +33,14 @@ from stiction.study.plan.coordinates import ascending, path_along, values_at
 from stiction.study.plan.layout import Index
 from stiction.study.store.store import COMPLETED
 from stiction.study.view.boundaries import Plane, critical_values, plane
-from stiction.study.view.summary import undetermined_in_words
-from stiction.study.view.view import REGIME, View, choose_measures, kinds, view_study
+from stiction.study.view.view import (
+    REGIME,
+    View,
+    choose_measures,
+    kinds,
+    undetermined_in_words,
+    view_study,
+)
 from stiction.text.quantity.wording import in_words
 from stiction.text.units import Quantity
 from stiction.theory import damping_number_of

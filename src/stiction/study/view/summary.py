@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,6 +12,7 @@ from numpy.typing import NDArray
 from stiction.study.plan.coordinates import values_at
 from stiction.study.plan.study import Study
 from stiction.study.store.store import COMPLETED, ENDS, PENDING, Store
+from stiction.study.view.view import undetermined_in_words
 from stiction.text.sections import Section, as_html, as_text
 
 
@@ -85,20 +85,6 @@ class Summary(NamedTuple):
         from stiction.study.view.mapping import map
 
         return map(self.store).plot(axes)
-
-
-def undetermined_in_words(messages: Sequence[str], runs: int) -> str:
-    """Return how many runs are not determined, and why most of them; '' for none.
-
-    Examples
-    --------
-    >>> undetermined_in_words(["shorten it"], 5)
-    '1 of 5 runs not determined: shorten it'
-    """
-    if not messages:
-        return ""
-    (why, _), *others = Counter(messages).most_common()
-    return f"{len(messages)} of {runs} runs not determined: {why}{', and others' if others else ''}"
 
 
 def summary(study: Study, store: Store) -> Summary:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -156,3 +157,17 @@ def kinds(data: xr.Dataset) -> np.ndarray:
     names = np.array([*KINDS, ""], dtype=object)
     found: np.ndarray = names[data[REGIME].values.astype(int)]  # -1 is the last
     return found
+
+
+def undetermined_in_words(messages: Sequence[str], runs: int) -> str:
+    """Return how many runs are not determined, and why most of them; '' for none.
+
+    Examples
+    --------
+    >>> undetermined_in_words(["shorten it"], 5)
+    '1 of 5 runs not determined: shorten it'
+    """
+    if not messages:
+        return ""
+    (why, _), *others = Counter(messages).most_common()
+    return f"{len(messages)} of {runs} runs not determined: {why}{', and others' if others else ''}"
