@@ -7,7 +7,7 @@ from itertools import islice
 import numpy as np
 import pytest
 import xarray as xr
-from tests.uncertain import record_of
+from tests.uncertain import record_of, shared_folder
 
 import stiction as st
 from stiction.analysis.motion.rest import HELD
@@ -64,8 +64,11 @@ def rotating(rig):
 
 
 @pytest.fixture(scope="module")
-def folder(tmp_path_factory):
-    return tmp_path_factory.mktemp("libraries")
+def folder(rig, rotating, tmp_path_factory):
+    """The simulations of all mechanisms, which one worker makes for all."""
+    with shared_folder("mechanisms", tmp_path_factory) as folder:
+        st.mechanism(rotating, rig, simulations=SIMULATIONS, library=folder)
+    return folder
 
 
 @pytest.fixture(scope="module")
