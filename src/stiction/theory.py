@@ -48,7 +48,6 @@ from stiction.system.slider import Slider, slider_of
 from stiction.text.units import FORCE, LENGTH, TIME, VELOCITY, Kind, Quantity, unit_on
 from stiction.text.validation import read_number
 
-# Zeros and infinities below are limits (no misalignment, no end of creep), not accidents.
 SI = {None, "1", "kg", "m", "s", "m/s", "s/m", "N", "N/m", "N*s/m", "rad"}
 REMEDY = ".to_base_units().magnitude of a quantity, or the values of an array, in SI"
 
@@ -66,14 +65,16 @@ KINDS = {  # of arguments that may be given as text with a unit, by their names
 _F = TypeVar("_F", bound=Callable[..., Any])
 
 
-def _units(function: _F) -> _F:
-    """Decorate a formula: text with a unit becomes a number in SI; numbers are taken as they are.
+def _formula(function: _F) -> _F:
+    """Decorate a formula: it takes text with a unit as a number in SI, and has limits.
 
-    A bare angle is in radians, as in the equations; among texts it is refused.
+    Numbers are taken as they are: a bare angle is in radians, as in the equations; among texts it
+    is refused. Zeros and infinities are limits (no misalignment, no end of creep), not accidents.
     """
     names = tuple(signature(function).parameters)
 
     @wraps(function)
+    @np.errstate(divide="ignore", invalid="ignore", over="ignore")
     def read(*args: Any, **values: Any) -> Any:
         if any(map(_is_text, args)) or any(map(_is_text, values.values())):
             args = tuple(map(_in_si, names, args)) + args[len(names) :]
@@ -102,12 +103,8 @@ def _in_si(name: str, value: Any) -> Any:
     return np.array([_in_si(name, each) for each in value])
 
 
-_limits = np.errstate(divide="ignore", invalid="ignore", over="ignore")
-
-
 @old_keywords(stiffness="k", mass="m")
-@_units
-@_limits
+@_formula
 def natural_frequency(k: ArrayLike, m: ArrayLike) -> Floats:
     """Angular natural frequency sqrt(k/m), rad/s (omega_x, omega_y of the paper).
 
@@ -129,7 +126,7 @@ def natural_frequency(k: ArrayLike, m: ArrayLike) -> Floats:
 
 
 @old_keywords(normal_load="W")
-@_units
+@_formula
 def friction_force(mu_0: ArrayLike, W: ArrayLike) -> Floats:
     """Friction at vanishing slip speed, F_0 = mu_0 W (N); mu_0 (-), normal load W (N).
 
@@ -143,8 +140,7 @@ def friction_force(mu_0: ArrayLike, W: ArrayLike) -> Floats:
     return mu_0 * W
 
 
-@_units
-@_limits
+@_formula
 def slip_length(F_0: ArrayLike, k_x: ArrayLike) -> Floats:
     """Elongation that carries the whole friction, F_0/k_x (m), of Eq. (8); F_0 (N), k_x (N/m).
 
@@ -158,8 +154,7 @@ def slip_length(F_0: ArrayLike, k_x: ArrayLike) -> Floats:
     return F_0 / k_x
 
 
-@_units
-@_limits
+@_formula
 def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Right-hand side of Eq. (7): du_x/dt of the quasistatic creep (m/s).
 
@@ -185,8 +180,7 @@ def elongation_rate(u_x: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
     return V * (np.cos(phi) - np.sin(phi) * x / np.sqrt((1.0 - x) * (1.0 + x)))
 
 
-@_units
-@_limits
+@_formula
 def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Time at which the friction force has turned to `theta` (s): closed form of Eq. (7).
 
@@ -214,7 +208,7 @@ def creep_time(theta: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
     return s * l_x / V
 
 
-@_units
+@_formula
 def creep_force_angle(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Angle theta of the friction force to the x axis during creep (rad): Eq. (7), solved.
 
@@ -242,7 +236,7 @@ def creep_force_angle(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
     return np.where(delta < rest, np.pi / 2 - delta, phi + rest)[()]  # the less rounded of the two
 
 
-@_units
+@_formula
 def creep_elongation(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Elongation during creep, u_x(t) = l_x cos(theta) (m): the solution of Eq. (7).
 
@@ -258,8 +252,7 @@ def creep_elongation(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike)
     return np.asarray(l_x, dtype=np.float64) * np.sin(delta)
 
 
-@_units
-@_limits
+@_formula
 def creep_velocity(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Laboratory velocity during creep, X'(t) = V sin(phi) cos(theta - phi)/sin(theta) (m/s).
 
@@ -280,7 +273,7 @@ def creep_velocity(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -
     return V * np.where((phi == 0) & (rest == 0), V * t > l_x, ratio)
 
 
-@_units
+@_formula
 def creep_velocity_approximation(
     t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
 ) -> Floats:
@@ -303,7 +296,7 @@ def creep_velocity_approximation(
     return _creep_expansion(t, V, phi, l_x, power=1)
 
 
-@_units
+@_formula
 def creep_velocity_as_printed(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike) -> Floats:
     """Eq. (8) as printed, V phi (phi + s^2/sqrt(1 - s^2)), s = V t/l_x (m/s), for comparison only.
 
@@ -319,8 +312,7 @@ def creep_velocity_as_printed(t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: A
     return _creep_expansion(t, V, phi, l_x, power=2)
 
 
-@_units
-@_limits
+@_formula
 def transverse_deflection(F_0: ArrayLike, k_y: ArrayLike) -> Floats:
     """Mean transverse elongation during creep, F_0/k_y (m); F_0 (N), k_y (N/m). From Eq. (9).
 
@@ -334,7 +326,7 @@ def transverse_deflection(F_0: ArrayLike, k_y: ArrayLike) -> Floats:
     return F_0 / k_y
 
 
-@_units
+@_formula
 def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike) -> Floats:
     """Largest amplitude of the transverse oscillation without reversal of slip (m). From Eq. (9).
 
@@ -358,7 +350,7 @@ def transverse_amplitude_bound(V: ArrayLike, phi: ArrayLike, omega_y: ArrayLike)
     return np.asarray(np.abs(V * np.sin(phi)) / omega_y)[()]
 
 
-@_units
+@_formula
 def oscillation_frequency(theta: ArrayLike, k_x: ArrayLike, k_y: ArrayLike, m: ArrayLike) -> Floats:
     """Angular frequency at which the mass swings along the friction force during creep (rad/s).
 
@@ -387,8 +379,7 @@ def oscillation_frequency(theta: ArrayLike, k_x: ArrayLike, k_y: ArrayLike, m: A
     return omega
 
 
-@_units
-@_limits
+@_formula
 def damping_number(
     F_0: ArrayLike, V: ArrayLike, phi: ArrayLike, m: ArrayLike, k_x: ArrayLike
 ) -> Floats:
@@ -443,7 +434,7 @@ def _one_number(name: str, value: Any) -> float:
     raise DescriptionError.of(name, f"must be one number, or one with its unit, is {echo(value)}")
 
 
-@_units
+@_formula
 def damping_ratio(A: ArrayLike, theta: ArrayLike) -> Floats:
     """Damping ratio zeta = A sin^3(theta) of Eq. (10); A = `damping_number`, theta in rad.
 
@@ -458,8 +449,7 @@ def damping_ratio(A: ArrayLike, theta: ArrayLike) -> Floats:
     return zeta
 
 
-@_units
-@_limits
+@_formula
 def critical_angle(A: ArrayLike) -> Floats:
     """Force angle at which zeta = 1 in Eq. (10), arcsin(A^(-1/3)) (rad): slow slip turns fast.
 
@@ -475,8 +465,7 @@ def critical_angle(A: ArrayLike) -> Floats:
     return np.arcsin(np.where(A >= 1.0, 1.0 / np.cbrt(A), np.nan))
 
 
-@_units
-@_limits
+@_formula
 def first_stick_duration(
     F_0: ArrayLike, V: ArrayLike, phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike
 ) -> Floats:
@@ -504,7 +493,7 @@ def first_stick_duration(
     return np.asarray(F_0 / (np.abs(V) * np.hypot(k_x * np.cos(phi), k_y * np.sin(phi))))[()]
 
 
-@_units
+@_formula
 def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
     """Angle of the spring force to the x axis while the object rests, from u = 0 (rad).
 
@@ -529,8 +518,7 @@ def first_force_angle(phi: ArrayLike, k_x: ArrayLike, k_y: ArrayLike) -> Floats:
     return angle
 
 
-@_units
-@_limits
+@_formula
 def critical_misalignment(
     V: ArrayLike, mu: ArrayLike, slope: ArrayLike, *, c_x: ArrayLike = 0.0, W: ArrayLike = 1.0
 ) -> Floats:
@@ -568,8 +556,7 @@ def critical_misalignment(
     return np.arctan(np.sqrt(weakening / (c_x + W * mu / V)))
 
 
-@_units
-@_limits
+@_formula
 def critical_stiffness(
     a: ArrayLike, b: ArrayLike, D_c: ArrayLike, W: ArrayLike, V: ArrayLike, m: ArrayLike
 ) -> Floats:
@@ -628,7 +615,6 @@ def _scaled_time(delta: Floats, w: Floats, phi: Floats) -> Floats:
     return 2.0 * np.sin(delta / 2) * np.cos(phi - delta / 2) + np.where(sin2 > 0, sin2 * w, 0.0)
 
 
-@_limits
 def _creep(
     t: ArrayLike, V: ArrayLike, phi: ArrayLike, l_x: ArrayLike
 ) -> tuple[Floats, Floats, Floats]:
