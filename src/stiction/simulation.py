@@ -296,6 +296,14 @@ def step_times(
     return np.union1d(times, sticks) if len(sticks) + len(times) <= most else np.unique(times)
 
 
+def sample_coarsely(
+    description: Description, times: np.ndarray, progress: Callable[[float], None] | None = None
+) -> ColumnTable:
+    """Return a run sampled at `times` (s), as accurately as a picture needs it."""
+    solution = solve_coarsely(description, times, progress=progress)
+    return sample_table(description, solution.times, solution.samples, {})
+
+
 def kind(description: Description) -> str:
     """Return the kind of the solved problem, in words."""
     if has_state(description.slider.law):

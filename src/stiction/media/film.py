@@ -25,9 +25,9 @@ from stiction.plotting.page.style import BLACK, BLUE, GREEN, ORANGE, RED, style
 from stiction.plotting.run.lines import BAND, draw_line, envelope
 from stiction.plotting.run.time_series import STILL, say_only
 from stiction.progress.audience import with_progress
-from stiction.result.table import ColumnTable, sample_table
+from stiction.result.table import ColumnTable
 from stiction.result.window import time_in, window_of
-from stiction.simulation import automatic_times, solve_coarsely
+from stiction.simulation import automatic_times, sample_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.text.quantity.prefix import metric_prefix
@@ -218,11 +218,11 @@ def draw(
     description: Description, times: Floats, middle: float | None, length: float
 ) -> Iterator[NDArray[np.uint8]]:
     """Yield the frames at `times` (s), (height, width, 3)."""
-    whole_run = sample(description, automatic_times(description))
-    shown, seen = sample(description, times), in_window(description, times)
-    fine = sample(
-        description, fine_times(description, moving_at(seen) if middle is None else middle)
-    )
+    every, window = automatic_times(description), window_times(description, times)
+    run = sample_coarsely(description, np.unique(np.concatenate([every, times, window])))
+    whole_run, shown, seen = run.at(every), run.at(times), run.at(window)
+    near = moving_at(seen) if middle is None else middle
+    fine = sample_coarsely(description, fine_times(description, near))
     slow = length / (times[-1] - times[0])
     with style():
         figure = Figure(figsize=SIZE, dpi=DPI)
@@ -248,18 +248,12 @@ def draw(
             yield np.asarray(canvas.buffer_rgba())[..., :3]
 
 
-def sample(description: Description, times: Floats) -> ColumnTable:
-    """Return a run sampled at `times` (s)."""
-    solution = solve_coarsely(description, times)
-    return sample_table(description, solution.times, solution.samples, {})
-
-
-def in_window(description: Description, times: Floats) -> ColumnTable:
-    """Return a run between the first and the last of `times`, with samples that show its motion."""
+def window_times(description: Description, times: Floats) -> Floats:
+    """Return times from the first to the last of `times` that show the motion between them, s."""
     every = automatic_times(description)
     inside = every[(every >= times[0]) & (every <= times[-1])]
     few = len(inside) < IN_WINDOW
-    return sample(description, np.linspace(times[0], times[-1], IN_WINDOW) if few else inside)
+    return np.linspace(times[0], times[-1], IN_WINDOW) if few else inside
 
 
 def moving_at(seen: ColumnTable) -> float:

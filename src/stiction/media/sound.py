@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 from stiction.arrays import Floats, same_fields
 from stiction.errors import Faults, ResultError, echo
 from stiction.progress.audience import with_progress
-from stiction.result.table import sample_table
 from stiction.result.window import window_of
-from stiction.simulation import solve_coarsely
+from stiction.simulation import sample_coarsely
 from stiction.storage.files import placeable, whole
 from stiction.system.description import Description
 from stiction.text.quantity.wording import in_words
@@ -226,9 +225,7 @@ def rate_at(
 
     It is zero where a spring is loaded evenly, whatever rounding and the start leave.
     """
-    solution = solve_coarsely(description, times, progress=progress)
-    values = sample_table(description, solution.times, solution.samples, {})[f"v_{axis}"]
-    values = values[: len(times)]
+    values = sample_coarsely(description, times, progress)[f"v_{axis}"][: len(times)]
     mean = float(np.mean(values[np.isfinite(values)]))
     found: Floats = np.nan_to_num(values - mean)
     if np.max(np.abs(found), initial=0.0) < EVEN_RATE * abs(mean):

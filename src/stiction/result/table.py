@@ -90,6 +90,23 @@ class ColumnTable(Mapping[str, np.ndarray]):
             raise KeyError(unknown_name("column", str(name), self.columns))
         return self.columns[name].values
 
+    def at(self, times: np.ndarray) -> ColumnTable:
+        """Return the rows at some of the times of a run, and at its end where it ended early.
+
+        Examples
+        --------
+        >>> import stiction as st
+        >>> run = st.simulate(st.presets.nakano_popov_2020(), "2 ms", sample_rate="1 kHz")
+        >>> run.samples.at([1e-3])["time"]
+        array([0.001])
+        """
+        chosen = np.isin(self["time"], times)
+        chosen[-1] |= self["time"][-1] < np.max(times)
+        rows = {
+            name: each._replace(values=each.values[chosen]) for name, each in self.columns.items()
+        }
+        return ColumnTable(rows, self.attributes)
+
     def __iter__(self) -> Iterator[str]:
         """Go through the names of the columns."""
         return iter(self.columns)

@@ -17,16 +17,16 @@ from stiction.media.film import (
     NAMES,
     draw,
     fine_times,
-    in_window,
     microscope,
     moving_at,
-    sample,
     series,
     slowness,
+    window_times,
 )
 from stiction.media.scene import HOME, ROOM, Scene, magnification, wall_distance
 from stiction.media.sound import LOUD, RATE, audible_speed
 from stiction.plotting.page.style import BLUE, GREEN, ORANGE, RED
+from stiction.simulation import sample_coarsely
 
 PAPER = st.presets.nakano_popov_2020()
 
@@ -167,7 +167,7 @@ def test_frames_follow_the_time(run):
     assert [frame.shape for frame in (frames[0].copy(), *frames[1:])] == [(720, 1280, 3)] * 3
     first, second = (f.copy() for f in draw(run.description, np.array([0.0, 0.05]), 0.02, 1.0))
     assert (first != second).any()
-    assert len(sample(run.description, np.array([0.0, 0.05]))["time"]) == 2
+    assert len(sample_coarsely(run.description, np.array([0.0, 0.05]))["time"]) == 2
     assert slowness(2520.0) == "2,520 times slower"
     assert slowness(0.1) == "10 times faster"
     assert slowness(1.0) == "in real time"
@@ -261,7 +261,7 @@ def test_a_slip_slower_than_a_millionth_of_the_drive_is_shown_at_rest():
         friction=law, drive=st.ConstantVelocity("10 um/s"),
     )  # fmt: skip
     times = np.linspace(0.0, 60.0, 100)
-    samples = sample(st.simulate(rock, 60.0).description, times)
+    samples = sample_coarsely(st.simulate(rock, 60.0).description, times)
     assert samples["slip_speed"][-1] < 1e-20
     figure = Figure()
     scene = Scene(figure.add_subplot(), rock, samples)
@@ -289,7 +289,7 @@ def test_a_film_of_a_short_window_of_a_long_run_shows_it_in_full():
     """Series have the resolution of the window, and the microscope a moment at which it slips."""
     description = st.simulate(st.presets.nakano_popov_2020(), 100.0, multiscale=True).description
     times = np.linspace(2.0, 2.02, 10)
-    seen = in_window(description, times)
+    seen = sample_coarsely(description, window_times(description, times))
     figure = Figure()
     series(figure, seen, times)
     drawn = figure.axes[1].lines[0].get_xdata()
@@ -314,10 +314,10 @@ def test_axes_of_a_film_have_units_and_ticks_that_suit_them():
     fast = st.presets.nakano_popov_2020().replace(phi="0 deg", k_y="400 GN/m")
     description = st.simulate(fast, 0.2).description
     times = np.linspace(0.0, 0.2, 10)
-    seen = in_window(description, times)
+    seen = sample_coarsely(description, window_times(description, times))
     figure = Figure(figsize=(12.8, 7.2), dpi=100)
     series(figure, seen, times)
-    fine = sample(description, fine_times(description, 0.0674213))
+    fine = sample_coarsely(description, fine_times(description, 0.0674213))
     microscope(figure, fine, 1.0)
     *strips, small = figure.axes
     assert small.get_xlabel() == "time from 0.0674213 s (µs)"
@@ -337,7 +337,7 @@ def test_a_film_of_a_run_without_slip_says_so():
     description = st.simulate(st.presets.nakano_popov_2020(), "5 ms").description
     times = np.linspace(1e-3, 5e-3, 10)
     figure = Figure(figsize=(12.8, 7.2), dpi=100)
-    series(figure, in_window(description, times), times)
+    series(figure, sample_coarsely(description, window_times(description, times)), times)
     assert [text.get_text() for text in figure.axes[2].texts] == ["no slip"]
 
 
@@ -369,7 +369,7 @@ def test_a_vibration_of_many_swings_is_a_band_in_a_film():
     description = st.simulate(fast, 2.0).description
     times = np.linspace(0.0, 2.0, 10)
     figure = Figure(figsize=(12.8, 7.2), dpi=100)
-    series(figure, in_window(description, times), times)
+    series(figure, sample_coarsely(description, window_times(description, times)), times)
     force, _, speed = figure.axes
     assert len(force.collections) > 0
     pale, largest, _ = speed.lines
