@@ -1,6 +1,7 @@
-"""A readable reference of the exact solver: plain Python, NumPy and SciPy, slow and obvious.
+"""A reference to read, and to check the exact solver by: plain Python, NumPy and SciPy, slow.
 
-It uses no compiled code; the two solvers check each other. The motion is a sequence of phases,
+No simulation runs it. Readers find the method here without what makes it fast; tests and benchmarks
+compare the compiled solver with it, of which it uses nothing. The motion is a sequence of phases,
 each of which starts where the last one ended:
 
 - stick: the slip velocity s is zero, and the spring's end drags the elongation along;
