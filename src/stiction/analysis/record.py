@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, InstanceOf, PrivateAttr, model_validator
 from pydantic.functional_validators import ModelWrapValidatorHandler
 from pydantic_core import PydanticCustomError
 
-from stiction.analysis.drive.measured_drive import EvenDrive, even_drive
+from stiction.analysis.drive.measured_drive import EvenDrive, even_drive, uneven_speeds
 from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
 from stiction.arrays import Floats, Indices, xr
@@ -336,6 +336,12 @@ class Record(Described):
         if found is None or sensor is None:
             return found
         return found._replace(error=hypot(found.error, found.speed * sensor.gain_uncertainty))
+
+    def uneven_speeds(self) -> tuple[float, float] | None:
+        """Return the least and the largest speed (m/s) of an uneven `drive_position`, or None."""
+        if self.drive_position is None or not len(self):
+            return None
+        return uneven_speeds(self.time, self.drive_position)
 
     def each_value_once(self) -> Self:
         """Return the record with each value of the force once, if a slow sensor repeats them all.

@@ -37,6 +37,8 @@ RESTS = 0.02  # of the speed of a drive: a slope that is less is that of noise
 GOES = 0.9  # of the reach of a displacement: a drive that goes less far on the whole is noise
 FEWEST_SAMPLES = 6  # of a motion, by fewer its speed is not known
 SAGS = 8  # means of a part that show it
+PACES = 16  # parts of a record, whose speeds show whether a drive keeps to one
+UNEVEN = 0.1  # of the median of these speeds: by so much they differ where it does not
 
 
 class _Part(NamedTuple):
@@ -124,6 +126,28 @@ def even_drive(time: Floats, position: Floats) -> EvenDrive | None:
     error = standard_error(off) / float(time[inside].std())
     goes = speed * (end - begins[at]) > GOES * float(np.ptp(position))
     return EvenDrive(speed, error) if error < SAME * speed and goes else None
+
+
+def uneven_speeds(time: Floats, position: Floats) -> tuple[float, float] | None:
+    """Return the least and the largest speed (m/s) of a drive that goes one way; None if even.
+
+    They are means over parts of the record, and differ by more than noise.
+
+    >>> time = np.linspace(0.0, 10.0, 1001)
+    >>> uneven_speeds(time, 1e-3 * time), uneven_speeds(time, np.sin(time))
+    (None, None)
+    >>> [round(speed, 2) for speed in uneven_speeds(time, time**2)]
+    [1.24, 18.75]
+    """
+    if len(time) < FEWEST_SAMPLES * PACES:
+        return None
+    when, where = part_means(time, PACES), part_means(position, PACES)
+    paces = np.diff(where) / np.diff(when)
+    speeds = np.abs(paces)
+    noise = white_noise(position) * (2.0 * PACES / len(time)) ** 0.5 / float(np.diff(when).min())
+    least = max(UNEVEN * float(np.median(speeds)), CERTAIN * noise)
+    turns = paces.min() < -least and paces.max() > least
+    return None if turns or np.ptp(speeds) <= least else (float(speeds.min()), float(speeds.max()))
 
 
 def _parts(time: Floats, position: Floats) -> list[_Part]:

@@ -310,7 +310,9 @@ def test_a_zero_that_does_not_settle_adds_no_error():
     for seed in range(10):
         time = np.linspace(0.0, 10.0, 1000)
         for friction in (0.0, 0.4 * np.exp(-((np.maximum(time - 0.5, 0.0) / 0.3) ** 2))):
-            found = st.analyse(sliding(np.broadcast_to(friction, time.shape), seed))
+            known = {"zero": 0.0}  # its first reading, 0.4 N, might be the zero otherwise
+            record = sliding(np.broadcast_to(friction, time.shape), seed).model_copy(update=known)
+            found = st.analyse(record)
             kinetic = found.friction.kinetic
             assert kinetic is not None
             assert kinetic.error < 2e-3  # N; that of the noise is 2e-4 N
@@ -327,3 +329,22 @@ def test_a_force_that_settles_is_told_from_2_percent_of_its_largest_on(kind, sha
     if kind == STEADY:  # a steady drift is told instead
         (said,) = doubt_drift(LOADED, drift._replace(stands_out=True), kind, table([], []))
         assert "drifts by" in said
+
+
+@pytest.mark.parametrize("number", range(8))
+def test_friction_that_falls_as_a_drive_speeds_up_is_no_zero_that_drifts(number):
+    """A ramp to 5 mm/s was told to state zero_drift, and asked whether its drive paused."""
+    random = np.random.default_rng([51, number])
+    time = np.arange(0.0, 20.0, 1e-3)
+    slow, fast = 1e-4 * random.uniform(0.5, 2.0), 1e-3 * random.uniform(2.0, 6.0)
+    stage = slow * time + 0.5 * (fast - slow) * time**2 / time[-1]
+    peak = 6.0 - random.uniform(0.2, 0.5) * time / time[-1]
+    rise = 3.0 * ((2e4 * stage / 3.0) % 1.0)
+    force = peak - 3.0 + rise + 0.02 * random.normal(size=len(time))
+    given = {"normal_load": 20.0, "stiffness": 2e4}
+    followed = st.Record(time=time, force=force, drive_position=stage, **given)
+    said = " ".join(st.analyse(followed).warnings)
+    assert "may change with the speed of the drive, which goes at" in said
+    assert "zero_drift" not in said
+    assert "if the drive paused" not in said
+    assert "zero_drift" in " ".join(st.analyse(st.Record(time=time, force=force, **given)).warnings)

@@ -58,8 +58,11 @@ def doubt_loading(cycles: CycleTable) -> Iterator[str]:
     )
 
 
-def doubt_cycles_apart(cycles: CycleTable) -> Iterator[str]:
-    """Name cycles far longer or deeper than the others, which the means leave out."""
+def doubt_cycles_apart(cycles: CycleTable, *, followed: bool = False) -> Iterator[str]:
+    """Name cycles far longer or deeper than the others, which the means leave out.
+
+    A drive whose displacement is `followed` shows by that whether it paused.
+    """
     if not cycles_apart(cycles).any():
         return
     period, drop = cycles["period"], cycles["drop"]
@@ -82,10 +85,10 @@ def doubt_cycles_apart(cycles: CycleTable) -> Iterator[str]:
     if found:
         more = np.count_nonzero(long) - len(found)
         others = f", and {more} more are as long" if more else ""
+        paused = ": if the drive paused, analyse the parts before and after by themselves"
         yield (
-            f"The cycle {'; that '.join(found)}{others}: if the drive paused, analyse the parts "
-            "before and after by themselves. Means over the cycles leave "
-            f"{'it' if len(found) == 1 else 'them'} out."
+            f"The cycle {'; that '.join(found)}{others}{'' if followed else paused}. Means over "
+            f"the cycles leave {'it' if len(found) == 1 else 'them'} out."
         )
 
 

@@ -11,8 +11,10 @@ from stiction.analysis.motion.regime.kinds import SETTLING, STEADY
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import ERRORS_95, standard_error
 from stiction.analysis.signals.robust import largest_magnitude
-from stiction.text.quantity.wording import in_words
+from stiction.text.quantity.wording import in_words, span
 from stiction.text.suggestion import Suggestion
+
+SPEED = 2  # digits of a mean speed over a part of a record
 
 
 def doubt_drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> Iterator[str]:
@@ -22,6 +24,7 @@ def doubt_drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> 
     if drift.stands_out and is_shown(drift, kind):
         late = drift.start > float(record.time[0])
         rate, begin = in_words(drift.rate, "N/s"), in_words(drift.start, "s")
+        speeds = record.uneven_speeds()
         where = f"from {begin} to {in_words(drift.end, 's')}" if late else "in all"
         remedy = (
             f"analyse the parts before and after {begin} by themselves "
@@ -29,11 +32,18 @@ def doubt_drift(record: Record, drift: Drift, kind: str, cycles: CycleTable) -> 
             if late
             else f'state zero_drift = "{rate}" under [sensors.force] in the file beside the record'
         )
-        yield (
-            f"The force drifts by {rate}, {in_words(drift.change, 'N')} {where}, and friction "
-            f"coefficients with it. If it is the load cell, {remedy}; in Python, analyse "
-            "st.analysis.detrend(record)."
-        )
+        drifts = f"The force drifts by {rate}, {in_words(drift.change, 'N')} {where}, and friction"
+        if speeds is None:
+            yield (
+                f"{drifts} coefficients with it. If it is the load cell, {remedy}; in Python, "
+                "analyse st.analysis.detrend(record)."
+            )
+        else:
+            yield (
+                f"{drifts} may change with the speed of the drive, which goes at "
+                f"{span(*speeds, 'm/s', SPEED)} by its displacement. A record without contact "
+                "would show whether the load cell drifts."
+            )
     elif not len(cycles):
         yield from _settling(record, drift, kind)
     elif not drift.stands_out:

@@ -45,7 +45,7 @@ def warnings(its: Findings) -> tuple[str, ...]:
         *doubt_mass(its),
         *doubt_mains(kind, cycles),
         *_doubt_shifts(its),
-        *doubt_cycles_apart(cycles),
+        *doubt_cycles_apart(cycles, followed=record.drive_position is not None),
         *doubt_quiet(record, its.friction, cycles),
         *doubt_few_samples(record, cycles),
         *doubt_filter(record, cycles),
