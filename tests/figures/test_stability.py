@@ -70,7 +70,7 @@ def test_modes_have_the_critical_value_marked():
     between = ("1 deg", "30 deg")
     found = critical(PAPER, "phi", between)
     above, below = draw(figure_of(plot_modes, modes_over(PAPER, "phi", between), found)).axes
-    assert "8.656" in [text.get_text() for text in above.texts]
+    assert r"$\varphi$ = 8.656°" in [text.get_text() for text in above.texts]
     assert (above.get_ylabel(), below.get_ylabel()) == ("growth rate (1/s)", "frequency (Hz)")
     assert below.get_xlabel() == r"$\varphi$ (deg)"
 

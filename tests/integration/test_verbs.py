@@ -3,6 +3,7 @@
 import inspect
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import matplotlib as mpl
 import pytest
@@ -116,10 +117,12 @@ def test_the_seed_of_an_audit_reaches_the_fit_and_the_odds(run, monkeypatch):
     from stiction.auditing import measured
 
     record, asked = st.measure(run, st.Sensor()), []
-    for name in ("observe", "predict"):
-        monkeypatch.setattr(measured, name, lambda *_: None)
-    for name in ("fit", "mechanism"):
-        monkeypatch.setattr(measured, name, lambda *_, seed, **__: asked.append(seed))
+    monkeypatch.setattr(measured, "observe_with_one", lambda *_: SimpleNamespace(seen=[None]))
+    monkeypatch.setattr(measured, "predict", lambda *_: None)
+    for name in ("fit_observed", "odds_of_observed"):
+        monkeypatch.setattr(
+            measured, name, lambda _, count, place, seed, report: asked.append(seed)
+        )
 
     def withdraw(_):
         raise st.StictionError("enough")

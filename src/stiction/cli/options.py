@@ -294,7 +294,7 @@ FromPreset = Annotated[
     Parameter(
         name="--preset",
         help=(
-            "A published system in place of CONFIG; `stiction presets` lists them. Example: "
+            "A published system in place of a file; `stiction presets` lists them. Example: "
             "--preset leine-belt."
         ),
     ),
