@@ -100,18 +100,24 @@ def row(label: str, run: Trajectory, o: Outcome) -> tuple[str, ...]:
     drive = float(np.hypot(run.data["drive_X"], run.data["drive_Y"]).max())
     release = ROUNDED * initial.epsilon if initial.v_x is None else 0.0
     least = drive * (REST if o.fastest > release * drive else release)  # it sticks at once
-    moves = has_state(run.slider.law)  # always, however slowly
-    speeds = [
-        in_words(v, "m/s", 3)
-        if v > least and not (moves and v < SLOWEST)
-        else f"< {in_words(SLOWEST, 'm/s')}"
-        if moves and v == v
-        else in_words(v if v != v else 0.0, "m/s", 3)
-        for v in (o.fastest, o.slowest, o.creep)
-    ]
+    creeps = has_state(run.slider.law)
+    speeds = [speed_in_words(v, least, creeps) for v in (o.fastest, o.slowest, o.creep)]
     speeds[0] = f"> {speeds[0]}" if o.hidden else speeds[0]
     stuck = share_in_words(o.time_stuck, float(run.samples["time"][-1] - run.samples["time"][0]))
     return label, str(o.sticks), stuck, f"{o.peak:.4f}", *speeds
+
+
+def speed_in_words(speed: float, least: float, creeps: bool) -> str:
+    """Return a speed (m/s), which is rest up to a least one; a law that `creeps` never rests.
+
+    >>> speed_in_words(1e-9, 1e-8, False), speed_in_words(1e-9, 1e-8, True)
+    ('0 m/s', '1 nm/s')
+    >>> speed_in_words(3e-41, 1e-8, True), speed_in_words(float("nan"), 1e-8, True)
+    ('< 1 pm/s', 'none')
+    """
+    if creeps:
+        return f"< {in_words(SLOWEST, 'm/s')}" if speed < SLOWEST else in_words(speed, "m/s", 3)
+    return in_words(0.0 if speed <= least else speed, "m/s", 3)
 
 
 def share_in_words(lasts: float, whole: float) -> str:
