@@ -19,7 +19,10 @@ from stiction.auditing.simulated_test import OSCILLATES, SLIDES, SMALL, UNSETTLE
 from stiction.auditing.words.stick import answer
 from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
-from stiction.linear_stability.examination import beside_critical_stiffness
+from stiction.linear_stability.examination import (
+    beside_critical_stiffness,
+    critical_stiffness_of,
+)
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.system.load_cell import ACROSS
 from stiction.text.quantity.wording import in_words, to_error, with_error
@@ -65,8 +68,9 @@ def without_misalignment(found: Audit) -> list[str]:
 
 def critical_stiffness(found: Audit) -> list[str]:
     """Return the stiffness beside the critical one of rate and state, and its meaning."""
-    said = beside_critical_stiffness(found.slider)
-    if not said or "k_c" not in said[0]:
+    its = critical_stiffness_of(found.slider)
+    said = beside_critical_stiffness(found.slider, its)
+    if its is None or not len(its.values):
         return said
     if found.sliding.stable:
         return [*said, "On a spring softer than k_c the same friction sticks and slips."]
