@@ -61,8 +61,8 @@ def own_times(
     ]
     if len(times) < 2:
         return None
-    own_times = own_clock(path, table, column, times)
-    own = own_times.values[part.rows] * chosen.size
+    clock = own_clock(path, table, column, times)
+    own = clock.values[part.rows] * chosen.size
     return None if np.array_equal(own, part.time, equal_nan=True) else own
 
 
