@@ -26,7 +26,7 @@ from stiction.simulation import MOST_STEPS, automatic_times, run
 from stiction.system.description import SAMPLE, Description, description_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
-from stiction.text.quantity.wording import in_words
+from stiction.text.quantity.wording import ALL, in_words
 from stiction.text.sections import Report, Section, Table
 from stiction.text.toml import read_toml
 from stiction.text.units import Quantity
@@ -123,7 +123,7 @@ def speed_in_words(speed: float, least: float, creeps: bool) -> str:
 def share_in_words(lasts: float, whole: float) -> str:
     """Return how long something lasts (s): not the whole time, if it is less."""
     text = in_words(lasts, "s", 3)
-    if lasts >= whole or text != in_words(whole, "s", 3):
+    if whole - lasts <= ALL * whole or text != in_words(whole, "s", 3):
         return text
     return f"all but {in_words(whole - lasts, 's', 2)}"
 
