@@ -16,7 +16,7 @@ KINDS = (*CODECS, "gif")
 # of each codec: quality, and speed on two cores
 OPTIONS = {"mp4": {"crf": "20", "preset": "veryfast"},
            "webm": {"crf": "32", "b": "0", "deadline": "realtime", "cpu-used": "8"}}  # fmt: skip
-HALF = 2  # of the width: a GIF is smaller
+HALF = 2  # of the frames of a GIF, which is large, are left out
 COLORS, COMMON = 64, 32  # of a GIF: hues, and the commonest colours
 APART = 8  # of 255, colours of a palette
 MISSING = (
@@ -79,7 +79,7 @@ def palette(picture: Any) -> Any:
 
 
 def as_gif(frames: Frames, rate: int) -> bytes:
-    """Return an animated GIF of half the size and half the rate."""
+    """Return an animated GIF of half the rate."""
     from PIL import Image
 
     pictures = []
@@ -87,8 +87,7 @@ def as_gif(frames: Frames, rate: int) -> bytes:
         if number % HALF:
             continue
         image = Image.fromarray(np.ascontiguousarray(frame))
-        small = image.resize((image.width // HALF, image.height // HALF))
-        pictures.append(small.quantize(palette=palette(small), dither=Image.Dither.NONE))
+        pictures.append(image.quantize(palette=palette(image), dither=Image.Dither.NONE))
     made = BytesIO()
     pause = round(1e3 * HALF / rate)
     pictures[0].save(made, "GIF", save_all=True, append_images=pictures[1:], duration=pause, loop=0)

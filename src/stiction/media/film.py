@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from math import ceil, log10
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -36,7 +36,9 @@ from stiction.text.units import Duration, Quantity
 from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory, run_of
 
-SIZE, DPI = (12.8, 7.2), 100  # in: 1280 x 720
+SIZE = 12.8, 7.2  # in
+Height = Literal[360, 540, 720, 1080, 1440, 2160]  # pixels: with an even width, as codecs need
+DEFAULT_HEIGHT: dict[str, Height] = {"mp4": 720, "webm": 720, "gif": 360}  # a GIF is large
 FRAME_RATE = 25  # frames a second
 LENGTH, LONGEST_FILM = 10.0, 300.0  # s of film
 PERIODS = 4  # of the fast oscillation under the microscope
@@ -92,19 +94,22 @@ def filmable(path: str | Path) -> Path:
 class Excerpt(NamedTuple):
     """A part of a run to film: the times of its frames, that under the microscope, its length, s.
 
-    The time under the microscope is None for that where the mass slips.
+    The time under the microscope is None for that where the mass slips; the height of the frames,
+    in pixels, is None for that of the film's kind.
     """
 
     description: Description
     times: Floats
     middle: float | None
     length: float
+    height: Height | None = None
 
 
 class Screening(Described):
-    """How long a film lasts, s."""
+    """How long a film lasts, s, and how high it is, pixels."""
 
     length: Duration
+    height: Height | None
 
 
 @with_progress("filming")
@@ -115,6 +120,7 @@ def animate(
     length: Quantity = LENGTH,
     at: Quantity | None = None,
     kind: str = "mp4",
+    height: int | None = None,
     trust: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Film:
@@ -134,6 +140,8 @@ def animate(
         into the window.
     kind : {"mp4", "webm", "gif"}, optional
         The format.
+    height : {360, 540, 720, 1080, 1440, 2160}, optional
+        Of the film, in pixels; its width is 16/9 of it. By default 720, of a GIF 360.
     trust : bool, optional
         For a file; see `stiction.load`.
     progress : callable, optional
@@ -161,7 +169,7 @@ def animate(
     if kind not in KINDS:
         faults.add(f"kind must be one of {', '.join(KINDS)}, is {echo(kind)}")
     with faults.of_part():
-        shown = excerpt(run, window, length, at, trust=trust)
+        shown = excerpt(run, window, length, at, height, trust=trust)
     faults.refuse()
     return make_film(shown, kind, progress)
 
@@ -171,6 +179,7 @@ def excerpt(
     window: Sequence[Quantity] | None,
     length: Quantity,
     at: Quantity | None,
+    height: int | None = None,
     *,
     trust: bool = False,
 ) -> Excerpt:
@@ -183,7 +192,8 @@ def excerpt(
     """
     faults, middle = Faults(), None
     with faults.of_part():
-        lasts = read_arguments(Screening, length=length).length
+        screening = read_arguments(Screening, length=length, height=height)
+        lasts = screening.length
         if not 1.0 / FRAME_RATE <= lasts <= LONGEST_FILM:
             faults.add(
                 f"length must lie between {1 / FRAME_RATE:g} s and {LONGEST_FILM:g} s, is "
@@ -196,12 +206,14 @@ def excerpt(
         with faults.of_part():
             middle = None if at is None else time_in(description, at)
     faults.refuse()
-    return Excerpt(description, np.linspace(start, end, ceil(lasts * FRAME_RATE)), middle, lasts)
+    times = np.linspace(start, end, ceil(lasts * FRAME_RATE))
+    return Excerpt(description, times, middle, lasts, screening.height)
 
 
 def make_film(shown: Excerpt, kind: str, progress: Callable[[float], None] | None = None) -> Film:
     """Return the film of an excerpt."""
-    frames = _count(draw(*shown), len(shown.times), progress)
+    height = shown.height or DEFAULT_HEIGHT[kind]
+    frames = _count(draw(shown, height), len(shown.times), progress)
     return Film(encode(frames, FRAME_RATE, kind), kind)
 
 
@@ -214,10 +226,9 @@ def _count(
             progress(number / total)
 
 
-def draw(
-    description: Description, times: Floats, middle: float | None, length: float
-) -> Iterator[NDArray[np.uint8]]:
-    """Yield the frames at `times` (s), (height, width, 3)."""
+def draw(excerpt: Excerpt, height: int) -> Iterator[NDArray[np.uint8]]:
+    """Yield the frames of an excerpt, (height, width, 3)."""
+    description, times, middle, length, _ = excerpt
     every, window = automatic_times(description), window_times(description, times)
     run = sample_coarsely(description, np.unique(np.concatenate([every, times, window])))
     whole_run, shown, seen = run.at(every), run.at(times), run.at(window)
@@ -225,7 +236,7 @@ def draw(
     fine = sample_coarsely(description, fine_times(description, near))
     slow = length / (times[-1] - times[0])
     with style():
-        figure = Figure(figsize=SIZE, dpi=DPI)
+        figure = Figure(figsize=SIZE, dpi=height / SIZE[1])
         canvas: Any = FigureCanvasAgg(figure)
         scene = Scene(figure.add_axes((0.02, 0.4, 0.62, 0.58)), description.slider, whole_run)
         cursor, mark = series(figure, seen, times), microscope(figure, fine, length)

@@ -15,6 +15,7 @@ from stiction.media.encoder import as_gif, palette
 from stiction.media.film import (
     FRAME_RATE,
     NAMES,
+    Excerpt,
     draw,
     fine_times,
     microscope,
@@ -163,9 +164,10 @@ def test_the_scene_turns_with_the_springs_and_shows_dampers_along_their_axes():
 
 
 def test_frames_follow_the_time(run):
-    frames = list(draw(run.description, np.linspace(0.0, 0.05, 3), 0.02, 1.0))
+    three = Excerpt(run.description, np.linspace(0.0, 0.05, 3), 0.02, 1.0)
+    frames = list(draw(three, 720))
     assert [frame.shape for frame in (frames[0].copy(), *frames[1:])] == [(720, 1280, 3)] * 3
-    first, second = (f.copy() for f in draw(run.description, np.array([0.0, 0.05]), 0.02, 1.0))
+    first, second = (f.copy() for f in draw(three._replace(times=np.array([0.0, 0.05])), 360))
     assert (first != second).any()
     assert len(sample_coarsely(run.description, np.array([0.0, 0.05]))["time"]) == 2
     assert slowness(2520.0) == "2,520 times slower"
@@ -173,16 +175,19 @@ def test_frames_follow_the_time(run):
     assert slowness(1.0) == "in real time"
 
 
-@pytest.mark.parametrize("kind", ["mp4", "webm", "gif"])
-def test_a_film_has_its_frames(run, kind, tmp_path):
+@pytest.mark.parametrize(
+    ("kind", "height", "size"),
+    [("mp4", None, (720, 1280)), ("webm", 540, (540, 960)), ("gif", None, (360, 640))],
+)
+def test_a_film_has_its_frames(run, kind, height, size, tmp_path):
     av = pytest.importorskip("av")
-    film = st.animate(run, length=0.2, window=("10 ms", "40 ms"), kind=kind)
+    film = st.animate(run, length=0.2, window=("10 ms", "40 ms"), kind=kind, height=height)
     path = film.save(tmp_path / f"a.{kind}")
     with av.open(str(path)) as file:
         frames = [frame.to_ndarray(format="rgb24") for frame in file.decode(video=0)]
     count = round(0.2 * FRAME_RATE)
     assert len(frames) == (count if kind != "gif" else (count + 1) // 2)
-    assert frames[0].shape == ((720, 1280, 3) if kind != "gif" else (360, 640, 3))
+    assert frames[0].shape == (*size, 3)
     assert f"base64,{'R0lG' if kind == 'gif' else ''}" in film._repr_html_()
     with pytest.raises(st.ResultError, match=r"this film is .*kind=\"(gif|mp4)\"\)"):
         film.save(tmp_path / ("a.mp4" if kind == "gif" else "a.gif"))
@@ -207,7 +212,7 @@ def test_a_gif_keeps_the_hues_of_thin_lines():
     for at, hue in enumerate(hues):
         frame[4 + 8 * at : 6 + 8 * at] = hue
     image = Image.open(BytesIO(as_gif([frame], 25))).convert("RGB")
-    seen = [image.getpixel((100, 2 + 4 * at)) for at in range(len(hues))]
+    seen = [image.getpixel((200, 4 + 8 * at)) for at in range(len(hues))]
     nearest = [np.abs(np.subtract(hues, each)).sum(axis=1).argmin() for each in seen]
     assert nearest == [0, 1, 2, 3]
 
@@ -219,6 +224,10 @@ def test_films_that_cannot_be(run, tmp_path):
         st.animate(run, length=1e4)
     with pytest.raises(st.ResultError, match="kind must be one of"):
         st.animate(run, kind="avi")
+    with pytest.raises(st.StictionError) as refused:
+        st.animate(run, kind="avi", height=700, window=("1 s", "2 s"))
+    for fault in ("kind must be", "height: must be 360, 540, 720,", "is not a part of the run"):
+        assert fault in str(refused.value)
 
 
 def test_both_commands(run, tmp_path, capsys):

@@ -17,6 +17,7 @@ def animate(
     window: Window = None,
     length: float | str = 10.0,
     at: str | None = None,
+    height: int | None = None,
     trust: Trust = False,
 ) -> None:
     """Film a run: the apparatus from above, its time series, and the fast oscillation beside them.
@@ -41,6 +42,9 @@ def animate(
     at
         The time whose surroundings are shown under the microscope: a few periods of the fast
         oscillation; by default a third into the window. Example: --at 2.05s.
+    height
+        Of the film, in pixels: 360, 540, 720, 1080, 1440 or 2160; by default 720, of a GIF 360. Its
+        width is 16/9 of it. Example: --height 1080.
     """
     from stiction.media.film import excerpt, filmable, make_film
     from stiction.progress.display import show_progress
@@ -49,7 +53,7 @@ def animate(
     with faults.of_part():
         target = filmable(output)
     with faults.of_part():
-        shown = excerpt(result, window, length, at, trust=trust)
+        shown = excerpt(result, window, length, at, height, trust=trust)
     faults.refuse()
     with show_progress("filming") as report:
         made = make_film(shown, target.suffix[1:].lower(), report)
