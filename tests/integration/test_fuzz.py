@@ -5,6 +5,7 @@ More of it: ``python -m benchmarks.explore.fuzz --inputs 5000``.
 
 import json
 from contextlib import contextmanager
+from shutil import rmtree
 
 import h5py
 import numpy as np
@@ -15,6 +16,7 @@ from benchmarks.explore import fuzz
 import stiction as st
 from stiction.cli import main
 from stiction.simulation import run
+from stiction.study.store.seal import seal
 from stiction.text.toml import read_json
 
 SEED = 20  # any will do
@@ -185,3 +187,15 @@ def test_a_store_of_another_format_says_so(tmp_path):
     zarr.create_group(tmp_path / "a.zarr", zarr_format=3, attributes=attributes)
     with pytest.raises(st.ResultError, match=r"has format 99; stiction 9.0 wrote it, this is"):
         st.open_study(tmp_path / "a.zarr")
+
+
+@pytest.mark.parametrize("lost", ["status", "message", "peak_force"])
+def test_a_store_without_one_of_its_arrays_is_damaged(lost, tmp_path):
+    """A sweep of a store without messages, sealed anew, ended in a KeyError."""
+    path = tmp_path / "a.zarr"
+    st.sweep(fuzz.STUDY, path)
+    rmtree(path / lost)
+    seal(path)
+    for use in (st.open_study, st.map, lambda path: st.sweep(fuzz.STUDY, path)):
+        with pytest.raises(st.ResultError, match="is damaged"):
+            use(path)

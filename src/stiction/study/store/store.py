@@ -146,11 +146,13 @@ class Store(NamedTuple):
 
     def message(self, index: Index) -> str:
         """Return why a run failed."""
-        return str(self._array(MESSAGE)[index])
+        with opening(self.path, "is damaged"):
+            return str(self._array(MESSAGE)[index])
 
     def messages(self) -> np.ndarray:
         """Return the messages of all runs; '' where there is none."""
-        return np.asarray(self._array(MESSAGE)[...], dtype=object)
+        with opening(self.path, "is damaged"):
+            return np.asarray(self._array(MESSAGE)[...], dtype=object)
 
     def write(self, region: Region, block: BlockResults) -> None:
         """Write a block to the disk, then the mark that it is done.
@@ -339,6 +341,7 @@ def store_at(path: str | Path, mode: Literal["r", "r+"]) -> Store:
         status: Any = group[STATUS]
         layout = Layout(tuple(status.metadata.dimension_names), status.shape, status.chunks)
         arrays: dict[str, Any] = {name: group[name] for name in (*names_kept(study), STATUS)}
+        group[MESSAGE]
     except errors.StictionError:
         raise
     except KeyError as error:
