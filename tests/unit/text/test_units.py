@@ -327,3 +327,23 @@ def test_a_mass_in_place_of_a_force_names_its_weight(mass, weight):
 def test_a_single_spring_that_is_rigid_names_the_way_out():
     with pytest.raises(st.DescriptionError, match=r"springs? in series.*'1 GN/m'"):
         st.presets.nakano_popov_2020().replace(k_y="rigid")
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "text"),
+    [
+        (6e7, "kg", "60 kt"),  # was 6e+10 g
+        (150.0, "kg", "150 kg"),
+        (1e-5, "N*s/m", "10 uN s/m"),  # was 1e-8 kN s/m
+        (0.02, "Hz", "20 mHz"),  # was 2e-8 MHz
+        (1e-30, "N", "1e-21 nN"),
+    ],
+)
+def test_a_description_has_no_power_of_ten_where_a_unit_can(value, unit, text):
+    assert quantity_text(value, unit) == text
+    assert to_si(text, Kind("such a quantity", unit, "")) == value
+
+
+def test_kt_is_a_knot_of_a_speed_alone():
+    assert factor("kt", "kg") == 1e6
+    assert factor("kt", "m/s") == pytest.approx(1852.0 / 3600.0)

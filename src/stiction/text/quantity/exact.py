@@ -10,18 +10,24 @@ from stiction.text.quantity.prefix import SI
 RIGID = "rigid"  # of an infinite stiffness
 LONG = 8  # characters of a number that no prefix makes short
 PREFIXES = {3 * power: "u" if letter == "µ" else letter for power, letter in SI.items()}
-# unit: the name that takes the prefix, and the powers of ten that are used
-SMALL, BOTH = (0, -3, -6, -9), (9, 6, 3, 0, -3, -6, -9)
+
+
+def _with_prefixes(name: str, most: int, least: int, own: int = 0) -> dict[str, int]:
+    """Return a unit, itself a power of ten, with prefixes, and the power of each."""
+    return {f"{PREFIXES[power]}{name}": power + own for power in range(most, least - 1, -3)}
+
+
+# of each unit in SI, those in which its values are written, with their powers of ten in it
 PREFIXED = {
-    "kg": ("g", (3, 0, -3, -6, -9, -12)),  # of a gram
-    "m": ("m", SMALL),
-    "s": ("s", SMALL),
-    "m/s": ("m/s", SMALL),
-    "N": ("N", BOTH),
-    "N/m": ("N/m", BOTH),
-    "m/N": ("m/N", SMALL),
-    "N*s/m": ("N s/m", (6, 3, 0, -3)),
-    "Hz": ("Hz", (9, 6, 3, 0)),
+    "kg": _with_prefixes("t", 6, 0, own=3) | _with_prefixes("g", 3, -12, own=-3),
+    "m": _with_prefixes("m", 0, -9),
+    "s": _with_prefixes("s", 0, -9),
+    "m/s": _with_prefixes("m/s", 0, -9),
+    "N": _with_prefixes("N", 9, -9),
+    "N/m": _with_prefixes("N/m", 9, -9),
+    "m/N": _with_prefixes("m/N", 0, -9),
+    "N*s/m": _with_prefixes("N s/m", 6, -9),
+    "Hz": _with_prefixes("Hz", 9, -3),
 }
 
 
@@ -32,6 +38,8 @@ def quantity_text(value: float, unit: str) -> str:
     --------
     >>> quantity_text(0.001, "m/s"), quantity_text(1e7, "N/m"), quantity_text(0.0123, "kg")
     ('1 mm/s', '10 MN/m', '12.3 g')
+    >>> quantity_text(6e7, "kg"), quantity_text(1e-5, "N*s/m"), quantity_text(0.02, "Hz")
+    ('60 kt', '10 uN s/m', '20 mHz')
     """
     if unit == "rad":
         return angle_text(value)
@@ -41,13 +49,10 @@ def quantity_text(value: float, unit: str) -> str:
         return f"{value!r} {unit}".rstrip()
     if value == 0.0:
         return f"0 {unit}".replace("*", " ")
-    name, powers = PREFIXED[unit]
-    exact = Decimal(repr(float(value))).scaleb(3 if unit == "kg" else 0)
-    texts = [f"{_plain(exact.scaleb(-power))} {PREFIXES[power]}{name}" for power in powers]
-    # among the shortest, and among long ones, prefer a number from 1 to 1000
+    exact = Decimal(repr(float(value)))
     return min(
-        texts,
-        key=lambda text: (min(len(text.split()[0]), LONG), not 1 <= abs(_number(text)) < 1000),
+        (f"{_plain(exact.scaleb(-power))} {name}" for name, power in PREFIXED[unit].items()),
+        key=_reluctance,
     )
 
 
@@ -74,5 +79,8 @@ def _plain(value: Decimal) -> str:
     return plain if len(plain) <= LONG else f"{digits:g}"
 
 
-def _number(text: str) -> float:
-    return float(text.split()[0])
+def _reluctance(text: str) -> tuple[bool, int, int]:
+    """Return the key of texts of a quantity: one without a power of ten, short, near 1 to 1000."""
+    number = text.split()[0]
+    beyond = max(abs(Decimal(number).adjusted() - 1), 1)
+    return "e" in number.lower(), min(len(number), LONG), beyond

@@ -31,6 +31,7 @@ PREFIXES = {"n": -9, "u": -6, "µ": -6, "m": -3, "": 0, "k": 3, "M": 6}
 METRIC = {
     "m": {"m": 1},
     "g": {"ten": -3, "kg": 1},
+    "t": {"ten": 3, "kg": 1},  # kt is a knot of a speed alone
     "s": {"s": 1},
     "N": {"m": 1, "kg": 1, "s": -2},
     "Hz": {"s": -1},
