@@ -16,7 +16,9 @@ from stiction.explorer import answers
 from stiction.explorer.answers import tables_of
 from stiction.explorer.form import form
 from stiction.explorer.source import open_sources
+from stiction.media.scene import factor_in_words
 from stiction.result.peak import largest_spring_force
+from stiction.text.quantity.exact import quantity_text
 
 SIZE = {"width": 1280, "height": 720}
 SHOWN = "Boolean(window.stictionPage?.shown) && !stictionPage.shown.quick"
@@ -490,7 +492,7 @@ def test_two_runs_are_compared(page):
 
 
 def test_the_point_of_the_map_is_moved_by_mouse_and_keyboard(page):
-    page.until("document.querySelector('#panel-a canvas') && stictionPage.mapped === 12")
+    page.until("stictionPage.data.stability?.arrays.growth.shape[0] === 12")
     box = page.tab.locator("#panel-a canvas[role=img]").bounding_box()
     place = box["x"] + 0.8 * box["width"], box["y"] + 0.4 * box["height"]
     page.done_after(lambda: page.tab.mouse.click(*place))
@@ -927,7 +929,7 @@ def test_a_spectrum_that_cannot_be_says_why(page):
     """It said "computing" for ever."""
     write_down(page)
     page.tab.click("#panel-a [data-view=spectrogram]")
-    page.until("stictionPage.spectrum")
+    page.until("stictionPage.spectrogram")
     page.value(
         """(() => { const { link } = stictionPage;
         const { id } = link.newest.get("spectrogram/0");
@@ -1092,3 +1094,137 @@ def test_the_words_beside_the_apparatus_have_no_rounding(modules):
     )
     assert "2.4 N, ψ = 0°" in said
     assert "0 N" in said.split("|")
+
+
+def names_on(page):
+    """Return the name in the header, the window's title and the choice of the menu of presets."""
+    return page.value(
+        """(() => { const menu = document.querySelector("#preset");
+        return [document.querySelector("#name").textContent,
+          document.title.replace(" · stiction explorer", ""),
+          menu.selectedOptions[0].textContent]; })()"""
+    )
+
+
+def test_the_header_names_the_system_that_is_shown(page):
+    """It stayed "Nakano & Popov 2020, Fig. 3", whichever preset or law was chosen."""
+    assert names_on(page) == ["a test", "a test", "choose …"]
+    page.done_after(lambda: page.tab.select_option("#preset", "leine-belt"))
+    title = st.presets.find("leine-belt").title
+    assert names_on(page) == [title, title, "leine-belt"]
+    page.done_after(lambda: page.tab.select_option("#law", "coulomb"))
+    assert names_on(page) == [f"{title}, changed"] * 2 + ["leine-belt, changed"]
+    page.done_after(lambda: page.tab.click("#undo"))
+    assert names_on(page) == [title, title, "leine-belt"]
+    page.done_after(lambda: page.tab.click("#undo"))
+    assert names_on(page) == ["a test", "a test", "choose …"]
+    page.done_after(lambda: page.tab.click("#redo"))
+    duration = page.row("run.duration").locator("input[type=text]")
+    duration.fill("30 s")
+    page.done_after(lambda: duration.press("Enter"))
+    assert names_on(page) == [title, title, "leine-belt"]  # the same system over another time
+    page.done_after(lambda: page.tab.click("#reset"))
+    assert names_on(page) == ["a test", "a test", "choose …"]
+
+
+def test_the_microscope_is_as_wide_as_suits_the_system(page):
+    """It kept 4 ms in the run of a preset that lasts hours."""
+    wide = "stictionPage.micro.end - stictionPage.micro.start"
+    before = page.value(wide)
+    page.done_after(lambda: page.tab.select_option("#preset", "den-hartog"))
+    page.settle()
+    assert page.value(wide) == pytest.approx(8.0 * math.pi)  # four periods of m = k = 1
+    page.done_after(lambda: page.tab.click("#undo"))
+    page.settle()
+    assert page.value(wide) == pytest.approx(before)
+
+
+def test_nothing_of_the_rig_before_stands_beside_the_new_one(page):
+    """Map and microscope showed the rig before until they were computed."""
+    stands = """[...document.querySelectorAll("#microscope .layers, #panel-a .layers")].map(
+        (each) => [each.classList.contains("stale"), getComputedStyle(each.children[0]).opacity])"""
+    mass = page.row("slider.mass").locator("input[type=text]")
+    page.until("stictionPage.data.stability?.arrays.growth.shape[0] === 12")
+    assert page.value(stands) == [[False, "1"]] * 2
+    page.value(
+        """(() => { const { link } = stictionPage, receive = link.receive.bind(link);
+        window.held = [];
+        link.receive = (answer) => (["stability", "fine"].includes(answer.do)
+          ? held.push(answer) : receive(answer));
+        window.release = () => { link.receive = receive; held.forEach(receive); }; })()"""
+    )
+    mass.fill("300 g")
+    page.tab.keyboard.press("Enter")
+    page.until(f"{SHOWN} && stictionPage.shown.asked === stictionPage.asked && held.length > 3")
+    assert page.value(stands) == [[True, "0.4"]] * 2  # of another mass
+    page.value("release()")
+    page.settle()
+    page.until("stictionPage.data.stability?.arrays.growth.shape[0] === 12")
+    assert page.value(stands) == [[False, "1"]] * 2
+
+
+def test_of_a_rig_before_a_preset_nothing_stands(page):
+    write_down(page)
+    page.value(
+        """(() => { const { link } = stictionPage, receive = link.receive.bind(link);
+        link.receive = (answer) => ["stability", "fine"].includes(answer.do) || receive(answer);
+        })()"""
+    )
+    page.done_after(lambda: page.tab.select_option("#preset", "leine-belt"))
+    page.until("written.includes('computing …')")
+    assert page.value("stictionPage.data.stability") is None
+    assert page.value("stictionPage.micro") is None
+    assert (
+        page.tab.locator("#panel-a canvas[role=img]")
+        .get_attribute("aria-label")
+        .endswith("computing")
+    )
+
+
+@pytest.mark.parametrize("phi", [-60, -30, 0, 30, 60])
+@pytest.mark.parametrize("size", [(660, 270), (380, 290)])
+def test_springs_and_their_walls_lie_inside_the_picture(modules, phi, size):
+    """Turned by 30 deg, they left it."""
+    points = modules.value(
+        module(
+            "scene.js",
+            """({ Scene }) => {
+          const [width, height] = SIZE, phi = (PHI * Math.PI) / 180, found = [];
+          const c = Math.cos(phi), n = Math.sin(phi);
+          const turn = (x, y) => [x * c + y * n, x * n - y * c];
+          const canvas = document.createElement("canvas");
+          [canvas.width, canvas.height] = [width, height];
+          const context = canvas.getContext("2d");
+          context.moveTo = context.lineTo = (x, y) => found.push([x, y]);
+          const scene = Object.create(Scene.prototype), home = [0.43 * width, 0.56 * height];
+          Object.assign(scene, { scene: { phi }, lengths: { x: 1e-3, y: 1e-6 } });
+          const M = scene.magnification(width, height);
+          for (const u of [-1e-3, 0, 1e-3]) {
+            const mass = turn(M.x * u, 0).map((each, i) => home[i] + each);
+            scene.springs(context, width, height, 0, home, mass, turn, M);
+          }
+          return found;
+        }""".replace("PHI", str(phi)).replace("SIZE", json.dumps(size)),
+        )
+    )
+    width, height = size
+    assert len(points) > 30
+    assert all(0 <= x <= width and 0 <= y <= height for x, y in points)
+
+
+def test_magnifications_have_the_words_of_a_film(modules):
+    """The caption said u_x × 0 where the film has × 0.00084."""
+    factors = [8.4e-4, 2e-7, 0.05, 3.1, 20.0, 1e3, 12345.0, 5e5, 1e6, 5e8, 2e9]
+    said = modules.value(module("scene.js", f"({{ count }}) => {factors}.map(count)"))
+    assert said == [factor_in_words(each) for each in factors]
+
+
+def test_values_have_the_units_of_descriptions(modules):
+    """A mass of 60 kt was 6e+10 g."""
+    cases = [(6e7, "kg"), (0.25, "kg"), (1e-5, "N*s/m"), (0.02, "Hz"), (1e10, "N/m"), (0.0, "N")]
+    said = modules.value(
+        module(
+            "quantity.js", f"({{ quantity }}) => {json.dumps(cases)}.map((it) => quantity(...it))"
+        )
+    )
+    assert said == [quantity_text(*each).replace("u", "µ") for each in cases]

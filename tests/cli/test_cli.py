@@ -115,9 +115,11 @@ def test_the_explorer_takes_changes_and_a_preset(monkeypatch, tmp_path, capsys):
     config.write_text(text, "utf-8")
     assert inside("explore", config, "--set", "duration=100s", "--set", "phi=3deg") == 0
     assert inside("explore", "--preset", "leine-belt", "--set", "V=2mm/s") == 0
-    assert opened[0].run.duration == 100.0
-    assert opened[0].slider.misalignment == pytest.approx(np.radians(3.0))
-    assert opened[1].slider.drive.velocity == pytest.approx(2e-3)
+    file, preset = (each.description for each in opened)
+    assert [each.name for each in opened] == ["my.toml, changed", "leine-belt (Leine et al. 1998)"]
+    assert file.run.duration == 100.0
+    assert file.slider.misalignment == pytest.approx(np.radians(3.0))
+    assert preset.slider.drive.velocity == pytest.approx(2e-3)
     assert inside("explore", "--set", "phi=3deg") == 2
     assert inside("explore", config, "--preset", "leine-belt") == 2
     assert len(opened) == 2

@@ -19,7 +19,7 @@ from stiction.errors import StictionError, echo
 from stiction.explorer import motion, spectrum
 from stiction.explorer.decimation import columns_of, extremes
 from stiction.explorer.exports import NAMES, export
-from stiction.explorer.form import form
+from stiction.explorer.form import form, units
 from stiction.explorer.motion import Check, Reply
 from stiction.explorer.protocols import names, protocol
 from stiction.explorer.source import Opened
@@ -61,7 +61,8 @@ def start(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     study = None if opened.study is None else study_map(opened)
     head = {
         "version": stiction.__version__,
-        "name": opened.name,
+        "preset": opened.preset,
+        "units": units(),
         "form": form({name: type(each) for name, each in opened.own.items()}),
         "protocols": names(),
         "presets": [{"name": name, "shows": each.shows} for name, each in PRESETS.items()],
@@ -91,8 +92,10 @@ def columns(request: Request) -> int:
 def run(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     """Yield the whole run, and the parameters in SI, which set the page's sliders."""
     description = description_in(opened, request)
+    title, changed = opened.title(description, request.get("origin"))
+    about = {"title": title, "changed": changed, "values": description.to_dict()}
     for head, arrays in motion.run(description, columns(request), check):
-        yield {**head, "values": description.to_dict()}, arrays
+        yield {**head, **about}, arrays
 
 
 def zoom(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
@@ -176,15 +179,7 @@ def test(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
 
 def pick(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:
     """Yield the tables of one run of the study."""
-    if opened.study is None:
-        raise StictionError("no study was opened; stiction explore STUDY.zarr opens one")
-    study, cut = opened.study.study, opened.study.at
-    place = {str(dim): int(index) for dim, index in dict(request["at"]).items()} | dict(cut)
-    dims, shape = study.layout.dims, study.layout.shape
-    index = tuple(
-        min(max(place.get(dim, 0), 0), size - 1) for dim, size in zip(dims, shape, strict=True)
-    )
-    yield {"tables": tables_of(study.description(index))}, {}
+    yield {"tables": tables_of(opened.run_at(dict(request["at"])))}, {}
 
 
 def file(opened: Opened, request: Request, check: Check) -> Iterator[Reply]:

@@ -18,6 +18,7 @@ from stiction.system.initial import Initial
 from stiction.system.parameter import LEVEL_UNITS
 from stiction.system.schema import schema, table
 from stiction.system.slider import Apparatus
+from stiction.text.quantity.exact import PREFIXED
 from stiction.text.units import hints_of, unit_of
 from stiction.text.validation import fields as model_of
 
@@ -68,6 +69,18 @@ def form(own: Mapping[str, Any] = MappingProxyType({})) -> dict[str, Any]:
             }
             for name, known in (("drive", DRIVE_PIECES), ("load", LOAD_PIECES))
         },
+    }
+
+
+def units() -> dict[str, list[tuple[str, float]]]:
+    """Return the units in which a page writes values, and the size of each in SI, largest first.
+
+    >>> units()["kg"][:4]
+    [('Mt', 1000000000.0), ('kt', 1000000.0), ('t', 1000.0), ('kg', 1.0)]
+    """
+    return {
+        unit: [(name.replace("u", "µ"), float(f"1e{power}")) for name, power in names.items()]
+        for unit, names in PREFIXED.items()
     }
 
 

@@ -17,7 +17,7 @@ from stiction.errors import DescriptionError, ResultError, echo
 from stiction.explorer.motion import CURVES
 from stiction.friction import Anisotropic, Law
 from stiction.friction.user.loading import Find, is_own
-from stiction.presets import nakano_popov_2020
+from stiction.presets import PRESETS, nakano_popov_2020
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -27,6 +27,8 @@ from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from stiction.study.view.view import View
+
+PAPER = "Nakano & Popov 2020, Fig. 3"
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,8 @@ class Opened:
         What these are: "measured", "stored".
     study : View, optional
         A study, whose runs can be opened.
+    preset : str, optional
+        The name of the preset that the system was at first; it may be changed.
     """
 
     name: str
@@ -52,6 +56,7 @@ class Opened:
     measured: Mapping[str, np.ndarray] | None = None
     origin: str = ""
     study: View | None = None
+    preset: str = ""
 
     def measured_during(self, run: tuple[float, float]) -> tuple[np.ndarray, str]:
         """Return the times of the measured curves (s), and the name of the curves.
@@ -70,6 +75,38 @@ class Opened:
             return times, self.origin
         first = float(times[0])
         return times - first + start, f"{self.origin}, from {in_words(first, 's')} on"
+
+    def title(self, description: Description, origin: Any) -> tuple[str, bool]:
+        """Return the name of the system that a page shows, and whether it was changed.
+
+        Parameters
+        ----------
+        description : Description
+            That is shown.
+        origin : object
+            From a page: the name of the chosen preset, or the place of the chosen run of a study.
+        """
+        name, own = self.name, self.description
+        if isinstance(origin, Mapping) and self.study is not None:
+            own = self.run_at(origin)
+        elif isinstance(origin, str) and origin in PRESETS:
+            name, own = PRESETS[origin].title, PRESETS[origin].make()
+        return name, not is_same_system(description, own)
+
+    def run_at(self, place: Mapping[str, Any]) -> Description:
+        """Return the description of the run of the study at an index along each dimension.
+
+        Raises
+        ------
+        ResultError
+            If no study was opened.
+        """
+        if self.study is None:
+            raise ResultError("no study was opened; stiction explore STUDY.zarr opens one")
+        study = self.study.study
+        whole = {str(dim): int(index) for dim, index in place.items()} | dict(self.study.at)
+        sizes = zip(study.layout.dims, study.layout.shape, strict=True)
+        return study.description(tuple(min(max(whole.get(dim, 0), 0), n - 1) for dim, n in sizes))
 
     def read(self, tables: Mapping[str, Any]) -> Description:
         """Return the description of a page's tables.
@@ -122,7 +159,7 @@ def open_sources(sources: Iterable[Any], *, trust: bool = False) -> Opened:
     found: dict[str, Any] = {"description": the_papers()}
     for source in sources:
         part = open_source(source, trust)
-        own = name_of(source)
+        own = part.pop("name", name_of(source))
         if "description" in part:
             if described:
                 message = f"{described} and {own} both describe a system; give one of them"
@@ -130,7 +167,7 @@ def open_sources(sources: Iterable[Any], *, trust: bool = False) -> Opened:
             described = own
         name = described or own
         found |= part
-    return Opened(name or "Nakano & Popov 2020, Fig. 3", **found)
+    return Opened(name or PAPER, **found)
 
 
 def name_of(source: Any) -> str:
@@ -144,6 +181,8 @@ def name_of(source: Any) -> str:
 
 def open_source(source: Any, trust: bool) -> dict[str, Any]:
     """Return the fields of `Opened` that one source gives: a file, or an object of a session."""
+    if isinstance(source, Opened):
+        return {name: value for name, value in vars(source).items() if value}
     if isinstance(source, str | Path):
         path = Path(source)
         if path.suffix.lower() == ".toml":
@@ -156,9 +195,9 @@ def open_source(source: Any, trust: bool) -> dict[str, Any]:
             return {"description": first, "study": view}
         source = read_source(path, trust=trust)
     if isinstance(source, Description):
-        return {"description": source}
+        return fields_of(source)
     if isinstance(source, Slider):
-        return {"description": the_papers()._replace(slider=source)}
+        return fields_of(the_papers()._replace(slider=source))
     if isinstance(source, Trajectory):
         stored = {name: source.samples[name] for name in ("time", *CURVES)}
         return {"description": source.description, "measured": stored, "origin": "stored"}
@@ -169,6 +208,22 @@ def open_source(source: Any, trust: bool) -> dict[str, Any]:
     given = with_article(type(source).__name__)
     message = f"{given} cannot be explored; give a file, a description or a run"
     raise ResultError(message)
+
+
+def fields_of(description: Description) -> dict[str, Any]:
+    """Return a description as a field of `Opened`; with its name, if it is a published system."""
+    if is_same_system(description, the_papers()):
+        return {"description": description, "name": PAPER}
+    for name, each in PRESETS.items():
+        if is_same_system(description, each.make()):
+            return {"description": description, "name": each.title, "preset": name}
+    return {"description": description}
+
+
+def is_same_system(one: Description, other: Description) -> bool:
+    """Return whether two descriptions differ in nothing but the duration and samples of a run."""
+    settings = one.run
+    return one.to_dict() == other._replace(run=settings).to_dict()
 
 
 def the_papers() -> Description:

@@ -65,19 +65,18 @@ class Scene:
         self.newton = RADIUS / (max(largest, float(np.nanmax(friction))) or 1.0)
         self.fastest = float(np.nanmax(samples["slip_speed"]))
         self.slowest = slowest_slip(samples)
-        self._prepare(ax)
+        self._prepare(ax, samples)
         self._draw_walls(ax)
         self.artists = self._make(ax)
 
-    def _prepare(self, ax: Axes) -> None:
+    def _prepare(self, ax: Axes, samples: ColumnTable) -> None:
         half_x, half_y = ROOM[0] / 2, ROOM[1] / 2
         ax.set(xlim=(-half_x, half_x), ylim=(-half_y, half_y), aspect="equal")
         ax.set_xticks([])
         ax.set_yticks([])
         ax.set_facecolor(FLOOR)
         pixel = INCH * ax.get_window_extent().width / ax.figure.get_dpi() / ROOM[0]
-        factors = [float(f"{each * pixel:.2g}") for each in self.scale]
-        words = rf"$u_x \times$ {factors[0]:,.15g},  $u_y \times$ {factors[1]:,.15g}"
+        words = magnification_in_words(self.scale * pixel, samples)
         drive = ("$X$, drive", BLUE, -half_x + 1.0, "left")
         legend = (drive, (words, GREY, half_x - 0.1, "right"))
         self.legend = [  # over the plate, whose marks would part its numbers
@@ -217,6 +216,37 @@ def magnification(samples: ColumnTable) -> Floats:
     found = LARGEST_DISPLACEMENT / np.where(largest > 0.0, largest, largest.max() or 1.0)
     found = np.array([10.0 ** floor(log10(x)) * floor(x / 10.0 ** floor(log10(x))) for x in found])
     return np.full(2, found.min()) if found.max() < 12.0 * found.min() else found
+
+
+def magnification_in_words(factors: Floats, samples: ColumnTable) -> str:
+    """Return by how much elongations along x and y are magnified; an axis at rest is not."""
+    moved = [bool(np.nanmax(np.abs(samples[name])) > 0.0) for name in ("u_x", "u_y")]
+    if all(moved) and factors[0] == factors[1]:
+        return rf"elongations $\times$ {factor_in_words(factors[0])}"
+    words = [
+        rf"${name} \times$ {factor_in_words(each)}"
+        for name, each in zip(("u_x", "u_y"), factors, strict=True)
+    ]
+    return (
+        ",  ".join(each for each, moves in zip(words, moved, strict=True) if moves)
+        or "nothing moves"
+    )
+
+
+def factor_in_words(factor: float) -> str:
+    """Return a magnification to two digits, as the page of the explorer writes it.
+
+    >>> [factor_in_words(each) for each in (0.000842, 3.1, 1234.0, 2.5e6)]
+    ['0.00084', '3.1', '1,200', '2.5 million']
+    """
+    if factor >= 1e6:
+        return f"{factor_in_words(factor / 1e6)} million"
+    rounded = float(f"{factor:.2g}")
+    return (
+        f"{rounded:,.{max(1 - floor(log10(rounded)), 0)}f}".rstrip("0").rstrip(".")
+        if rounded < 10.0
+        else f"{rounded:,.0f}"
+    )
 
 
 def slowest_slip(samples: ColumnTable) -> float:

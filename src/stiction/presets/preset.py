@@ -6,6 +6,7 @@ A preset is a function that returns a `Description`, decorated with `preset`, an
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -137,6 +138,22 @@ class Preset(NamedTuple):
     published: tuple[Published, ...]
     measure: Measure
     assumed: tuple[str, ...] = ()
+
+    @property
+    def year(self) -> str:
+        """The year of its publication, '' for a program's."""
+        found = re.search(r"\((\d{4})\)", self.reference)
+        return found[1] if found else ""
+
+    @property
+    def publication(self) -> str:
+        """Its authors and year, or its program, in short."""
+        return f"{self.reference.split(',')[0]} {self.year}".rstrip()
+
+    @property
+    def title(self) -> str:
+        """Its name and its publication."""
+        return f"{self.name} ({self.publication})"
 
     @property
     def story(self) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from textwrap import wrap
@@ -17,25 +16,19 @@ LAST = "9999"
 
 def overview() -> list[Section]:
     """Return the table of all presets, oldest first: those with numbers, then the scenarios."""
-    ordered = sorted(PRESETS.values(), key=lambda each: (_year(each) or LAST, each.name))
+    ordered = sorted(PRESETS.values(), key=lambda each: (each.year or LAST, each.name))
     parts = []
     for title, scenarios in (
         ("Published with parameters: the numbers come out", False),
         ("Scenarios: what is published is qualitative, and parameters are assumed", True),
     ):
         rows = [
-            (each.name, f"{each.reference.split(',')[0]} {_year(each)}".rstrip(), each.shows)
+            (each.name, each.publication, each.shows)
             for each in ordered
             if (each.grade == "scenario") == scenarios
         ]
         parts.append(Section(title, [], Table(("name", "published by", "shows"), rows)))
     return parts
-
-
-def _year(preset: Preset) -> str:
-    """Return the year of a reference, '' for a program's."""
-    found = re.search(r"\((\d{4})\)", preset.reference)
-    return found[1] if found else ""
 
 
 def story(preset: Preset) -> list[Section]:

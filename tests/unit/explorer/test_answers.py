@@ -644,6 +644,26 @@ def test_objects_of_a_session_are_explored(description):
     assert open_sources([description]).description is description
 
 
+def test_a_system_is_named_by_its_origin(tmp_path):
+    """Every preset was the paper's figure; of a session, "a Description"."""
+    assert open_sources([]).name == "Nakano & Popov 2020, Fig. 3"
+    slider = st.presets.nakano_popov_2020()
+    assert open_sources([slider]).name == "Nakano & Popov 2020, Fig. 3"
+    assert open_sources([slider.replace(mass="1 kg")]).name == "a Slider"
+    belt, title = st.presets.leine_belt(), "leine-belt (Leine et al. 1998)"
+    what = open_sources([belt])
+    assert (what.name, what.preset) == (title, "leine-belt")
+    longer = belt._replace(run=Settings(duration=7.0))
+    heavier = belt._replace(slider=belt.slider.replace(mass="2 kg"))
+    assert what.title(longer, "leine-belt") == (title, False)
+    assert what.title(heavier, "leine-belt") == (title, True)
+    assert what.title(heavier, {"phi": 1}) == (title, True)  # a link of a study: none is open
+    opened = an_opened()
+    assert opened.title(belt, "leine-belt") == (title, False)
+    assert opened.title(opened.description, "") == ("a test", False)
+    assert opened.title(belt, None) == ("a test", True)
+
+
 def test_a_study_is_a_map_whose_runs_open(tmp_path):
     study = st.Study(
         base=an_opened(duration=2e-3).description,
@@ -659,6 +679,9 @@ def test_a_study_is_a_map_whose_runs_open(tmp_path):
     ((head, _),) = answers({"do": "pick", "at": {"phi": 1, "drive.velocity": 2}}, what)
     picked = what.read(head["tables"]).slider
     assert (np.degrees(picked.phi), picked.motion.velocity) == (pytest.approx(2.0), 5e-3)
+    place = {"phi": 1, "drive.velocity": 2}
+    assert what.title(what.read(head["tables"]), place) == ("a.zarr", False)
+    assert what.title(what.read(head["tables"]), place | {"phi": 0}) == ("a.zarr", True)
     with pytest.raises(st.StictionError, match="no study"):
         answers({"do": "pick", "at": {}})
 

@@ -128,7 +128,7 @@ def test_what_is_not_a_request_is_ignored(explorer):
         for values in ('"do": {}, "id": 1', '"do": [], "id": 1', '"do": "run", "id": Infinity'):
             page.send(f"{{{values}}}")
         page.send(b"\x00\xff")
-        assert ask(page, 3, do="start")[0][0]["name"] == "a test"
+        assert ask(page, 3, do="start")[0][0]["preset"] == ""
 
 
 def test_it_ends_with_its_last_page(monkeypatch):

@@ -1,7 +1,7 @@
 // Axes of plots: linear and logarithmic, with their ticks.
 
 import { textWidth } from "./drawing.js";
-import { RANGES, plain, prefixed, ticks } from "./quantity.js";
+import { hasPrefixes, plain, prefixed, ticks } from "./quantity.js";
 
 const ROUNDING = 1e-13; // of values: what differs by less is the same, but for rounding
 const FAR = 20; // ranges from zero: there an axis has an offset
@@ -42,7 +42,7 @@ function shifted(low, high, count, unit, outer, prefix) {
 // Axis of cells of equal width, one for each value (SI).
 export function cellAxis(values, unit = "", most = 5) {
   const count = values.length, every = Math.max(1, Math.ceil(count / most)), found = [];
-  const [factor, prefix] = unit in RANGES && unit !== "kg" ? prefixed(Math.max(...values.map(Math.abs))) : [1, ""];
+  const [factor, prefix] = hasPrefixes(unit) && unit !== "kg" ? prefixed(Math.max(...values.map(Math.abs))) : [1, ""];
   for (let i = 0; i < count; i += every) found.push([i, plain(values[i] * factor, 2)]);
   return { unit: prefix + unit, place: (i) => (i + 0.5) / count, ticks: found };
 }

@@ -183,6 +183,12 @@ export function symbols(context, words, x, y, { color = INK, align = "left", hal
   return total;
 }
 
+// One view that waits, or has nothing to show, says so.
+export function note(context, width, height, words) {
+  const parts = words.split("\n");
+  parts.forEach((each, i) => text(context, each, width / 2, height / 2 + 18 * (i - (parts.length - 1) / 2), { align: "center", color: SOFT }));
+}
+
 // The width of a canvas in CSS pixels.
 export const widthOf = (context) => context.canvas.width / context.getTransform().a;
 

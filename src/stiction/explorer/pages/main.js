@@ -4,7 +4,7 @@ import { Form, element, onChoice } from "./form.js";
 import { Link } from "./link.js";
 import { Microscope, spanText } from "./microscope.js";
 import { Player, SPEEDS, speedText } from "./player.js";
-import { clock, quantity } from "./quantity.js";
+import { clock, setUnits } from "./quantity.js";
 import { Scene } from "./scene.js";
 import { Series } from "./series.js";
 import { Sound } from "./sound.js";
@@ -16,7 +16,7 @@ const COMPUTING = "computing …";
 const $ = (id) => document.getElementById(id);
 const data = {}; // of the run that is shown, for the views
 const page = {
-  micro: null, wide: null, drawn: 0,
+  data, micro: null, wide: null, drawn: 0,
   get t() { return player.t; },
   get settled() { // all that was asked for is shown, at both scales
     return !patience && this.shown?.asked === this.asked && !this.shown.quick && (!data.track || Boolean(this.micro?.holds(this.t)));
@@ -78,16 +78,15 @@ function failed(answer) {
 function reason({ faults, error }) { return faults ? `${faults[0].path}: ${faults[0].message}` : error; }
 
 function begin(answer) {
-  $("name").textContent = answer.name;
-  document.title = `${answer.name} · stiction explorer`;
+  setUnits(answer.units);
   data.study = answer.study ? { ...answer.study, arrays: answer.arrays } : null;
   data.origin = answer.origin;
   for (const { name, shows } of answer.presets) $("preset").append(element("option", { value: name, textContent: name, title: shows }));
   for (const slow of SPEEDS) $("speed").append(element("option", { value: slow, textContent: speedText(slow) }));
   const linked = decodeState(location.hash);
-  state = new State(answer.tables, changed);
+  state = new State({ tables: answer.tables, origin: answer.preset }, changed);
   state.written = () => state.address === "" && !awaited.size && data.summary && tellRun();
-  if (linked) state.tables = linked.tables;
+  if (linked) [state.tables, state.origin] = [linked.tables, linked.origin];
   player.t = NaN;
   resume(linked);
   form = new Form($("parameters"), answer.form, {
@@ -99,7 +98,7 @@ function begin(answer) {
   scene = new Scene($("scene"));
   microscope = new Microscope($("microscope").querySelector("canvas"), { seek: (t) => player.seek(t) });
   series = new Series($("series"), { seek: (t) => player.seek(t), now: () => player.t, window: zoom, resized: () => state && later() });
-  const hooks = { needs: () => panels.length && askViews(), place, pick: (at) => replace({ do: "pick", at }) };
+  const hooks = { needs: () => panels.length && askViews(), place, pick: (at) => open({ do: "pick", at }, at) };
   const first = linked?.views ?? (data.study ? ["study", "phase"] : ["stability", "phase"]);
   panels = [new Panel($("panel-a"), data, first[0], hooks), new Panel($("panel-b"), data, first[1], hooks)];
   listen();
@@ -118,12 +117,34 @@ function resume(linked) {
   $("speed").value = player.slow;
 }
 
-function replace(request) {
-  link.ask(request, (answer) => state.set(answer.tables), (answer) => {
+function replace(request, origin = state.origin, before = () => {}) {
+  link.ask(request, (answer) => {
+    before();
+    page.replaced = true;
+    state.set(answer.tables, true, origin);
+  }, (answer) => {
     failed(answer);
     form.shape = "";
     form.show(state.tables);
+    tellName();
   });
+}
+
+// Show another system from its start, as nothing of the last one's time and widths suits it.
+function open(request, origin) {
+  replace(request, origin, () => {
+    view = page.window = page.wide = null;
+    page.opened = true;
+  });
+}
+
+// Name the system that is shown; a changed preset can be chosen anew.
+function tellName() {
+  const { title, changed } = data.named, menu = $("preset"), preset = typeof state.origin === "string" ? state.origin : "";
+  $("name").textContent = $("name").title = changed ? `${title}, changed` : title;
+  document.title = `${$("name").textContent} · stiction explorer`;
+  menu.options[0].textContent = preset && changed ? `${preset}, changed` : "choose …";
+  menu.value = changed ? "" : preset;
 }
 
 // Something of the description has changed: compute it anew.
@@ -144,7 +165,7 @@ function ask() {
   const asked = page.asked;
   if (!page.shown) say("computing; the first run of a law may compile it, which takes some seconds");
   expect("run");
-  link.ask({ do: "run", tables: state.tables, columns: series.columns }, (answer) => show(answer, asked), (answer) => {
+  link.ask({ do: "run", tables: state.tables, origin: state.origin, columns: series.columns }, (answer) => show(answer, asked), (answer) => {
     arrived("run");
     failed(answer);
   });
@@ -153,15 +174,16 @@ function ask() {
 function show(answer, asked) {
   form.setFaults([]);
   form.setValues(answer.values);
-  Object.assign(data, { facts: answer.facts, scene: answer.scene, own: { phi: form.numberAt(["slider", "phi"]), V: form.numberAt(["drive", "velocity"]) ?? 0 } });
+  Object.assign(data, { facts: answer.facts, scene: answer.scene, named: answer, own: { phi: form.numberAt(["slider", "phi"]), V: form.numberAt(["drive", "velocity"]) ?? 0 } });
   if (answer.arrays.track_time) {
     data.track = new Track(answer.arrays, "track_");
     scene.show(answer.scene, data.track);
-    if (!(player.t === player.t)) player.t = data.track.start + 0.35 * (data.track.end - data.track.start);
+    if (!(player.t === player.t) || page.opened) player.t = data.track.start + 0.35 * (data.track.end - data.track.start);
+    page.opened = false;
     player.span(data.track.start, data.track.end);
-    page.wide ??= usualWidth();
-    page.micro = null; // of the run before
   }
+  outdate();
+  tellName();
   whole = answer;
   if (!view) series.show("b", answer);
   for (const panel of panels) panel.refresh();
@@ -181,7 +203,25 @@ function show(answer, asked) {
 }
 let whole;
 
-function usualWidth() { return Math.min(4 / data.scene.frequencies[1], player.end - player.start); }
+// The width of the microscope: that which was chosen, else some periods of the transverse
+// oscillation; without one, no less than what a fiftieth of the run shows.
+function width() {
+  const duration = player.end - player.start, least = data.track.largest("u_y") > 0 ? 0 : duration / 50;
+  return page.wide ?? Math.min(Math.max(4 / data.scene.frequencies[1], least), duration);
+}
+
+// Mark what stands from the run before as that; of another system it is taken away.
+function outdate() {
+  page.micro = null;
+  if (page.replaced) [data.stability, data.spectrogram] = [null, null];
+  microscope.outdate(page.replaced);
+  page.replaced = false;
+  const keys = { stability: mapKey(), spectrogram: JSON.stringify(state.tables) };
+  for (const [name, key] of Object.entries(keys)) {
+    if (data[name]) data[name].stale = data[name].key !== key;
+    if (page[name] !== key) data[`${name}Error`] = null;
+  }
+}
 
 // Show a part of the run; null is all of it.
 function zoom(window, write = true) {
@@ -224,35 +264,32 @@ function compare() {
 function askViews() {
   if (!state) return;
   const wanted = panels.map((panel) => panel.asks);
-  const all = JSON.stringify(state.tables);
-  if (wanted.includes("spectrogram") && page.spectrum !== all) {
-    page.spectrum = all;
-    data.spectrogramError = null;
-    link.ask({ do: "spectrogram", tables: state.tables }, (answer) => { data.spectrogram = answer; refresh(); }, (answer) => {
-      data.spectrogramError = reason(answer);
-      page.spectrum = null;
-      refresh();
-    });
-  }
+  askView("spectrogram", wanted, JSON.stringify(state.tables));
+  askView("stability", wanted, mapKey());
+}
+
+function askView(name, wanted, key) {
+  if (!wanted.includes(name) || page[name] === key) return;
+  page[name] = key;
+  data[`${name}Error`] = null;
+  link.ask({ do: name, tables: state.tables }, (answer) => { data[name] = { ...answer, key }; refresh(); }, (answer) => {
+    data[`${name}Error`] = reason(answer);
+    page[name] = null;
+    refresh();
+  });
+}
+
+// The description as far as the map depends on it: its axes are the misalignment and the velocity.
+function mapKey() {
   const rest = structuredClone(state.tables), V = data.own?.V ?? 0;
   delete rest.slider.phi;
   delete rest.run;
   rest.drive.velocity = Math.round(Math.log10(Math.abs(V) || 1e-3)) * Math.sign(V);
   if (data.stability) { // the range stays while the point is inside it
     const [low, high] = data.stability.speeds;
-    if (Math.abs(V) >= low && Math.abs(V) <= high) rest.drive.velocity = page.decade;
+    if (Math.abs(V) >= low && Math.abs(V) <= high) rest.drive.velocity = JSON.parse(data.stability.key).drive.velocity;
   }
-  const key = JSON.stringify(rest);
-  if (wanted.includes("stability") && page.map !== key) {
-    page.map = key;
-    page.decade = rest.drive.velocity;
-    data.stabilityError = null;
-    link.ask({ do: "stability", tables: state.tables }, (answer) => { data.stability = answer; page.mapped = answer.arrays.growth.shape[0]; refresh(); }, (answer) => {
-      data.stabilityError = reason(answer);
-      page.map = null;
-      refresh();
-    });
-  }
+  return JSON.stringify(rest);
 }
 
 function refresh() { for (const panel of panels) panel.refresh(); }
@@ -266,16 +303,19 @@ function place({ phi, V }, done) {
 
 // Ask for the samples about the present time, unless those at hand will do.
 function lookCloser(anew = false) {
-  if (!data.track || !page.wide) return;
-  $("micro-span").textContent = spanText(page.wide);
-  const micro = page.micro, t = player.t;
-  const inside = micro && !anew && micro.holds(t) && Math.abs(micro.end - micro.start - page.wide) < 1e-3 * page.wide;
-  if (inside && !(player.playing && ahead(micro) < 0.2 * page.wide)) return;
-  if (player.playing && page.wide * player.slow < 0.3) return; // it passes too fast to be seen
+  if (!data.track) return;
+  const micro = page.micro, t = player.t, wide = width();
+  change($("micro-span"), "textContent", spanText(wide));
+  const inside = micro && !anew && micro.holds(t) && Math.abs(micro.end - micro.start - wide) < 1e-3 * wide;
+  if (inside && !(player.playing && ahead(micro) < 0.2 * wide)) return;
+  if (player.playing && wide * player.slow < 0.3) { // it passes too fast to be seen
+    if (!micro) microscope.outdate(true, "too fast to be followed:\npause, or choose a lower speed");
+    return;
+  }
   if (page.looking && !anew && performance.now() - page.looking < 3000 && player.playing) return;
   page.looking = performance.now();
-  const about = player.playing ? Math.min(t + 0.4 * page.wide, player.end) : t;
-  link.ask({ do: "fine", tables: state.tables, time: about, width: page.wide }, (answer) => {
+  const about = player.playing ? Math.min(t + 0.4 * wide, player.end) : t;
+  link.ask({ do: "fine", tables: state.tables, time: about, width: wide }, (answer) => {
     page.looking = 0;
     page.micro = new Track(answer.arrays);
     page.at = answer.at;
@@ -321,8 +361,9 @@ function listen() {
   $("redo").onclick = () => state.redo();
   $("reset").onclick = () => state.reset();
   onChoice($("preset"), () => {
-    if ($("preset").value) replace({ do: "preset", name: $("preset").value });
-    $("preset").value = "";
+    const name = $("preset").value;
+    if (name) open({ do: "preset", name }, name);
+    else tellName();
   });
   onChoice($("export"), () => {
     takeAway($("export").value);
@@ -330,9 +371,9 @@ function listen() {
   });
   $("pin").onclick = pin;
   $("swap").onclick = () => {
-    const pinned = data.pinned.tables;
+    const { tables, origin } = data.pinned;
     pin(true);
-    state.set(pinned);
+    state.set(tables, true, origin);
   };
   $("play").onclick = () => player.toggle();
   $("speed").onchange = () => {
@@ -352,19 +393,19 @@ function listen() {
     if (!linked || location.hash.slice(1) === state.address) return;
     resume(linked);
     linked.views?.forEach?.((name, i) => panels[i]?.choose(name));
-    state.set(linked.tables);
+    state.set(linked.tables, true, linked.origin);
   });
 }
 
 function widen(factor) {
-  page.wide = Math.min(Math.max(page.wide * factor, 1e-7), player.end - player.start);
+  page.wide = Math.min(Math.max(width() * factor, 1e-7), player.end - player.start);
   lookCloser(true);
   remember();
 }
 
 function pin(keep = false) {
   const on = keep === true || !data.pinned;
-  data.pinned = on ? { tables: structuredClone(state.tables), track: data.track, scene: data.scene, facts: data.facts, own: data.own } : null;
+  data.pinned = on ? { tables: structuredClone(state.tables), origin: state.origin, track: data.track, scene: data.scene, facts: data.facts, own: data.own } : null;
   $("pin").setAttribute("aria-pressed", String(on));
   $("pin").textContent = on ? "A pinned" : "Pin as A";
   $("swap").hidden = !on;

@@ -1,7 +1,7 @@
 // A few periods of the fast oscillation about the present time: slip speed and direction of friction.
 
 import { linearAxis, padded } from "./axis.js";
-import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, offsets, rest, text, textWidth } from "./drawing.js";
+import { BLUE, GREEN, INK, Layers, SOFT, curve, frame, line, note, offsets, rest, text, textWidth } from "./drawing.js";
 import { quantity } from "./quantity.js";
 
 const SLOWEST = 1e-12; // m/s: slower is rest, and rounding
@@ -20,11 +20,21 @@ export class Microscope {
 
   show(track) {
     this.track = track;
+    this.words = undefined;
+    this.layers.place.classList.remove("stale");
     this.layers.refresh();
   }
 
+  // Mark what is shown as of the run before; of another system, take it away.
+  outdate(another, words = "computing …") {
+    if (another) this.track = undefined;
+    if (another && this.words !== words) this.layers.refresh();
+    this.words = words;
+    this.layers.place.classList.toggle("stale", Boolean(this.track));
+  }
+
   still(context, width, height) {
-    if (!this.track) return;
+    if (!this.track) return note(context, width, height, this.words ?? "");
     const { time, columns } = this.track, inner = width - LEFT - RIGHT;
     const middle = 0.5 * (this.track.start + this.track.end);
     const room = (height - TOP - BOTTOM - GAP) / 2;

@@ -1,11 +1,12 @@
 // Numbers with units: texts as descriptions have them, symbols, ticks.
 
-const PREFIX = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M", 9: "G" };
-export const RANGES = {
-  kg: [-12, 3], m: [-9, 0], s: [-9, 0], "m/s": [-9, 0], N: [-9, 9], "N/m": [-9, 9],
-  "N*s/m": [-3, 6], Hz: [0, 9],
-};
-const BARE = new Set(["", "1", "%", "s/m", "1/s"]);
+const PREFIX = { "-12": "p", "-9": "n", "-6": "µ", "-3": "m", 0: "", 3: "k", 6: "M" };
+let known = {}; // of each unit in SI, those in which values are written: names and sizes, largest first
+
+// Take the units from the server, which writes descriptions in them.
+export function setUnits(units) { known = units; }
+
+export const hasPrefixes = (unit) => unit in known;
 
 // Plain digits without an exponent or trailing zeros, where that is short.
 export function plain(value, digits = 4) {
@@ -25,16 +26,12 @@ export function brief(words) {
 
 export function quantity(value, unit, digits = 4) {
   if (unit === "rad") return `${plain((value * 180) / Math.PI, digits)} deg`;
-  if (BARE.has(unit) || !(unit in RANGES)) return `${plain(value, digits)} ${unit}`.trim();
-  const name = unit === "kg" ? "g" : unit.replace("*", " ");
-  let size = unit === "kg" ? value * 1e3 : value;
-  if (size === 0) return `0 ${name}`;
-  const [low, high] = RANGES[unit];
-  let power = Math.floor(Math.log10(Math.abs(Number(size.toPrecision(digits)))) / 3 + 1e-9) * 3;
-  power = Math.min(Math.max(power, low), high);
-  size /= 10 ** power;
-  if (Math.abs(size) < 1e-3) return `< 0.001 ${PREFIX[power]}${name}`; // rounding, mostly
-  return `${plain(size, digits)} ${PREFIX[power]}${name}`;
+  if (!hasPrefixes(unit)) return `${plain(value, digits)} ${unit}`.trim();
+  if (value === 0) return `0 ${unit.replace("*", " ")}`;
+  const units = known[unit], most = Math.abs(Number(value.toPrecision(digits)));
+  const [name, size] = units.find((each) => each[1] <= most * (1 + 1e-12)) ?? units.at(-1);
+  if (most < 1e-3 * size) return `< 0.001 ${name}`; // rounding, mostly
+  return `${plain(value / size, digits)} ${name}`;
 }
 
 const GREEK = {

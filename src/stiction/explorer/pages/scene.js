@@ -30,7 +30,9 @@ export class Scene {
 
   // Magnifications, so that the largest elongations fit; nearly equal ones are made equal.
   magnification(width, height) {
-    const room = { x: 0.2 * width, y: 0.17 * height }, found = {};
+    const c = Math.abs(Math.cos(this.scene.phi)), n = Math.abs(Math.sin(this.scene.phi)), found = {};
+    const along = (c, n) => Math.min((0.2 * width) / Math.max(c, 1e-9), (0.17 * height) / Math.max(n, 1e-9));
+    const room = { x: along(c, n), y: along(n, c) };
     for (const axis of ["x", "y"]) found[axis] = rounded((room[axis] / (this.lengths[axis] || room[axis])) * PIXEL) / PIXEL;
     if (Math.max(found.x, found.y) < 12 * Math.min(found.x, found.y)) found.x = found.y = Math.min(found.x, found.y);
     return found;
@@ -76,23 +78,22 @@ export class Scene {
 
   springs(context, width, height, top, home, mass, turn, M) {
     // as long as the picture has room, however far the springs are turned
-    const far = {};
-    for (const axis of ["x", "y"]) {
-      const [dx, dy] = axis === "x" ? turn(1, 0) : turn(0, 1);
-      const right = dx > 0 ? width * 0.94 - home[0] : home[0] - width * 0.06;
-      const up = dy < 0 ? home[1] - top - 16 : height - 26 - home[1];
-      far[axis] = Math.min(right / Math.max(Math.abs(dx), 1e-9), up / Math.max(Math.abs(dy), 1e-9));
+    const axes = { x: turn(1, 0), y: turn(0, 1) }, across = { x: axes.y, y: axes.x }, ends = {}, reaches = {};
+    const room = { left: 0.06 * width, right: 0.94 * width, top: top + 16, bottom: height - 26 };
+    for (const [axis, other] of [["x", "y"], ["y", "x"]]) {
+      const reach = M[other] * this.lengths[other] + 22;
+      const way = across[axis], most = [-1, 1].map((side) => 0.8 * distance(home, times(way, side), room));
+      reaches[axis] = [-Math.min(reach, most[0]), Math.min(0.6 * reach, most[1])];
+      const from = [0, ...reaches[axis]].map((far) => distance(add(home, times(way, far)), axes[axis], room));
+      ends[axis] = add(home, times(axes[axis], Math.min(...from)));
     }
-    const ends = { x: add(home, turn(far.x, 0)), y: add(home, turn(0, far.y)) };
-    const across = { x: turn(0, 1), y: turn(1, 0) };
     for (const axis of ["x", "y"]) {
       const wall = ends[axis], way = across[axis];
       const start = add(mass, axis === "x" ? turn(BLOCK, 0) : turn(0, BLOCK));
       // the far end slides along its wall: a spring pulls along its own axis alone
       const offset = project(sub(mass, home), way);
-      const end = add(wall, [way[0] * offset, way[1] * offset]);
-      const other = axis === "x" ? "y" : "x", reach = M[other] * this.lengths[other] + 22;
-      line(context, [-reach, 0.6 * reach].map((far) => add(wall, [way[0] * far, way[1] * far])), GREY, 5);
+      const end = add(wall, times(way, offset));
+      line(context, reaches[axis].map((far) => add(wall, times(way, far))), GREY, 5);
       zigzag(context, start, end, axis === "x" ? 11 : 8, axis === "x" ? RED : ORANGE, axis === "x" ? 2 : 3.5);
       const label = mix(start, end, 0.5);
       const beside = axis === "x" ? add(label, [0, -22]) : add(label, [22, 0]);
@@ -178,7 +179,7 @@ export class Scene {
   words(context, width, height, s, M) {
     this.ways(context, height);
     const speed = Math.hypot(s.slip_x, s.slip_y), u = unrounded(s.u_x, this.lengths.x);
-    const psi = unrounded(s.theta - (this.scene.phi * 180) / Math.PI, 1);
+    const psi = unrounded(s.theta - (this.scene.phi * 180) / Math.PI, 180);
     const rows = [
       ["slip speed", s.sticking ? "0 (at rest)" : quantity(speed, "m/s"), GREEN],
       ["friction F", `${quantity(s.friction, "N")}, ψ = ${plain(psi, 4)}°`, PURPLE],
@@ -206,8 +207,15 @@ export class Scene {
   }
 }
 
-function count(value) {
-  return value >= 1e6 ? `${plain(value / 1e6)} million` : Number(value.toPrecision(3)).toLocaleString("en");
+// A magnification in words: those of a film (stiction.media.scene).
+export function count(value) {
+  return value >= 1e6 ? `${count(value / 1e6)} million` : Number(value.toPrecision(2)).toLocaleString("en", { maximumSignificantDigits: 2 });
+}
+
+// How far it is from a point along a unit vector to the edge of a room.
+function distance([x, y], [dx, dy], { left, right, top, bottom }) {
+  const across = dx > 0 ? right - x : x - left, down = dy > 0 ? bottom - y : y - top;
+  return Math.min(across / Math.max(Math.abs(dx), 1e-9), down / Math.max(Math.abs(dy), 1e-9));
 }
 
 // A magnification as a round number, not above it.
@@ -240,5 +248,6 @@ function dashpot(context, from, to) {
 
 const add = ([a, b], [c, d]) => [a + c, b + d];
 const sub = ([a, b], [c, d]) => [a - c, b - d];
+const times = ([a, b], c) => [a * c, b * c];
 const mix = (a, b, share) => [a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1])];
 const project = ([a, b], [c, d]) => a * c + b * d;

@@ -2,7 +2,7 @@
 
 import { barAxis, cellAxis, linearAxis, logAxis, padded, power } from "./axis.js";
 import { signChange } from "./contour.js";
-import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, contextOf, curve, frame, line, offsets, symbols, text, widthOf } from "./drawing.js";
+import { GREEN, GREY, INK, Layers, PURPLE, RED, SOFT, UNSTABLE, contextOf, curve, frame, line, note, offsets, symbols, text, widthOf } from "./drawing.js";
 import { element } from "./form.js";
 import { plain, quantity } from "./quantity.js";
 
@@ -28,12 +28,6 @@ function dot(context, x, y, color = INK, radius = 5) {
   context.strokeStyle = "#fff";
   context.lineWidth = 1.5;
   context.stroke();
-}
-
-// One that waits, or has nothing to show, says so.
-function note(context, width, height, words) {
-  const parts = words.split("\n");
-  parts.forEach((each, i) => text(context, each, width / 2, height / 2 + 18 * (i - (parts.length - 1) / 2), { align: "center", color: SOFT }));
 }
 
 // Two ends in words, for whoever does not see the view.
@@ -156,7 +150,7 @@ class Spectrogram {
   static asks = "spectrogram";
 
   describe({ spectrogramError: error, spectrogram: found }) {
-    if (!found || error) return error ?? "computing";
+    if (!found || found.stale || error) return error ?? "computing";
     const { amplitude } = found.arrays, [rows, columns] = amplitude.shape, [low, high] = found.frequency;
     const row = Math.floor(amplitude.reduce((most, value, i) => (value > amplitude[most] ? i : most), 0) / columns);
     const strongest = quantity(low + ((row + 0.5) / rows) * (high - low), "Hz", 2);
@@ -190,7 +184,7 @@ class StabilityMap {
   static asks = "stability";
 
   describe({ stabilityError: error, stability: found, own }) {
-    if (!this.axes || !own) return error ?? "computing";
+    if (!this.axes || !own || found.stale) return error ?? "computing";
     const { growth } = found.arrays, [rows, columns] = growth.shape, { x, y } = this.place(own);
     const at = (share, count) => Math.min(Math.max(Math.floor(share * count), 0), count - 1);
     const j = at((x - this.box.left) / this.box.width, columns), i = at(1 - (y - this.box.top) / this.box.height, rows);
@@ -424,6 +418,7 @@ export class Panel {
   get asks() { return VIEWS[this.name]?.asks; }
 
   refresh() {
+    this.layers.place.classList.toggle("stale", Boolean(this.data[this.asks]?.stale));
     if (this.view) this.layers.refresh();
     else this.list();
   }

@@ -61,6 +61,8 @@ def explore(
     """
     from stiction.analysis.measurement.reading import is_run
     from stiction.explorer.door import explore as open_explorer
+    from stiction.explorer.source import Opened
+    from stiction.presets import find
 
     records = [each for each in source if each.suffix.lower() != ".toml" and not is_run(each)]
     read = {each: source_in(each, measured, trust) for each in records}
@@ -80,7 +82,12 @@ def explore(
         if config is None and preset is None:
             raise DescriptionError.of("--set", "changes a description; name its file or a preset")
         opened = [each for each in opened if each not in configs]
-        opened.append(description_from(config, preset, given, trust))
+        made = description_from(config, preset, given, trust)
+        if config is not None:
+            opened.append(Opened(f"{config.name}, changed", made))
+        elif preset is not None:
+            found = find(preset)
+            opened.append(Opened(found.title, made, preset=found.name))
     try:
         open_explorer(opened, port=port, browser=browser, trust=trust)
     except KeyboardInterrupt:  # the usual end
