@@ -14,6 +14,7 @@ from stiction.study.store.seal import seal
 from stiction.study.variables.fast_regime import KINDS
 from stiction.study.view import mapping
 from stiction.study.view.boundaries import PHI_C, ZETA, plane
+from stiction.study.view.mapping import gaps_in_words
 
 PAPER = st.presets.nakano_popov_2020()
 BASE = st.Description(PAPER, st.Initial(), st.Settings(duration="4 s"))
@@ -115,6 +116,24 @@ def test_a_slice_shows_kinds_critical_values_and_no_rounding_noise(tmp_path, mon
     assert "2 of 2 runs not determined: its motion is too fast" in str(found)
     (ax,) = st.map(tmp_path / "few.zarr", "period").plot()
     assert "2 of 2 runs not determined" in ax.get_title(loc="left").replace("\n", " ")
+
+
+def test_every_run_of_no_kind_is_counted_above_its_map(tmp_path):
+    """One of two white cells was counted, and none where no run had a message."""
+    base = st.Description.of(st.presets.nakano_popov_2020(), "5 ms")
+    axes = {"phi": st.Values(["1 deg", "2 deg"]), "mass": st.Values(["0.2 kg", "0.3 kg"])}
+    st.sweep(st.Study(base=base, axes=axes, measures=["regime", "peak_force"]), tmp_path / "a.zarr")
+    found = st.map(tmp_path / "a.zarr")
+    found.data["regime"].values[:] = [[0, 0], [2, 0]]
+    assert found.data["message"].values.tolist() == [["", ""], ["", ""]]
+    reason = "the force slips, but shows no whole cycle; lengthen the run"
+    assert gaps_in_words(found) == f"3 of 4 runs not determined: {reason}"
+    found.data["message"].values[0, 0] = "shorten it"
+    said = f"3 of 4 runs not determined: {reason} (2); shorten it (1)"
+    assert gaps_in_words(found) == said
+    (ax,) = found.plot()
+    assert ax.get_title(loc="left").replace("\n", " ") == said
+    assert gaps_in_words(found._replace(measures=("peak_force",))).startswith("1 of 4 runs")
 
 
 def test_what_has_no_value_is_explained(store):

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.motion.regime.kinds import UNDETERMINED
 from stiction.arrays import xr
 from stiction.errors import DescriptionError
 from stiction.plotting.maps import (
@@ -34,6 +35,7 @@ from stiction.study.plan.layout import Index
 from stiction.study.store.store import COMPLETED
 from stiction.study.view.boundaries import Plane, critical_values, plane
 from stiction.study.view.view import (
+    NO_CYCLE,
     REGIME,
     View,
     choose_measures,
@@ -189,7 +191,7 @@ def plot_map(found: Map, axes: Axes | Sequence[Axes] | None = None) -> NDArray[n
         else:
             panels = _curves(view, found.measures, axes)
         said = [cut(view)] if view.at else []
-        said += [each] if (each := gaps_in_words(view)) else []
+        said += [each] if (each := gaps_in_words(found)) else []
         if said:
             wide = whole_figure(panels[0]).get_figwidth() / COLUMN
             lines = (fill(each, int(WIDTH * wide)) for each in said)
@@ -210,10 +212,18 @@ def cut(view: View) -> str:
     return f"at {', '.join(values)}"
 
 
-def gaps_in_words(view: View) -> str:
-    """Return how many runs of a view ended well but are not determined, and why; '' for none."""
-    messages = view.data["message"].values[view.data["status"].values == COMPLETED]
-    return undetermined_in_words([str(each) for each in messages if each], view.data["status"].size)
+def gaps_in_words(found: Map) -> str:
+    """Return how many runs of a map ended well but are not determined, and why; '' for none.
+
+    Where kinds of motion are drawn, a run of none is one, whether it has a message or not.
+    """
+    view = found.view
+    messages, ended = view.data["message"].values, view.data["status"].values == COMPLETED
+    if REGIME in view.data and (REGIME in found.measures or len(found.dims) == 1):
+        blank = (kinds(view.data) == UNDETERMINED) & (messages == "")
+        messages = np.where(blank, NO_CYCLE, messages)
+    whys = [str(each) for each in messages[ended] if each]
+    return undetermined_in_words(whys, view.data["status"].size)
 
 
 def side(view: View, dim: str, values: np.ndarray | None = None) -> Side:

@@ -25,6 +25,7 @@ from stiction.text.units import Quantity
 from stiction.text.validation import unknown_name
 
 REGIME = "regime"
+NO_CYCLE = "the force slips, but shows no whole cycle; lengthen the run"
 RUNS = ("status", "message")  # variables that are not measures
 REFINED, CHANGES = "refined", "changes"  # folders in a store
 
@@ -160,14 +161,18 @@ def kinds(data: xr.Dataset) -> np.ndarray:
 
 
 def undetermined_in_words(messages: Sequence[str], runs: int) -> str:
-    """Return how many runs are not determined, and why most of them; '' for none.
+    """Return how many runs are not determined, and why, the most frequent first; '' for none.
 
     Examples
     --------
     >>> undetermined_in_words(["shorten it"], 5)
     '1 of 5 runs not determined: shorten it'
+    >>> undetermined_in_words(["shorten it", "no cycle", "no cycle"], 5)
+    '3 of 5 runs not determined: no cycle (2); shorten it (1)'
     """
     if not messages:
         return ""
-    (why, _), *others = Counter(messages).most_common()
-    return f"{len(messages)} of {runs} runs not determined: {why}{', and others' if others else ''}"
+    counted = Counter(messages).most_common()
+    several = len(counted) > 1
+    reasons = "; ".join(f"{why} ({count})" if several else why for why, count in counted)
+    return f"{len(messages)} of {runs} runs not determined: {reasons}"
