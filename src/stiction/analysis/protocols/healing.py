@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from math import isnan, nan
@@ -10,23 +11,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from stiction.analysis.protocols.friction_test import (
+    FEWEST_SAMPLES,
     ConstantStretch,
     FrictionTest,
     alike,
     friction_test,
 )
-from stiction.analysis.protocols.peaks import Peak, peaks_of_run, peaks_of_samples
+from stiction.analysis.protocols.peaks import Peak, noise_of, peaks_of_run, peaks_of_samples
 from stiction.analysis.protocols.settling import ROUNDED
 from stiction.analysis.record import Record
-from stiction.analysis.signals.correlated_noise import ERRORS_95
+from stiction.analysis.signals.correlated_noise import ERRORS_95, ERRORS_997
 from stiction.analysis.signals.straight_line import StraightLine, line_of_few
-from stiction.arrays import Floats, ShortRepr
+from stiction.arrays import Floats, ShortRepr, median
 from stiction.drive import DriveProgram
 from stiction.errors import ResultError
 from stiction.text.lists import coefficient_texts, in_list, say_left_out
 from stiction.text.quantity.wording import in_words, with_error
 from stiction.text.sections import Section, SectionReport, Table
 from stiction.trajectory import Trajectory
+
+# Of a hold or a slide, by which friction may begin to change late, and of its fall at rest, by
+# which it may rise again: an apparatus has drift, and friction changes slowly at first
+PART = 0.3
+SURE = 10.0  # standard deviations of noise that the range of its samples hardly exceeds
+STRAY = 0.25  # of the range of gains: one that is nearer to the line does not matter to it
 
 
 @dataclass(frozen=True, repr=False)
@@ -49,6 +57,9 @@ class Healing(SectionReport, ShortRepr):
     peak_error : ndarray, optional
         (n,), standard error of each peak; NaN where the samples do not resolve it. Then `peak` is
         the highest sample, a lower bound, and is not a point of the line.
+    misfit : str, optional
+        Where friction does not follow the holds and slides of its program, in a sentence; "" if it
+        does.
     """
 
     _figure = "plot_healing"
@@ -63,6 +74,7 @@ class Healing(SectionReport, ShortRepr):
     left_out: tuple[str, ...] = ()
     peak_error: Floats | None = None
     at_one_second_error: float = nan
+    misfit: str = ""
 
     @property
     def resolved(self) -> NDArray[np.bool_]:
@@ -93,14 +105,31 @@ class Healing(SectionReport, ShortRepr):
             )
         ]
         headings = ("hold", "steady before", "at its end", "peak after", "gain", "±")
-        return Section("Healing", [*self._sentences(), *self.left_out], Table(headings, rows))
+        misfit = [self.misfit] if self.misfit else []
+        said = [*misfit, *self._sentences(), *self._strays(), *self.left_out]
+        return Section("Healing", said, Table(headings, rows))
+
+    def _strays(self) -> list[str]:
+        """Return which gains lie off the line by more than their errors, in a sentence."""
+        known, errors = self.resolved, self.peak_error
+        if errors is None or isnan(self.per_decade) or known.sum() < 3:
+            return []
+        line = self.at_one_second + self.per_decade * np.log10(self.hold)
+        away = np.abs(self.gain - line)
+        least = np.maximum(ERRORS_997 * errors, STRAY * np.ptp(self.gain[known]))
+        stray = known & (away > least)
+        if not stray.any():
+            return []
+        holds = in_list([in_words(t, "s") for t in self.hold[stray]])
+        return [f"Gains after holds of {holds} lie off the line by more than their errors."]
 
     def _sentences(self) -> list[str]:
         """Return how friction heals, in sentences."""
         poor = self.hold[~self.resolved]
         fewer = f"after holds of {in_list([in_words(t, 's') for t in poor])}"
         few = f"Too few samples lie around the peak {fewer}"
-        said = [f"{few}: it is not resolved. Raise the sample rate."] if len(poor) else []
+        remedy = "" if self.misfit else " Raise the sample rate."
+        said = [f"{few}: it is not resolved.{remedy}"] if len(poor) else []
         if isnan(self.per_decade):
             why = "fewer than two peaks are resolved" if len(poor) else "all holds are equally long"
             return [f"How friction heals per decade is not known: {why}.", *said]
@@ -166,16 +195,101 @@ def healing(source: Trajectory | Record, program: DriveProgram | None = None) ->
                 slides.append(after)
         faults.append((in_words(hold.start, "s"), why))
     said = say_left_out(each for each in faults if each[1])
+    drive = "the program" if test.position is None else "the displacement of the drive"
+    misfit = _say_misfit(list(_misfits(test)), drive)
     if not rows:
         missing = "there is no hold between two slides at the same velocity and load"
-        raise ResultError(" ".join([f"{missing}; see st.protocols.slide_hold_slide.", *said]))
+        remedy = f"{missing}; see st.protocols.slide_hold_slide."
+        raise ResultError(" ".join([*([misfit] if misfit else []), remedy, *said]))
     hold_times, steady, relaxed = np.array(rows).T
     peaks, errors = np.array(_peaks(source, test, slides)).T
     found = _line(hold_times, peaks - steady, errors)
     return Healing(
         hold_times, steady, peaks, relaxed, found.slope, found.slope_error, found.offset,
-        said, errors, found.offset_error,
+        said, errors, found.offset_error, misfit,
     )  # fmt: skip
+
+
+def _misfits(test: FrictionTest) -> Iterator[str]:
+    """Yield where friction of a record does not follow holds and slides as they are stated.
+
+    At rest it falls and does not rise; in a slide it rises, and falls to its level again. Only
+    what is beyond noise and beyond the error of a clock counts, see `FrictionTest.clock`.
+    """
+    if test.law is not None or not any(map(test.is_sampled, test.stretches)):
+        return
+    found = test.stretches
+    parts = [(test.mu[test.within(*each[:2])], test.mu[test.late(each)]) for each in found]
+    unseen = SURE * median(np.array([noise_of(*part) for part in parts if len(part[1])]))
+    for before, hold, after in zip(found, found[1:], found[2:], strict=False):
+        joined = before.end == hold.start and hold.end == after.start
+        if hold.velocity or not joined or before.way != after.way or not before.way:
+            continue
+        if all(test.is_sampled(each) for each in (before, hold, after)):
+            yield from _misfits_of(test, before, hold, after, unseen)
+
+
+def _misfits_of(
+    test: FrictionTest,
+    before: ConstantStretch,
+    hold: ConstantStretch,
+    after: ConstantStretch,
+    unseen: float,
+) -> Iterator[str]:
+    """Yield where friction of a record does not follow one hold and the slide after it.
+
+    Changes below `unseen` may be noise.
+    """
+    mu, level = before.way * test.mu, before.way * test.steady(before)
+    clock = max(test.clock_at_jump(before, hold), test.clock_at_jump(hold, after))
+    rest = test.within(hold.start + clock, hold.end - clock)
+    slide = test.within(after.start + clock, after.end - clock)
+    if min(len(rest), len(slide)) < FEWEST_SAMPLES:
+        return
+    at, at_slide = in_words(hold.start, "s"), in_words(after.start, "s")
+    fall = max(level, float(mu[rest].max())) - float(mu[rest].min())
+    rise = float((mu[rest] - np.minimum.accumulate(mu[rest])).max())
+    if rise > max(unseen, PART * fall):
+        yield f"friction rises in the hold at {at}"
+    begins = mu[rest] < level - max(0.1 * fall, 0.5 * unseen)
+    late = test.time[rest[begins.argmax()]] - hold.start
+    if fall > 2.0 * unseen and late > clock + PART * (hold.end - hold.start):
+        yield f"friction begins to fall {in_words(late, 's', 2)} into the hold at {at}"
+    low, top = float(mu[rest[-1]]), float(mu[slide].max())
+    begins = mu[slide] > low + max(0.1 * (top - low), 0.5 * unseen)
+    late = test.time[slide[begins.argmax()]] - after.start
+    if top - low > 2.0 * unseen and late > clock + PART * (after.end - after.start):
+        yield f"friction begins to rise {in_words(late, 's', 2)} into the slide at {at_slide}"
+    slid = slide[begins.argmax() :]
+    if _rests(test.time[slid], mu[slid], level - 0.5 * unseen, level - max(unseen, 0.5 * fall)):
+        yield f"friction falls in the slide at {at_slide} as it does at rest"
+
+
+def _rests(time: Floats, mu: Floats, level: float, low: float) -> bool:
+    """Return whether friction falls from its level as at rest: for twice as long as it rises again.
+
+    In a slide that runs away it falls faster than the spring is loaded.
+    """
+    slid = np.flatnonzero(mu > level)
+    if not len(slid):
+        return False
+    lowest = slid[0] + int(mu[slid[0] :].argmin())
+    before, after = slid[slid <= lowest][-1], slid[slid > lowest]
+    again = after[0] if len(after) else len(mu) - 1
+    return bool(
+        mu[lowest] < low and time[lowest] - time[before] > 2.0 * (time[again] - time[lowest])
+    )
+
+
+def _say_misfit(found: Sequence[str], drive: str) -> str:
+    """Return that a record does not follow its program, in a sentence; '' if it does."""
+    if not found:
+        return ""
+    rest = "" if len(found) == 1 else f", and {len(found) - 1} more such"
+    return (
+        f"{drive[0].upper()}{drive[1:]} does not fit the record: {found[0]}{rest}. Compare the "
+        "lengths of holds and slides, and when t = 0 is."
+    )
 
 
 def _peaks(

@@ -46,13 +46,18 @@ def _sampled_peak(mu: Floats) -> Peak:
     top = 1 + int(mu[1:].argmax())
     late = mu[-max(int(SETTLED * len(mu)), 1) :]
     peak, level = float(mu[top]), float(late.mean())
-    noise = max(white_noise(mu) if len(mu) > ORDER else 0.0, _scatter(late))
+    noise = noise_of(mu, late)
     fall, unseen = peak - level, max(ROUNDED * abs(peak), 2.0 * CHANCE * noise)
     if peak - level <= unseen:
         missed = _missed_rise(mu, level - unseen)
     else:
         missed = _missed_fall(mu[top:], peak - 0.5 * fall, CHANCE * noise)
     return Peak(peak, hypot(missed / sqrt(3.0), CHANCE * noise))
+
+
+def noise_of(mu: Floats, late: Floats) -> float:
+    """Return the noise of friction, by differences of its samples or by its steady end."""
+    return max(white_noise(mu) if len(mu) > ORDER else 0.0, _scatter(late))
 
 
 def _scatter(late: Floats) -> float:

@@ -27,6 +27,14 @@ from stiction.text.lists import in_list, say_left_out
 from stiction.text.quantity.wording import in_words
 from stiction.trajectory import Trajectory
 
+STILL_LOADED = "The mass does not slide before the step"
+UNSETTLED = "Friction has not settled before the step"
+FEW_SAMPLES = "There are too few samples before or after the step"
+FARTHER = (
+    "Let it slide farther before a step, by a longer distance in st.protocols.velocity_steps; a "
+    "run may also begin in steady sliding, by its initial state."
+)
+REMEDIES = {STILL_LOADED: FARTHER, UNSETTLED: FARTHER, FEW_SAMPLES: "Raise the sample rate."}
 Jumps = Sequence[tuple[ConstantStretch, ConstantStretch]]
 
 
@@ -100,8 +108,7 @@ def velocity_steps(
             faults.append((in_words(two.start, "s"), why))
     left_out = [*_varying(test), *say_left_out(each for each in faults if each[1])]
     if not jumps:
-        missing = "the speed of the drive does not step from one constant value to another"
-        raise ResultError(" ".join([f"{missing}; see st.protocols.velocity_steps.", *left_out]))
+        raise ResultError(_refusal([why for _, why in faults], left_out))
     data = [step_data(test, levels, *jump) for jump in jumps]
     choice = choose(test, data, law)
     steps = _steps(test, levels, jumps, data, choice.best)
@@ -110,6 +117,15 @@ def velocity_steps(
     drive = "the displacement of the drive" if program is None else "the program"
     fitted = (*choice.said, *say_rig_and_clock(data, choice.best.steps, drive))
     return VelocitySteps(steps, stiffness, tuple(left_out), other, fitted, *levels.trend)
+
+
+def _refusal(faults: Sequence[str], left_out: Sequence[str]) -> str:
+    """Return why no step shows a friction law, and how one would."""
+    if not faults:
+        missing = "the speed of the drive does not step from one constant value to another"
+        return " ".join([f"{missing}; see st.protocols.velocity_steps.", *left_out])
+    remedies = dict.fromkeys(REMEDIES[why] for why in faults if why in REMEDIES)
+    return " ".join(["no step shows a friction law.", *left_out, *remedies])
 
 
 def _least_stiffness(test: FrictionTest, jumps: Jumps, steps: Sequence[VelocityStep]) -> float:
@@ -138,13 +154,13 @@ def _fault(
     if not alike(one.load, two.load):
         return "The load jumps with the velocity"
     if not test.is_sampled(one) or not test.is_sampled(two):
-        return "There are too few samples before or after the step"
+        return FEW_SAMPLES
     if not test.slides(one):
-        return "The mass does not slide before the step"
+        return STILL_LOADED
     if not test.slides(two):
         return "The mass does not slide after the step"
     if not test.has_settled(one, trend.known_slope):
-        return "Friction has not settled before the step"
+        return UNSETTLED
     return ""
 
 

@@ -159,3 +159,72 @@ def test_healing_is_printed_to_the_first_digit_of_its_error():
     assert "Friction heals by 0.023 ± 0.002 per decade of hold time." in str(found)
     rows = [row[3:] for row in found.section.table.rows]
     assert rows == [("0.623", "0.023", "0.003"), ("0.6468", "0.0468", "< 0.0001")]
+
+
+TIMES = (3.0, 10.0, 30.0, 100.0)
+
+
+@pytest.fixture(scope="module", params=["1 MN/m", "20 kN/m"])
+def soft_or_stiff(request):
+    """Return a run of holds on a rig; on the soft one friction falls below its level after them."""
+    law = st.laws.RateStateSlip(mu_star=0.6, a=0.008, b=0.012, D_c="5 um", V_star="1 um/s")
+    drive = st.protocols.slide_hold_slide("10 um/s", TIMES, slide="40 s")
+    slider = st.Slider(
+        mass="1 g",
+        k_x=request.param,
+        k_y="100 MN/m",
+        phi="0 deg",
+        normal_load="10 N",
+        friction=law,
+        drive=drive,
+    )
+    return st.simulate(slider, sample_rate="20 Hz")
+
+
+def healing_of(run, number, holds=TIMES, slide=40.0):
+    """Return the healing of a noisy record of a run by a program, right or wrong."""
+    noise = np.random.default_rng([SEED, number]).normal(0.0, 3e-3, len(run.data.time))
+    force = run.data.spring_x.values + noise
+    record = st.Record(time=run.data.time, force=force, normal_load=10.0, stiffness=run.slider.k_x)
+    program = st.protocols.slide_hold_slide("10 um/s", holds, slide=slide)
+    return st.analysis.healing(record, program)
+
+
+@pytest.mark.parametrize("number", range(10))
+def test_a_program_that_fits_its_record_is_not_doubted(soft_or_stiff, number):
+    found = healing_of(soft_or_stiff, number)
+    assert found.misfit == ""
+    assert "lie off the line" not in str(found)
+
+
+@pytest.mark.parametrize(
+    ("holds", "slide"),
+    [
+        (TIMES, 30.0),
+        (TIMES, 50.0),
+        (TIMES, 20.0),
+        (TIMES[1:], 40.0),
+        ((3.0, 10.0, 100.0), 40.0),
+        ((3.0, 10.0, 42.0, 100.0), 40.0),
+        ((6.0, 20.0, 60.0, 200.0), 40.0),
+        ((2.1, 7.0, 21.0, 70.0), 40.0),
+    ],
+)
+def test_a_program_that_does_not_fit_its_record_is_named(soft_or_stiff, holds, slide):
+    """Healing was "zero within its error", or the sample rate was blamed."""
+    for number in range(3):
+        try:
+            said = str(healing_of(soft_or_stiff, number, holds, slide))
+        except st.StictionError as error:
+            said = str(error)
+        assert "The program does not fit the record: friction " in said
+        assert "Raise the sample rate" not in said
+
+
+def test_a_gain_off_the_line_is_named():
+    gains = np.array([0.01, 0.02, 0.30, 0.04])
+    found = Healing(
+        np.array([1.0, 10.0, 100.0, 1000.0]), 0.5 * np.ones(4), 0.5 + gains, 0.5 * np.ones(4),
+        0.01, 0.01, 0.01, peak_error=np.full(4, 1e-3),
+    )  # fmt: skip
+    assert "Gains after holds of 100 s lie off the line by more than their errors." in str(found)

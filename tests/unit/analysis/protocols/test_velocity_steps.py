@@ -652,3 +652,21 @@ def test_the_repr_of_a_step_has_its_arrays_in_short():
     text = repr(VelocitySteps((step,), np.nan))
     assert "slip=<400 values, 0 to 0.001>, mu=<400 values, nan>" in text
     assert len(text) < 1000
+
+
+def test_a_refusal_has_its_reason_and_a_remedy():
+    """It said that the drive does not step, of a drive that does."""
+    law = st.laws.RateStateAgeing(mu_star=0.6, a=0.010, b=0.015, D_c="10 um", V_star="1 um/s")
+    drive = st.protocols.velocity_steps(["1 um/s", "10 um/s"], distance="0.2 mm")
+    slider = on_a_line(mass="1 g", k_x="4 kN/m", normal_load="10 N", friction=law, drive=drive)
+    with pytest.raises(st.StictionError) as refused:
+        st.analysis.velocity_steps(st.simulate(slider, sample_rate="2 Hz"))
+    said = str(refused.value)
+    assert said.startswith(
+        "no step shows a friction law. The mass does not slide before the step: left out at 200 s."
+    )
+    assert "a longer distance" in said
+    assert "initial" in said
+    constant = slider.replace(drive=st.ConstantVelocity("1 um/s"))
+    with pytest.raises(st.StictionError, match="the speed of the drive does not step"):
+        st.analysis.velocity_steps(st.simulate(constant, "10 s", sample_rate="2 Hz"))
