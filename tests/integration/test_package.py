@@ -245,12 +245,22 @@ print(st.simulate(slider, 0.1).stick_intervals[0, 1])
 """
 
 
+USE_FILE = """
+import re
+import stiction as st
+text = st.Description.of(st.presets.nakano_popov_2020(), 0.1).to_toml()
+mine = '[friction]\\nlaw = "{law}:Mine"\\nmu = 0.2\\n'
+text = re.sub(r"\\[friction\\][^[]*", lambda _: mine, text)
+print(st.run(st.Description.from_toml(text, trust=True)).stick_intervals[0, 1])
+"""
+
+
 def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path, code_cache):
     cache = {"NUMBA_CACHE_DIR": str(code_cache), "PYTHONPATH": str(tmp_path)}
     law = tmp_path / "mylaw.py"
     law.write_text(LAW.format(factor="1.0"))
-    one = float(run_python(USE, **cache))
-    assert float(run_python(USE, **cache)) == one
+    one = float(run_python(USE_FILE.format(law=str(law)), **cache))
+    assert float(run_python(USE, **cache)) == one  # of another module, by the same machine code
     law.write_text(LAW.format(factor="2.0"))
     assert float(run_python(USE, **cache)) == pytest.approx(2 * one, rel=1e-9)
     # a process that does not know the law is not disturbed by it

@@ -231,7 +231,7 @@ def stored_text(rig: Rig) -> str:
     `Rig.from_toml` reads it: it runs that text only with `trust`.
     """
     tables, law = rig._tables(), law_table(rig.slider.law)
-    text = {key: law[key] for key in law.keys() & {"source"}}
+    text = {key: law[key] for key in law.keys() & {"source", "reads"}}
     return toml_text({**tables, "friction": {**tables["friction"], **text}})
 
 

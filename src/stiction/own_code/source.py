@@ -13,6 +13,7 @@ import sys
 import threading
 import tokenize
 from collections.abc import Iterator
+from functools import lru_cache
 from importlib.abc import InspectLoader
 from importlib.util import module_from_spec, spec_from_loader
 from pathlib import Path
@@ -207,14 +208,7 @@ def excerpt(text: str, name: str) -> str:
     from math import exp, pi
     def f(): return exp(1)
     """
-    try:
-        statements = ast.parse(text).body
-    except SyntaxError:
-        return ""
-    defining: dict[str, list[ast.stmt]] = {}
-    for statement in statements:
-        for bound in _bound(statement):
-            defining.setdefault(bound, []).append(statement)
+    defining = bindings(text)
     if name not in defining:
         return ""
     wanted, names = list(defining.get("*", [])), [name]
@@ -223,8 +217,28 @@ def excerpt(text: str, name: str) -> str:
             if statement not in wanted:
                 wanted.append(statement)
                 names += [node.id for node in ast.walk(statement) if isinstance(node, ast.Name)]
-    lines = text.splitlines()
-    return "\n".join(_lines(lines, statement) for statement in statements if statement in wanted)
+    lines, wanted = text.splitlines(), sorted(wanted, key=lambda each: each.lineno)
+    return "\n".join(_lines(lines, statement) for statement in wanted)
+
+
+@lru_cache(maxsize=64)
+def bindings(text: str) -> dict[str, list[ast.stmt]]:
+    """Return the top-level statements that bind each name of a text; none of a faulty text."""
+    try:
+        statements = ast.parse(text).body
+    except SyntaxError:
+        return {}
+    found: dict[str, list[ast.stmt]] = {}
+    for statement in statements:
+        for bound in _bound(statement):
+            found.setdefault(bound, []).append(statement)
+    return found
+
+
+def definition(text: str, name: str) -> str | None:
+    """Return the lines of the last statement that binds a name; None if the text does not."""
+    statements = bindings(text).get(name)
+    return _lines(text.splitlines(), statements[-1]) if statements else None
 
 
 def missing_names(text: str) -> list[str]:

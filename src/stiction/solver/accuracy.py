@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import lru_cache
 from math import hypot, inf, pi, sqrt
 from typing import Any, NamedTuple
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from stiction.drive.bounds import load_bounds
 from stiction.friction import has_state
+from stiction.friction.user.validation import once_for_each_law
 from stiction.solver.segments import Segment, begin, fastest_swing, speeds, system_of
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -130,7 +130,7 @@ def accuracy(
     )  # fmt: skip
 
 
-@lru_cache(maxsize=256, typed=True)  # a user's laws of different classes are equal as tuples
+@once_for_each_law
 def steepest_weakening(law: Any, speed: float) -> float:
     """Return the largest -slope of a set-valued law between rest and ten times `speed`, in s/m.
 

@@ -658,7 +658,8 @@ def test_back_in_the_same_process(config, tmp_path):
     assert type(again.slider.law) is type(run.slider.law)
     assert st.Description.from_dict(run.description.to_dict()) == run.description
     kept = run.description.to_dict()["friction"]
-    assert kept == {"law": "mylaw.py:Mine", "source": LAW, "mu_0": 0.2, "v_h": 0.05}
+    text = {"law": "mylaw.py:Mine", "source": LAW, "reads": {}}
+    assert kept == {**text, "mu_0": 0.2, "v_h": 0.05}
     (tmp_path / "mylaw.py").unlink()
     back = st.load(run.save(tmp_path / "a.nc"))  # this process knows the law
     assert type(back.slider.law) is type(run.slider.law)

@@ -505,7 +505,8 @@ def test_the_store_s_description_holds_its_text(folder):
     st.sweep(st.Study.from_toml("study.toml"), "a.zarr", engine=Threads(1))
     with st.open_study("a.zarr") as data:
         kept = json.loads(data.attrs["description"])["study"]["measures"]
-    assert kept == ["time_stuck", {"function": "mine.py:stuck", "source": TEXT}]
+    text = {"function": "mine.py:stuck", "source": TEXT, "reads": {}}
+    assert kept == ["time_stuck", text]
 
 
 def write_over(run):

@@ -8,6 +8,7 @@ from typing import Any
 
 from stiction.errors import echo
 from stiction.friction.user.validation import fault, is_law, law_in, try_law
+from stiction.own_code.identity import differences, values_outside
 from stiction.own_code.loading import (
     Role,
     errors_as_faults,
@@ -67,12 +68,17 @@ def finder_for_results(trust: bool = False) -> Find:
 
 def read_own(table: dict[str, Any], find: Find) -> Any:
     """Make a law from a table [friction] that names a file and a class."""
-    name, text = table.pop("law"), table.pop("source", None)
+    name, text, then = table.pop("law"), table.pop("source", None), table.pop("reads", None)
     if not isinstance(text, str | None):
         raise fault(f"must be text, is {echo(text)}; leave it out", "source")
+    if not isinstance(then, dict | None):
+        raise fault(f"must be a table, is {echo(then)}; leave it out", "reads")
     kind = find(name, text)
     with errors_as_faults(f"{echo(name)} cannot be made", LAW):
-        return try_law(make(kind, table), name)
+        law = try_law(make(kind, table), name)
+    if then is not None and (said := differences(then, values_outside(kind))):
+        raise fault(f"{echo(name)} reads what has changed since it was stored: {said}", "reads")
+    return law
 
 
 def is_own(table: Any) -> bool:
@@ -82,9 +88,9 @@ def is_own(table: Any) -> bool:
 
 
 def own_table(law: Any) -> dict[str, Any]:
-    """Return a user's law as a table [friction]: its name and its text."""
+    """Return a user's law as a table [friction]: its name, its text, and the values it reads."""
     kind = type(law)
-    text = text_of(kind)
+    text, reads = text_of(kind), values_outside(kind)
     if text is None:
-        return {"law": f"{kind.__module__}:{kind.__qualname__}"}
-    return {"law": f"{text.name}:{kind.__qualname__}", "source": text.text}
+        return {"law": f"{kind.__module__}:{kind.__qualname__}", "reads": reads}
+    return {"law": f"{text.name}:{kind.__qualname__}", "source": text.text, "reads": reads}

@@ -10,16 +10,18 @@ import inspect
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from functools import lru_cache, partial
+from functools import lru_cache, partial, update_wrapper
 from inspect import isfunction
 from itertools import pairwise
 from math import inf, isfinite, nan
 from types import FrameType, ModuleType
-from typing import Any
+from typing import Any, TypeVar
 
 from stiction.errors import DescriptionError, echo, one_line
 from stiction.friction.law import has_state
 from stiction.friction.user.derivative import derivative, is_steep_at_rest, jump
+from stiction.own_code.frozen import renew
+from stiction.own_code.identity import refuse_unknown, state_of
 from stiction.own_code.source import member
 from stiction.text.validation import unknown_name
 
@@ -34,7 +36,8 @@ WRITE = (
     "coefficient(law, v), settled(law, speed), force and change(law, slip, load, state)"
 )
 ENDING = "bound each loop: for _ in range(50)"
-RESERVED = {"law", "source"}  # keys of [friction] that are not parameters
+FIELD = "a field of the class"
+RESERVED = {"law", "source", "reads"}  # keys of [friction] that are not parameters
 PROBED = (0.0, 1e-3)  # m/s
 DENSE = tuple(10.0 ** (i / 8) for i in range(-72, 9))  # m/s: friction is not negative, nor jumps
 JUMP = 1e-3  # of the largest coefficient so far: less is rounding in the pieces of a law
@@ -62,8 +65,27 @@ def endless(law: Any) -> str:
     return ""
 
 
-# once for each law; those of different classes are equal as tuples
-_endless = lru_cache(maxsize=256, typed=True)(endless)
+T = TypeVar("T")
+
+
+def once_for_each_law(function: Callable[..., T]) -> Callable[..., T]:
+    """Let a function of a law, and of numbers, remember its last values.
+
+    Laws of different classes are equal as tuples, and one law differs with the variables that it
+    reads.
+    """
+
+    @lru_cache(maxsize=256, typed=True)
+    def remember(_: object, *arguments: Any) -> T:
+        return function(*arguments)
+
+    def look_up(law: Any, *others: Any) -> T:
+        return remember(state_of(type(law)), law, *others)
+
+    return update_wrapper(look_up, function)
+
+
+_endless = once_for_each_law(endless)
 
 
 def _calls(law: Any, v: float) -> dict[str, Callable[[], object]]:
@@ -241,7 +263,7 @@ def no_number(law: Any) -> tuple[str, str] | None:
     return None
 
 
-_no_number = lru_cache(maxsize=256, typed=True)(no_number)  # once for each law, as `_endless`
+_no_number = once_for_each_law(no_number)
 
 
 def check_end(law: Any, name: str) -> None:
@@ -254,6 +276,11 @@ def check_end(law: Any, name: str) -> None:
                 f"{key} of {echo(name)} is a {type(value).__name__}, which may change; let each "
                 "parameter be a number, or a tuple of numbers"
             ) from None
+    try:
+        refuse_unknown(type(law), FIELD)
+        renew(type(law))
+    except ValueError as error:
+        raise fault(str(error)) from None
     if said := _endless(law):
         raise fault(f"{echo(name)}: {said}; {ENDING}")
 
@@ -267,7 +294,7 @@ def sound(law: Any, name: str) -> Any:
     return law
 
 
-@lru_cache(maxsize=256, typed=True)
+@once_for_each_law
 def _wrong(law: Any) -> tuple[str, str] | None:
     """Return a fault of a set-valued law at a few speeds: the method, and the reason.
 

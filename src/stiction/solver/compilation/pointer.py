@@ -21,6 +21,8 @@ import numba.extending
 import numpy as np
 from numba.core.registry import cpu_target
 
+from stiction.friction.user.validation import fault
+from stiction.own_code.frozen import MODULE, class_to_compile
 from stiction.own_code.source import text_of
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED, compiled, compiled_for
@@ -40,6 +42,7 @@ def code_and_fields(law: Any, *entries: Any) -> tuple[Any, ...]:
     """
     if INTERPRETED:
         return *entries, law
+    law = _with_values_of_now(law)
     kind = type_of(law)
     known = _prepared.get((kind, entries))
     if known is None:
@@ -50,6 +53,17 @@ def code_and_fields(law: Any, *entries: Any) -> tuple[Any, ...]:
     room.law = law  # keeps its arrays alive
     write_own(law, ctypes.addressof(room))
     return *codes, np.frombuffer(room, dtype=np.uint8)
+
+
+def _with_values_of_now(law: Any) -> Any:
+    """Return a user's law as one of the class to compile; others as they are."""
+    kind = type(law)
+    if kind.__module__.startswith("stiction."):
+        return law
+    try:
+        return tuple.__new__(class_to_compile(kind), law)
+    except ValueError as error:
+        raise fault(str(error)) from None
 
 
 Prepared = tuple[list[int], int, Any]
@@ -205,9 +219,8 @@ def _call_address(
 def _for_own(function: Any, kind: Any) -> Any:
     """Return the compiled `function` to use with values of this type.
 
-    Code for a user's law is cached under the content of its file, so that edits are noticed, and a
-    process without the law never loads it. A law in a prompt or in the main script is compiled anew
-    in each process.
+    Code for a user's law is cached under its identity, so that edits are noticed, and a process
+    without the law never loads it.
     """
     own = [each for each in _classes(kind) if not each.__module__.startswith("stiction.")]
     if not own:
@@ -229,8 +242,10 @@ def _classes(kind: Any) -> Iterator[type]:
 
 
 def _source(kind: type) -> str:
-    """Return the origin of a type, after which its code is named: its module and text."""
-    text = None if kind.__module__ == "__main__" else text_of(kind)
+    """Return the origin of a type, after which its code is named."""
+    if kind.__module__.startswith(MODULE):
+        return kind.__module__
+    text = None if kind.__module__ == "__main__" else text_of(kind)  # the type of a field
     if text is None:  # in a script, each process has new types
         raise OSError(f"{kind.__module__} has no file, as it was run, to name them by")
     return f"{kind.__module__}\n{text.text}"

@@ -93,7 +93,7 @@ def finish_block(
 
     A worker that outlived its client may have written it meanwhile; then it stays as it is.
     """
-    store = address.store()
+    study, store = study_of(study), address.store()
     region = store.layout.region(task)
     size = size_of(region)
     if store.has(region):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -18,6 +19,8 @@ from stiction.study.variables.own import FindMeasure, OwnMeasure, own_measure
 from stiction.system.description import Description
 from stiction.text.paths import canonical_path, keys_of, parameter_names
 from stiction.text.validation import faulty, unknown_name
+
+REQUIRED = ("function", "source")  # keys of a stored measure
 
 
 def is_description(value: Any) -> Any:
@@ -112,10 +115,11 @@ def references_of(value: Any) -> Any:
 def _reference(each: Any) -> Any:
     if isinstance(each, str) and ":" in each:
         return OwnMeasure(each, None)
-    if isinstance(each, Mapping) and {*each} == {"function", "source"}:
-        function, source = each["function"], each["source"]
-        if isinstance(function, str) and isinstance(source, str):
-            return OwnMeasure(function, source)
+    if isinstance(each, Mapping) and {*each} in ({*REQUIRED}, {*REQUIRED, "reads"}):
+        function, source, reads = each["function"], each["source"], each.get("reads")
+        known = isinstance(reads, Mapping | None)
+        if known and isinstance(function, str) and isinstance(source, str):
+            return OwnMeasure(function, source, stored=reads)
     return each
 
 
@@ -125,7 +129,8 @@ def with_functions(measures: Any, find: FindMeasure) -> Any:
     for each in measures:
         with faults.of_part():
             own = isinstance(each, OwnMeasure) and each.function is None
-            found.append(find(each.reference, each.source) if own else each)
+            known = find(each.reference, each.source) if own else each
+            found.append(replace(known, stored=each.stored) if own else each)
     faults.refuse()
     return found
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property, lru_cache, partial
 from itertools import product
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, Any, ClassVar, NamedTuple, Self
 
 from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
@@ -45,7 +45,6 @@ from stiction.study.variables.own import (
     OwnMeasure,
     measures_in_folder,
     measures_of_results,
-    refusal,
 )
 from stiction.system import parameter
 from stiction.system.description import Description
@@ -54,6 +53,8 @@ from stiction.text.sections import Section, as_html
 from stiction.text.toml import folder_of, read_changed, read_json
 from stiction.text.units import Quantity, Read, Whole
 from stiction.text.validation import Described, faulty, unknown_name
+
+HERE = "; another process knows the text only: give the value there, or take engine=st.Threads()"
 
 
 class Study(Described):
@@ -338,7 +339,7 @@ class Study(Described):
         """Return the study as one JSON string."""
         return json.dumps(self.to_dict())
 
-    def __reduce__(self) -> tuple[Callable[[str, bool], Study], tuple[str, bool]]:
+    def __reduce__(self) -> tuple[Callable[[str, bool], Study | UnreadStudy], tuple[str, bool]]:
         """Pickle as text, which other processes can read, including users' laws.
 
         Measures that may not be run here may not be run there.
@@ -358,11 +359,24 @@ def _without_function(study: Study) -> list[OwnMeasure]:
     return [each for each in own if each.function is None]
 
 
+class UnreadStudy(NamedTuple):
+    """A study that another process could not read from its text: the faults."""
+
+    faults: tuple[Fault, ...]
+
+
 @lru_cache(maxsize=4)
-def _from_text(text: str, trust: bool) -> Study:
+def _from_text(text: str, trust: bool) -> Study | UnreadStudy:
+    """Read a study in another process; its errors come later, as dask waits for ever for it."""
     raw, find = read_json(text), finder_for_results(trust=True)  # its law was made here
     own = measures_of_results(trust)
-    return Study.from_dict(raw, find=find, locate=locate_nothing, find_measure=own)
+    try:
+        study = Study.from_dict(raw, find=find, locate=locate_nothing, find_measure=own)
+        return study_of(study) if trust else study
+    except DescriptionError as error:
+        return UnreadStudy(
+            tuple(each._replace(message=each.message + HERE) for each in error.faults)
+        )
 
 
 def _in_file(fault: Fault) -> Fault:
@@ -371,19 +385,22 @@ def _in_file(fault: Fault) -> Fault:
     return Fault(path if path.startswith("axes") else f"study.{path}", fault.message)
 
 
-def study_of(source: Study | str | Path) -> Study:
-    """Return a study, the given one or that of a file, all of whose measures may be run.
+def study_of(source: Study | UnreadStudy | str | Path) -> Study:
+    """Return a study, the given one or that of a file, all of whose measures can be run.
 
     Raises
     ------
     DescriptionError
-        If it is neither, or has measures that may not be run.
+        If it is neither, or has measures that may not be run, or are others now.
     """
     if isinstance(source, str | Path):
         return Study.from_toml(source)
     if not isinstance(source, Study):
+        if isinstance(source, UnreadStudy):
+            raise DescriptionError(source.faults)
         remedy = "make one with st.Study(...), or give the path of its file"
         raise DescriptionError.of("study", f"{echo(source)} is not a Study; {remedy}")
-    for each in _without_function(source):
-        raise refusal(each.reference)
+    for each in source.measures:
+        if isinstance(each, OwnMeasure):
+            each.refuse_others()
     return source

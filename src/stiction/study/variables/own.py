@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from math import nan
 from pathlib import Path
 from traceback import extract_tb
 from types import FunctionType
-from typing import TYPE_CHECKING, Any, get_type_hints
+from typing import TYPE_CHECKING, Any, cast, get_type_hints
 
 from stiction.errors import DescriptionError, StictionError, echo, one_line
+from stiction.own_code.identity import differences, refuse_unknown, values_outside
 from stiction.own_code.loading import (
     Role,
     module_in_folder,
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from stiction.trajectory import Trajectory
 
 MEASURE = Role("study.measures", "measure", "function", "mymeasures.py:mean_angle")
+INSIDE = "inside the function"
 WRITE = "def mean_angle(run) -> Annotated[float, 'deg']: ..."
 
 # from a measure's reference, and its text if stored, to the measure
@@ -54,11 +56,14 @@ class OwnMeasure:
         The text that defines it; None as long as its file has not been read.
     function : callable, optional
         From a `Trajectory` to a number; None if its text came from a store and may not be run.
+    stored : mapping, optional
+        The values outside its text that it read when a store was made.
     """
 
     reference: str
     source: str | None
     function: Callable[[Trajectory], Any] | None = field(default=None, compare=False, repr=False)
+    stored: Mapping[str, str] | None = field(default=None, compare=False, repr=False)
 
     def __post_init__(self) -> None:
         """Note that the function may be run in this process."""
@@ -85,9 +90,25 @@ class OwnMeasure:
         said = inspect.getdoc(self.function) or self.name.replace("_", " ")
         return said.partition("\n")[0].rstrip(".")
 
-    def table(self) -> dict[str, str | None]:
+    def table(self) -> dict[str, Any]:
         """Return the measure as a table, from which a finder restores it."""
-        return {"function": self.reference, "source": self.source}
+        own = cast(FunctionType | None, self.function)
+        reads = self.stored if own is None else values_outside(own)
+        return {"function": self.reference, "source": self.source, "reads": reads}
+
+    def refuse_others(self) -> None:
+        """Refuse to compute numbers for a store if the function now reads other values.
+
+        Raises
+        ------
+        DescriptionError
+            Which names the values; or if the function may not be run.
+        """
+        if self.function is None:
+            raise refusal(self.reference)
+        said = "" if self.stored is None else differences(self.stored, self.table()["reads"])
+        if said:
+            raise MEASURE.fault(f"{self.name} reads what has changed since it was stored: {said}")
 
     def value(self, run: ObservedRun) -> float:
         """Return the number; NaN if the samples are too few for it.
@@ -197,7 +218,8 @@ def own_measure(function: Any) -> OwnMeasure:
     Raises
     ------
     ValueError
-        If its name or its text cannot be kept, or it cannot be called with a run.
+        If its name or its text cannot be kept, if it cannot be called with a run, or if it reads
+        what may change unnoticed.
     """
     if not isinstance(function, FunctionType):
         raise ValueError(f"{echo(function)} is neither a measure's name nor a function")
@@ -222,6 +244,7 @@ def own_measure(function: Any) -> OwnMeasure:
             f"{name} uses {', '.join(lost)} of another cell; define them in the same cell, or in "
             "a file"
         )
+    refuse_unknown(function, INSIDE)
     unit_of(function)
     return OwnMeasure(f"{text.name}:{name}", text.text, function)
 
