@@ -146,8 +146,11 @@ class Trajectory:
 
     @cached_property
     def samples(self) -> ColumnTable:
-        """The samples as plain arrays, ``run.samples["u_x"]`` for example."""
-        return self.arrays()
+        """The samples as plain arrays, ``run.samples["u_x"]`` for example; they are read-only."""
+        found = self.arrays()
+        for column in found.columns.values():  # all that analyse the run see them
+            column.values.flags.writeable = False
+        return found
 
     @cached_property
     def data(self) -> xr.Dataset:

@@ -121,6 +121,19 @@ def test_tables_of_pandas_have_one_row_a_sample_and_one_a_stick(run):
     assert len(sticks) == run.statistics.stick_count
 
 
+def test_samples_are_read_only(slider, tmp_path):
+    """A value that was written there changed the dataset, and each later analysis."""
+    run = st.simulate(slider, "50 ms", sample_rate="1 kHz")
+    for each in (run, st.load(run.save(tmp_path / "a.nc"))):
+        for values in (each.samples["spring_x"], each.data["spring_x"].values):
+            with pytest.raises(ValueError, match="read-only"):
+                values[:] = 0.0
+        frame, free = each.to_dataframe(), each.data.copy(deep=True)
+        frame["u_x"] += 1.0
+        free["u_x"] += 1.0
+        assert frame["u_x"].iloc[-1] == free["u_x"][-1] == each.samples["u_x"][-1] + 1.0
+
+
 def test_sticks_do_not_need_the_samples(slider):
     lazy = st.simulate(slider, "20 ms", sample_rate="1 kHz")
     assert lazy.sticks.sizes["stick"] == 9

@@ -101,10 +101,7 @@ class ObservedRun:
             even = self.solution._replace(times=self.time, samples=samples)
         else:
             even = solve_coarsely(self.description, even_times(self.description))
-        found = trajectory_of(self.description, even)
-        for column in found.samples.columns.values():  # several measures see them
-            column.values.flags.writeable = False
-        return found
+        return trajectory_of(self.description, even)
 
     @cached_property
     def _columns(self) -> Floats:
