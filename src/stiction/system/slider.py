@@ -30,7 +30,7 @@ from stiction.drive.recorded.reading import locator, with_rows
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.friction import Anisotropic, Law, has_state, read_law, registered_name
 from stiction.friction.user.loading import finder_for_descriptions, is_own
-from stiction.friction.user.validation import is_law, sound
+from stiction.friction.user.validation import WRITE, is_law, sound
 from stiction.names import draw, picture, warn_renamed
 from stiction.system.replacement import refusals
 from stiction.system.springs import Springs, read_springs, whole
@@ -56,9 +56,7 @@ def _within_a_right_angle(phi: float) -> float:
 
 def _is_law(value: Any) -> Any:
     if isinstance(value, type) or not isinstance(value, tuple):
-        raise ValueError(
-            f"{echo(value)} is not a friction law; write for example st.Coulomb(mu_0=0.2)"
-        )
+        raise ValueError(f"{echo(value)} is not a friction law; {_remedy_for(value)}")
     given = value.law if isinstance(value, Anisotropic) else value
     name = type(given).__name__
     try:
@@ -75,6 +73,17 @@ def _is_law(value: Any) -> Any:
     if law is given:
         return value
     return value._replace(law=law) if isinstance(value, Anisotropic) else law
+
+
+def _remedy_for(value: Any) -> str:
+    """Return the remedy for an object that is not a law; for a user's own, how to write it."""
+    kind = value if isinstance(value, type) else type(value)
+    if isinstance(value, type) and issubclass(value, tuple):
+        return f"make one with the values of its fields, {kind.__name__}(...)"
+    if not (callable(value) or hasattr(kind, "coefficient") or hasattr(kind, "force")):
+        return "write for example st.Coulomb(mu_0=0.2)"
+    name = getattr(value, "__name__", kind.__name__)
+    return WRITE.format(name=name if name.isidentifier() else "MyLaw")
 
 
 def _is_drive(value: Any) -> Any:

@@ -7,6 +7,7 @@ import os
 import pickle
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -385,6 +386,36 @@ def test_a_law_made_in_python_is_checked_as_one_from_a_file(slider, of):
     ):
         with pytest.raises(st.DescriptionError, match=words):
             slider.replace(friction=of(law))
+
+
+class Plain:
+    def coefficient(law, v):
+        return 0.2
+
+    def slope(law, v):
+        return 0.0
+
+
+@dataclass(frozen=True)
+class Data(Plain):
+    mu: float = 0.2
+
+
+@pytest.mark.parametrize(
+    ("law", "words"),
+    [
+        (Plain(), r"write class Plain\(NamedTuple\) with its parameters as fields and the methods"),
+        (Plain, r"write class Plain\(NamedTuple\)"),
+        (Data(), r"write class Data\(NamedTuple\)"),
+        (lambda v: 0.2, r"write class MyLaw\(NamedTuple\)"),
+        (echo, r"write class echo\(NamedTuple\)"),
+        (Falling, r"make one with the values of its fields, Falling\(\.\.\.\)"),
+        (0.2, r"write for example st\.Coulomb\(mu_0=0\.2\)"),
+    ],
+)
+def test_what_is_not_a_law_is_told_how_to_write_one(slider, law, words):
+    with pytest.raises(st.DescriptionError, match=f"is not a friction law; {words}"):
+        slider.replace(friction=law)
 
 
 def test_the_example_describes_what_its_script_runs():
