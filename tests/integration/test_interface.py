@@ -179,6 +179,7 @@ def test_what_one_looks_at_has_a_short_text_and_a_table_for_notebooks(slider):
     base = st.Description(slider, st.Initial(), st.Settings(duration=5))
     study = st.Study(base=base, axes={"phi": st.Grid("1 deg", "3 deg", 3), "mass": st.Values([1])})
     assert repr(study) == "<Study of 3 runs: phi (3) x mass (1)>"
+    assert repr(st.Study(base=base, axes={"mass": st.Values([1])})) == "<Study of 1 run: mass (1)>"
     record = st.Record(time=np.arange(3000.0), force=np.ones(3000), normal_load="1 N")
     assert repr(record).startswith(
         "st.Record(time=<3000 values>, force=<3000 values>, normal_load="

@@ -425,6 +425,8 @@ def unknown_name(what: str, name: str, known: Iterable[str]) -> str:
 
 def _nearest(name: str, known: list[str]) -> list[str]:
     """Return the nearest known name; all of one stem if only the last word differs much."""
+    if same := [each for each in known if each.lower() == name.lower()]:
+        return same
     misspelt = get_close_matches(name, known, 1, MISSPELT)
     *stem, _ = re.split("[-_]", name)
     of_stem = [each for each in known if re.split("[-_]", each)[:-1] == stem]

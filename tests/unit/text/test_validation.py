@@ -111,3 +111,9 @@ def test_each_part_of_a_description_is_replaced_in_one_way():
     assert [fault.path for fault in caught.value.faults] == ["Settings.duration", "Settings.rtoll"]
     with pytest.raises(st.DescriptionError, match=r"write settings\.replace\(rtol=3\)"):
         whole.run.rtol = 3
+
+
+def test_a_name_in_capitals_is_the_nearest(slider):
+    """k_X is nearer to k_x than to k_y."""
+    with pytest.raises(st.DescriptionError, match="did you mean 'k_x'"):
+        slider.replace(k_X=1.0)

@@ -13,6 +13,7 @@ from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
 from stiction.drive.recorded.reading import Locate, locate_nothing, locator
 from stiction.errors import DescriptionError, Fault, echo
+from stiction.formats.table import number_of
 from stiction.friction.user.loading import Find, finder_for_descriptions, finder_for_results, is_own
 from stiction.names import old_method
 from stiction.study.plan.axes import axis_table
@@ -212,14 +213,17 @@ class Study(Described):
     def __repr__(self) -> str:
         """Return a one-line summary."""
         axes = " x ".join(f"{path} ({axis.count})" for path, axis in self.axes.items())
-        return f"<Study of {self.layout.runs} runs: {axes}>"
+        return f"<{self._in_words()}: {axes}>"
+
+    def _in_words(self) -> str:
+        return f"Study of {number_of(self.layout.runs, 'run')}"
 
     def _repr_html_(self) -> str:
         axes = {"axes": {path: axis_table(axis) for path, axis in self.axes.items()}}
         kept = f"Stored of each run: {', '.join(map(str, (*self.measures, *self.traces)))}."
         return as_html(
             [
-                Section(f"Study of {self.layout.runs} runs", [kept], parameter_table(axes)),
+                Section(self._in_words(), [kept], parameter_table(axes)),
                 Section("Base", [], parameter_table(slider_tables(self.base.slider))),
             ]
         )
