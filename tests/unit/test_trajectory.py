@@ -140,14 +140,20 @@ def test_sticks_do_not_need_the_samples(slider):
     assert "data" not in vars(lazy)
 
 
-def test_mu_is_the_law_s_coefficient_in_steady_sliding():
+@pytest.mark.parametrize("cell", [None, 0.0, 50.0])
+def test_mu_is_the_share_of_the_law_s_coefficient_along_the_cell_in_steady_sliding(cell):
     law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.3, v_f=0.01)
-    slider = st.presets.nakano_popov_2020().replace(friction=law, phi="30 deg", c_x=5.0, c_y=5.0)
+    slider = st.presets.nakano_popov_2020().replace(
+        friction=law, phi="30 deg", c_x=5.0, c_y=5.0,
+        cell_angle=None if cell is None else f"{cell} deg",
+    )  # fmt: skip
     run = st.simulate(slider, "40 s", sample_rate="10 Hz")
-    assert float(run.final["mu"]) == pytest.approx(law.coefficient(1e-3), rel=1e-4)
+    angle = -slider.phi if cell is None else np.radians(cell)  # from the drive; by default x
+    steady = law.coefficient(1e-3) * np.cos(angle)
+    assert float(run.final["mu"]) == pytest.approx(steady, rel=1e-4)
     d = run.data
     along = np.hypot(d["spring_x"], d["spring_y"]) * np.cos(
-        np.arctan2(d["spring_y"], d["spring_x"]) - slider.phi
+        np.arctan2(d["spring_y"], d["spring_x"]) - slider.phi - angle
     )
     np.testing.assert_allclose(d["mu"], along / d["normal_load"], rtol=1e-12, atol=1e-15)
 

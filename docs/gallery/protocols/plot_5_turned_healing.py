@@ -23,6 +23,7 @@ slider = st.Slider(
     normal_load="10 N",
     friction=rock,
     drive=test,
+    cell_angle="0 deg",  # along the drive
 )
 figure, (path, gain) = plt.subplots(1, 2, figsize=(6.8, 3.0), layout="constrained")
 for phi, colour, marker in ((0, "#0072b2", "o"), (2, "#d55e00", "s"), (5, "#000000", "^")):

@@ -134,7 +134,7 @@ class Record(Described):
     force_across, load : array, optional
         (n,), N: the force across the drive, and the normal load over time, if they were measured.
     drive_position : array, optional
-        (n,), displacement of the drive, m, if it was measured.
+        (n,), displacement of the drive along the force, m, if it was measured.
     zero : float or str, optional
         N, reading of the load cell without load; it is subtracted from the force, then set to 0.
         With its standard uncertainty, ``"0.8 +- 0.1 N"``, which the sensor of the force then has.

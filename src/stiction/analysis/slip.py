@@ -13,7 +13,6 @@ from stiction.arrays import Floats, Indices
 from stiction.errors import Status
 from stiction.result.peak import largest_between
 from stiction.result.table import largest
-from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
@@ -57,8 +56,7 @@ def _mean_speeds(run: Trajectory, at: Indices) -> Floats:
 
 def cell_force(run: Trajectory) -> Floats:
     """Return the force that the load cell shows, N: k_x u_x, or that along its own axis."""
-    cell = cell_axis(run.slider)
-    force: Floats = cell.x * run.samples["spring_x"] + cell.y * run.samples["spring_y"]
+    force: Floats = run.slider.load_cell.along(run.samples["spring_x"], run.samples["spring_y"])
     return force
 
 
@@ -70,8 +68,8 @@ def largest_coefficient(run: Trajectory) -> float:
     slider, samples = run.slider, run.samples
     force, load = cell_force(run), samples["normal_load"]
     if np.ptp(load) == 0.0 < load[0]:
-        cell = cell_axis(slider)
-        rate = cell.x * slider.k_x * samples["v_x"] + cell.y * slider.k_y * samples["v_y"]
+        rates = slider.k_x * samples["v_x"], slider.k_y * samples["v_y"]
+        rate = slider.load_cell.along(*rates)
         return largest_between(samples["time"], force, rate).force / float(load[0])
     return largest(np.divide(force, load, out=np.full_like(force, nan), where=load > 0.0))[1]
 

@@ -13,7 +13,6 @@ from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, creep_distance, swing_of_slip
 from stiction.friction import Anisotropic, has_state
-from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.text.quantity.wording import in_words, percent
 
@@ -61,7 +60,7 @@ def creep_suppositions(slider: Slider, p: Prediction) -> list[str]:
 
 def _of_load_cell(s: Slider) -> Iterator[str]:
     """Yield the assumption that the load cell measures k_x u_x, if it measures other forces."""
-    cell = cell_axis(s)
+    cell = s.load_cell
     if abs(cell.y) > ASKEW:
         yield (
             "the load cell lies along the spring's axis x; here it lies at "

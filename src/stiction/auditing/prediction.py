@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from math import atan2, cos, hypot, isfinite, nan, pi, sin, sqrt
 from typing import Any, NamedTuple
 
@@ -12,7 +11,6 @@ from stiction import theory
 from stiction.analysis.creep.first_slip import along_force, force_direction, slips_at_once
 from stiction.friction import Anisotropic, has_state
 from stiction.friction.law import static_coefficient
-from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
 from stiction.system.tensors import damping_tensor, stiffness_tensor
 
@@ -185,11 +183,9 @@ def swing_of_slip(slider: Slider) -> tuple[float, float, float]:
     return *along_force(slider), _on_cell(slider, force_direction(slider))
 
 
-def _on_cell(slider: Slider, direction: Iterable[float]) -> float:
+def _on_cell(slider: Slider, direction: tuple[float, float]) -> float:
     """Return the share of a force in a direction (x, y) that the load cell measures."""
-    x, y = direction
-    cell = cell_axis(slider)
-    return abs(cell.x * x + cell.y * y)
+    return float(abs(slider.load_cell.along(*direction)))
 
 
 def _forces(

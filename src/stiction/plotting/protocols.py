@@ -106,7 +106,7 @@ def plot_hysteresis(found: Hysteresis, ax: Axes | None = None) -> Axes:
         middle = 0.5 * (float(np.max(last.force)) + float(np.min(last.force)))
         ax.axhline(middle, color=BLACK, linewidth=0.4)
         ax.set_xlabel("travel of the drive since its turn (mm)")
-        ax.set_ylabel("force along the drive (N)")
+        ax.set_ylabel("force (N)")
         ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0))
     return ax
 

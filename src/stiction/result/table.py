@@ -40,7 +40,7 @@ VARIABLES = {
     "normal_load": ("N", "normal load"),
     "mu": (
         "1",
-        "apparent friction coefficient: spring force along X, or the load cell, over the load",
+        "apparent friction coefficient: spring force along the load cell, over the load",
     ),
     "sticking": ("1", "whether the slip is zero"),
 }
@@ -212,13 +212,14 @@ def sample_table(
 
 
 def apparent_friction(slider: Slider, values: Mapping[Any, Any] | ColumnTable) -> Any:
-    """Return the spring force along the load cell, by default along X, over the normal load.
+    """Return the spring force along the load cell, by default k_x u_x, over the normal load.
 
-    A friction test reports this ratio; in steady sliding it is the law's coefficient.
+    A friction test reports this ratio. In steady sliding it is the law's coefficient, times the
+    cosine of the angle from the drive to the cell.
     """
-    c, s = slider.cell
     with np.errstate(divide="ignore", invalid="ignore"):  # the load may vanish at the end of a run
-        return (values["spring_x"] * c + values["spring_y"] * s) / values["normal_load"]
+        along = slider.load_cell.along(values["spring_x"], values["spring_y"])
+        return along / values["normal_load"]
 
 
 def mean_speeds(time: np.ndarray, *position: np.ndarray) -> np.ndarray:

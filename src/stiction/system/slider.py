@@ -32,6 +32,7 @@ from stiction.friction import Anisotropic, Law, has_state, read_law, registered_
 from stiction.friction.user.loading import finder_for_descriptions, is_own
 from stiction.friction.user.validation import WRITE, is_law, sound
 from stiction.names import draw, picture, warn_renamed
+from stiction.system.load_cell import CellAxis
 from stiction.system.replacement import refusals
 from stiction.system.springs import Springs, read_springs, whole
 from stiction.system.tensors import ROUND, solver_axes, unit_vector
@@ -217,9 +218,10 @@ class Slider(Apparatus):
     damping_angle : str, optional
         From x, towards y, to the axis of `c_x`, where dampers have axes of their own.
     cell_angle : str, optional
-        From the drive direction X, towards Y, to the axis of the load cell. By default ``mu`` is
-        of the force along X, and a run is analysed by its force along x; else both are along the
-        cell.
+        From the drive direction X, towards Y, to the axis of the load cell; by default it is that
+        of the spring, x, and the cell reads k_x u_x. All that is said of the force, ``mu`` and the
+        results of friction tests among it, is of the force along the cell: in steady sliding it
+        reads cos(phi) of friction; at an angle of ``"0 deg"``, along the drive, all of it.
     driven : {"plate", "spring"}, optional
         What the drive moves: the plate, with the far end of the spring fixed (Fig. 1 and
         Eq. (1)), or the far end of the spring, with the plate at rest (Fig. 2). At constant
@@ -358,12 +360,17 @@ class Slider(Apparatus):
         x, y = (float(k / axes.mass) for k in axes.stiffness)  # squares of the frequencies
         return self.k_x / x, self.k_y / y
 
-    @property
-    def cell(self) -> tuple[float, float]:
-        """Unit vector of the load cell's axis, along (x, y); X's by default."""
-        if self.cell_angle is None:
-            return self.direction
-        return unit_vector(self.misalignment + self.cell_angle)
+    @cached_property
+    def load_cell(self) -> CellAxis:
+        """Axis of the load cell, in x and y: of the spring along x, or that of `cell_angle`."""
+        x, y = 1.0, 0.0
+        if self.cell_angle is not None:
+            x, y = unit_vector(self.misalignment + self.cell_angle)
+        share = float(self.along_drive(x, y))
+        share = 0.0 if abs(share) < ROUND else share  # at a right angle
+        velocity = nominal_velocity(self.motion)
+        turned = (velocity < 0.0) != (share < 0.0)
+        return CellAxis(x, y, share, velocity * share, -1.0 if turned else 1.0)
 
     @property
     def modulation_frequencies(self) -> tuple[float, ...]:

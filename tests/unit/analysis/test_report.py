@@ -436,20 +436,25 @@ def test_a_run_of_a_test_with_a_name_is_told_as_such(preset, title):
     assert str(its or "") == str(found.tables()[1] if title else "")
 
 
-def test_a_test_says_along_which_axis_its_coefficients_are():
+def test_a_test_and_its_report_have_one_friction_coefficient():
     """At 20 deg one report had "steady before 0.6046" and "first break-away 0.5681"."""
     law = st.ExponentialWeakening(mu_0=0.2, mu_inf=0.25, v_f="1 mm/s")
     test = st.protocols.velocity_steps(["1 mm/s", "3 mm/s"], distance="6 mm")
     rig = {"mass": 0.25, "k_x": 1e3, "k_y": 1e5, "c_x": 30.0, "normal_load": 10.0}
-    for angles, two in (
-        ({"phi": "0 deg"}, False),
-        ({"phi": "10 deg"}, True),
-        ({"phi": "10 deg", "cell_angle": "0 deg"}, False),
+    for angles, share in (
+        ({"phi": "0 deg"}, 1.0),
+        ({"phi": "10 deg"}, np.cos(np.radians(10.0))),
+        ({"phi": "10 deg", "cell_angle": "0 deg"}, 1.0),
     ):
         slider = st.Slider(**rig, **angles, friction=law, drive=test)
-        text = str(st.analyse(st.simulate(slider, sample_rate="200 Hz")))
-        assert "Velocity steps" in text
-        assert ("Here coefficients are of the force along the drive" in text) == two
+        run = st.simulate(slider, sample_rate="200 Hz")
+        found = st.analyse(run)
+        assert "Velocity steps" in str(found)
+        (step,) = found.parts["procedure"].steps
+        late = run.samples["mu"][run.samples["time"] > run.samples["time"][-1] - 0.4]
+        assert step.steady_after == pytest.approx(float(late.mean()), rel=1e-6)
+        # where the rig is turned, friction turns on with the way: over 6 mm to some 1e-3
+        assert step.steady_after == pytest.approx(share * law.coefficient(3e-3), rel=3e-3)
 
 
 def test_a_run_that_is_too_short_for_a_slip_is_told_how_long_would_do() -> None:

@@ -134,6 +134,7 @@ def test_turned_by_a_right_angle_nothing_changes(name):
         phi=f"{slider.phi + (back if slider.phi > 0 else -back)!r} rad",
         mass_angle=f"{slider.mass_angle + back!r} rad",
         damping_angle=f"{slider.damping_angle + back!r} rad",
+        cell_angle=f"{-slider.misalignment!r} rad",  # where the axis x was
     )
     a = run_of(name).data
     b = st.simulate(turned, duration=0.25, sample_rate=200.0, rtol=1e-8).data
@@ -149,6 +150,7 @@ def test_equal_springs_have_no_axes(angle):
         phi=f"{5.0 - angle!r} deg",
         mass_angle=f"{35.0 - angle!r} deg",
         damping_angle=f"{-50.0 - angle!r} deg",
+        cell_angle="-5 deg",  # where the axis x was
     )
     a, b = (
         st.simulate(each, duration=0.2, sample_rate=200.0, rtol=1e-8).data

@@ -11,7 +11,7 @@ from stiction.arguments import with_article
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
-from stiction.system.load_cell import cell_axis, stiffness_of_cell
+from stiction.system.load_cell import CellAxis, stiffness_of_cell, travel_along_cell
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.trajectory import Trajectory
@@ -40,9 +40,8 @@ def as_record(source: Trajectory | Record) -> Record:
 def record_of(run: Trajectory) -> Record:
     """Return a run as its load cell records it, with position, slip speed and stick intervals.
 
-    The force is k_x u_x, or that along the cell's own axis where the slider has a `cell_angle`.
-
-    The force is positive where the spring pulls along the drive. NaN samples at the end of a failed
+    The force is that along the `load_cell` of the slider: k_x u_x where it has no `cell_angle`. It
+    is positive where the spring pulls along the drive. NaN samples at the end of a failed
     run are left out.
 
     Examples
@@ -53,9 +52,7 @@ def record_of(run: Trajectory) -> Record:
     1000.0
     """
     slider, samples = run.slider, run.samples
-    cell = cell_axis(slider)
-    c, s = slider.direction
-    x, y, way = cell.x, cell.y, cell.way
+    way = slider.load_cell.way
     stiffer = ("v_x", "v_y")[slider.stiffer_axis]
     names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", stiffer)
     columns = np.stack([samples[name] for name in names])
@@ -64,23 +61,21 @@ def record_of(run: Trajectory) -> Record:
         raise ResultError("no sample of the run is a number; simulate it again")
     record = Record(
         time=time,
-        force=way * _along_cell(x, y, f_x, f_y),
+        force=way * _along_cell(slider.load_cell, f_x, f_y),
         **apparatus(slider),
         position=way * X,
         slip_speed=slip_speed,
         load=None if slider.load is None else load,
     )
-    travel = None
-    if not isinstance(slider.motion, ConstantVelocity):
-        d_X, d_Y = slider.motion.travel(time[0], time - time[0])
-        travel = way * (cell.share * d_X + (y * c - x * s) * d_Y)
+    steady = isinstance(slider.motion, ConstantVelocity)
+    travel = None if steady else travel_along_cell(slider, time)
     record._of_run = OfRun(slider, run.stick_intervals, time, rate, travel)
     return record
 
 
-def _along_cell(x: float, y: float, f_x: Floats, f_y: Floats) -> Floats:
-    """Return the part of a force along (x, y): zero where it stands across, but for rounding."""
-    force = f_x if y == 0.0 else x * f_x + y * f_y
+def _along_cell(cell: CellAxis, f_x: Floats, f_y: Floats) -> Floats:
+    """Return the part of a force along a cell: zero where it stands across, but for rounding."""
+    force: Floats = cell.along(f_x, f_y)
     whole = max(np.abs(f_x).max(), np.abs(f_y).max())
     return force if np.abs(force).max() > ROUND * whole else np.zeros_like(force)
 
@@ -90,7 +85,7 @@ def apparatus(slider: Slider) -> dict[str, Any]:
     return {
         "normal_load": slider.normal_load,
         "stiffness": stiffness_of_cell(slider, slider.k_y),
-        "drive_velocity": abs(cell_axis(slider).velocity) or None,
+        "drive_velocity": abs(slider.load_cell.velocity) or None,
         "mass": slider.masses[0],
     }
 

@@ -14,7 +14,7 @@ from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.errors import ResultError, echo
 from stiction.recording.sensor import Sensor
-from stiction.system.load_cell import cell_axis
+from stiction.system.load_cell import travel_along_cell
 from stiction.text.units import Quantity, SampleRate
 from stiction.text.validation import Described, read_arguments
 from stiction.trajectory import Trajectory
@@ -41,8 +41,9 @@ def measure(
     run : Trajectory
         Sampled finely enough for the filters: at least 2.5 times the highest cut-off.
     sensor : Sensor or dict
-        Of the force along the drive; or from a channel to its sensor: ``force``, ``force_across``,
-        ``load``, ``position``, ``drive_position``, ``slip_speed``. Other channels are not recorded.
+        Of the force along the load cell; or from a channel to its sensor: ``force``,
+        ``force_across``, ``load``, ``position``, ``drive_position``, along the cell, too,
+        ``slip_speed``. Other channels are not recorded.
     sample_rate : float or str, optional
         Of the record, Hz; by default that of the run. Between the run's samples, straight lines.
     seed : int, optional
@@ -108,14 +109,13 @@ def measure(
 
 
 def _others(run: Trajectory, plain: Record) -> dict[str, Floats]:
-    """Return the channels of a run beside the force along the drive, at the record's times."""
-    data, cell = run.data.isel(time=slice(0, len(plain))), cell_axis(run.slider)
+    """Return the channels of a run beside the force along the cell, at the record's times."""
+    data, cell = run.data.isel(time=slice(0, len(plain))), run.slider.load_cell
     along, across = data["spring_x"].values, data["spring_y"].values
-    travel, _ = run.slider.motion.travel(0.0, plain.time)
     return {
-        "force_across": cell.way * (cell.x * across - cell.y * along),
+        "force_across": cell.way * cell.across(along, across),
         "load": data["normal_load"].values,
         "position": plain.position,
-        "drive_position": cell.way * np.asarray(travel),
+        "drive_position": travel_along_cell(run.slider, plain.time),
         "slip_speed": plain.slip_speed,
     }

@@ -22,11 +22,6 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
     from stiction.text.sections import SectionReport
 
-TWO_AXES = (
-    "Here coefficients are of the force along the drive, elsewhere in this report of k_x u_x. "
-    "State cell_angle to have them along one axis."
-)
-
 
 class ColumnsOfTest(NamedTuple):
     """Units of the numbers of a test by name: attributes of its analysis, or of each part of it."""
@@ -109,17 +104,8 @@ def _first(source: Trajectory | Record, names: Iterable[str]) -> Any:
 
 def section(found: Analysis) -> Section | None:
     """Return its section."""
-    its, source = found.parts["procedure"], found.source
-    if its is None:
-        return None
-    shown: Section = its.section
-    if (
-        isinstance(source, Trajectory)
-        and source.slider.cell_angle is None
-        and source.slider.misalignment != 0.0
-    ):
-        shown = shown._replace(sentences=[*shown.sentences, TWO_AXES])
-    return shown
+    its: SectionReport | None = found.parts["procedure"]
+    return None if its is None else its.section
 
 
 def name_of(its: SectionReport) -> str:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.analysis.drive.measured_drive import measured_stretches
-from stiction.analysis.measurement.run_record import as_record
+from stiction.analysis.measurement.run_record import as_record, record_of
 from stiction.analysis.protocols.settling import SETTLED, STILL_LOADED, has_settled
 from stiction.analysis.record import Record
 from stiction.analysis.signals.digitised import resolution
@@ -23,6 +23,7 @@ from stiction.drive import (
     drive_stretches,
     load_stretches,
 )
+from stiction.drive.program import nominal_velocity
 from stiction.errors import ResultError
 from stiction.friction import Law
 from stiction.recording.noise import rounding_error
@@ -37,7 +38,6 @@ OFF_BY = 0.05
 BESIDE_JUMP = 4  # samples on each side of a jump, over which two lines meet there
 KNOWN_TIME = 0.01  # of the interval between samples: a clock is no better than that
 FEWEST_SAMPLES = 3  # samples that show a change, and scatter
-COLUMNS = ("time", "spring_x", "spring_y", "u_x", "u_y", "normal_load")
 
 
 class ConstantStretch(NamedTuple):
@@ -81,13 +81,14 @@ class FrictionTest(NamedTuple):
     time : ndarray
         (n,), s.
     force, load : ndarray
-        (n,), force along the drive, and normal load at the same time, N.
+        (n,), force along the load cell, positive where it pulls along X, and normal load at the
+        same time, N.
     lag : ndarray
         (n,), elongation of the spring along the drive, m; zero where the stiffness is unknown.
     stiffness : float
-        Of the spring along the drive, N/m; NaN if unknown.
+        Of the spring along the drive, N/m, by the force on the load cell; NaN if unknown.
     damping : float
-        Of a damper beside it, N s/m; zero if unknown.
+        Of a damper beside it, N s/m, likewise; zero if unknown.
     off : float
         Force by which all samples may be off together, N: rounding, or the tolerance of a run.
     law : object or None
@@ -116,7 +117,7 @@ class FrictionTest(NamedTuple):
 
     @property
     def mu(self) -> Floats:
-        """Force along the drive over normal load, (n,)."""
+        """Force along the load cell over normal load, (n,)."""
         return self.force / self.load
 
     def within(self, start: float, end: float) -> Indices:
@@ -243,28 +244,23 @@ def friction_test(source: Trajectory | Record, program: DriveProgram | None = No
 
 
 def of_run(run: Trajectory, drive: ConstantVelocity | DriveProgram) -> FrictionTest:
-    """Return a run as a friction test with the stretches of `drive`.
+    """Return the record of a run as a friction test with the stretches of `drive`.
 
-    The empty end of a run that failed is left out.
+    In steady sliding the load cell reads its share of friction, which acts along the drive, and of
+    what springs and dampers carry of it.
     """
-    slider, samples = run.slider, run.samples
-    there = np.isfinite(samples["spring_x"])
-    d = {name: samples[name][there] for name in COLUMNS}
-    force = slider.along_drive(d["spring_x"], d["spring_y"])
-    way = np.array(slider.direction)
-    return FrictionTest(
-        d["time"],
-        force,
-        np.asarray(d["normal_load"], dtype=np.float64),
-        slider.along_drive(d["u_x"], d["u_y"]),
-        1.0 / float(way**2 @ [1.0 / slider.k_x, 1.0 / slider.k_y]),
-        float(way @ damping_tensor(slider) @ way),
-        run.description.run.rtol * float(np.abs(force).max(initial=0.0)),
-        slider.law,
-        drive,
-        constant_stretches(
-            drive_stretches(drive), load_stretches(slider.normal_load, slider.load), d["time"]
-        ),
+    slider, record = run.slider, record_of(run)
+    found = of_record(record, drive, load_stretches(slider.normal_load, slider.load))
+    share, along = abs(slider.load_cell.share), np.array(slider.direction)
+    names = ("u_x", "u_y", "normal_load")
+    u_x, u_y, load = (run.samples[name][: len(record)] for name in names)
+    return found._replace(
+        load=np.asarray(load, dtype=np.float64),
+        lag=slider.along_drive(u_x, u_y),
+        stiffness=share / float(along**2 @ [1.0 / slider.k_x, 1.0 / slider.k_y]) or nan,
+        damping=share * float(along @ damping_tensor(slider) @ along),
+        off=run.description.run.rtol * float(np.abs(record.force).max()),
+        law=slider.law,
     )
 
 
@@ -275,9 +271,9 @@ def of_record(
     measured: Stretches | None = None,
 ) -> FrictionTest:
     """Return a record with a normal load as a friction test, by its program or as measured."""
-    force = record.force
     if measured is None:
         found = constant_stretches(drive_stretches(drive), loads, record.time)
+        force = -record.force if nominal_velocity(drive) < 0.0 else record.force
     else:
         found = constant_stretches(measured, loads, record.time, -inf)
         force = _against_friction(record, found)

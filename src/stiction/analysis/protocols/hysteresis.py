@@ -35,9 +35,11 @@ class Loop(ShortRepr):
     Attributes
     ----------
     travel, force : ndarray
-        (n,), displacement of the drive since the turn, m, harmonics included; force along it, N.
+        (n,), displacement of the drive since the turn, m, harmonics included; force along the load
+        cell, N.
     area : float
-        Work of the drive per loop, the integral of the force over its travel, J.
+        The integral of the force over the travel, J: where the cell lies along the drive, the work
+        of the drive per loop.
     width : float
         Distance between both branches at the middle force, m.
     friction : float
@@ -77,9 +79,9 @@ class Hysteresis(SectionReport, ShortRepr):
     def section(self) -> Section:
         """The loops in words and as a table."""
         last = self.loops[-1]
-        said = f"The last of {len(self.loops)} loops takes {in_words(last.area, 'J')}."
+        said = f"The last of {len(self.loops)} loops has an area of {in_words(last.area, 'J')}."
         if len(self.loops) == 1:
-            said = f"The loop takes {in_words(last.area, 'J')}."
+            said = f"The loop has an area of {in_words(last.area, 'J')}."
         rows = [
             (
                 str(n),
@@ -95,7 +97,7 @@ class Hysteresis(SectionReport, ShortRepr):
         if open_ones:
             sentences.append(
                 f"Not closed, since the drive ends elsewhere than it began: {in_list(open_ones)}. "
-                "Such an area is the work on all of the way."
+                "Such an area is that of all of the way."
             )
         return Section("Hysteresis", sentences, Table(headings, rows))
 
@@ -130,7 +132,7 @@ def hysteresis(source: Trajectory | Record, program: DriveProgram | None = None)
     >>> slider = st.presets.nakano_popov_2020().replace(friction=st.Coulomb(mu_0=0.2), drive=test)
     >>> found = st.analysis.hysteresis(st.simulate(slider, sample_rate="100 Hz"))
     >>> round(1e3 * found.loops[-1].area, 1)
-    24.4
+    24.2
     """
     test, way = _test(source, program)
     turns = _turns(way)

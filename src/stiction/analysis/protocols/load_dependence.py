@@ -35,7 +35,7 @@ class LoadDependence(SectionReport, ShortRepr):
     Attributes
     ----------
     load, force : ndarray
-        (n,), level of the load, N, and mean force along the drive in its last fifth, N.
+        (n,), level of the load, N, and mean force along the load cell in its last fifth, N.
     coefficient, error : float
         Slope of the line, and its standard error by scatter and by the errors of forces; NaN with
         fewer than three levels.

@@ -97,11 +97,11 @@ def peaks_of_run(run: Trajectory, slides: Sequence[ConstantStretch]) -> list[Pea
 
     The run is repeated, with samples within each of its own steps, then around the highest of them.
     """
-    slider = run.slider
+    slider, cell = run.slider, run.slider.load_cell
 
     def friction(times: Floats) -> Floats:
         u_x, u_y = states_at(run, times)[:, :2].T
-        return np.asarray(slider.along_drive(slider.k_x * u_x, slider.k_y * u_y))
+        return np.asarray(cell.ahead * cell.along(slider.k_x * u_x, slider.k_y * u_y))
 
     starts, lengths = panels(run, np.unique([t for slide in slides for t in slide[:2]]))
     ends = np.append(starts, starts[-1] + lengths[-1])

@@ -6,7 +6,6 @@ import numpy as np
 
 from stiction.analysis.record import Record
 from stiction.recording.sensor import Sensor
-from stiction.system.load_cell import cell_axis
 from stiction.trajectory import Trajectory
 
 EXACT = 1e-6  # of the largest force: the zero of a run is known, but for rounding
@@ -19,10 +18,10 @@ def with_both_forces(source: Trajectory | Record, record: Record) -> Record | No
     """
     if isinstance(source, Record):
         return record if record.force_across is not None else None
-    cell, samples = cell_axis(source.slider), source.samples
+    cell, samples = source.slider.load_cell, source.samples
     columns = np.stack([samples[name] for name in ("time", "spring_x", "spring_y")])
     time, f_x, f_y = columns[:, np.isfinite(columns).all(axis=0)]
-    across = np.interp(record.time, time, cell.way * (cell.x * f_y - cell.y * f_x))
+    across = np.interp(record.time, time, cell.way * cell.across(f_x, f_y))
     across.setflags(write=False)
     zero = EXACT * float(max(np.abs(record.force).max(), np.abs(across).max()))
     sensors = {"force_across": Sensor(zero_uncertainty=zero)} if zero else None

@@ -11,7 +11,7 @@ from stiction.auditing.simulated_test import CALM, SLIDES, SimulatedTest, relati
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.friction import Anisotropic
 from stiction.friction.law import static_coefficient
-from stiction.system.load_cell import ACROSS, cell_axis
+from stiction.system.load_cell import ACROSS
 from stiction.text.quantity.wording import in_words, percent
 
 if TYPE_CHECKING:
@@ -44,11 +44,11 @@ class FrictionBeside(NamedTuple):
 def friction_at(seen: SimulatedTest, at: int) -> FrictionBeside:
     """Return the friction at a sample of a run beside the component on its load cell."""
     samples, slider = seen.run.samples, seen.run.slider
-    cell, theta = cell_axis(slider), np.radians(samples["theta"][at])
+    cell, theta = slider.load_cell, np.radians(samples["theta"][at])
     x, y = cell.way * np.cos(theta), cell.way * np.sin(theta)
     force = float(samples["friction"][at])
-    across = abs(float(x * cell.y - y * cell.x)) * force
-    return FrictionBeside(force / slider.normal_load, float(x * cell.x + y * cell.y), across)
+    across = abs(float(cell.across(x, y))) * force
+    return FrictionBeside(force / slider.normal_load, float(cell.along(x, y)), across)
 
 
 def largest_force(seen: SimulatedTest) -> tuple[FrictionBeside, int, int]:

@@ -14,9 +14,7 @@ from stiction.auditing.assumptions import creep_suppositions, suppositions
 from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip
 from stiction.friction import has_state
 from stiction.linear_stability.linear import STABLE, UNSTABLE
-from stiction.system.load_cell import cell_axis
 from stiction.system.slider import Slider
-from stiction.system.tensors import ROUND
 from stiction.text.quantity.wording import in_words, to_error
 from stiction.text.sections import Table
 
@@ -110,10 +108,9 @@ def apparent_stiffness(slider: Slider) -> float:
     By Eq. (7) the transverse spring keeps its force, and only the soft one is loaded; both are
     where the first stick ends in a slip.
     """
-    cell, (x, y) = cell_axis(slider), slider.direction
+    cell, (x, y) = slider.load_cell, slider.direction
     across = cell.y * slider.k_y * y if slips_at_once(slider) else 0.0
-    share = slider.along_drive(cell.x, cell.y)
-    return (cell.x * slider.k_x * x + across) / share if abs(share) > ROUND else nan
+    return (cell.x * slider.k_x * x + across) / cell.share if cell.share else nan
 
 
 def peak(seen: SimulatedTest) -> float:

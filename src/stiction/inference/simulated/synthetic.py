@@ -18,7 +18,6 @@ from stiction.inference.simulated.jitter import SPARE, Jitter, SampledMotion, fi
 from stiction.inference.simulated.plan import Plan
 from stiction.recording.coloured_noise import draw_lasting
 from stiction.recording.sensor import FASTEST, digitise, low_pass
-from stiction.system.load_cell import cell_axis
 from stiction.system.parameter import change_unchecked
 from stiction.system.slider import Slider
 
@@ -82,13 +81,12 @@ def measure(
 ) -> dict[str, Floats]:  # fmt: skip
     """Return the channels of a motion as their sensors show them, along the load cell's axis."""
     u_x, u_y = motion.rows[:, 0], motion.rows[:, 1]
-    x, y = cell_axis(rig)[:2]
-    c, s = rig.direction
+    cell, (c, s) = rig.load_cell, rig.direction
     way = -1.0 if conditions.velocity < 0.0 else 1.0
     along, across = rig.k_x * u_x, rig.k_y * u_y
     exact = {
-        "force": way * (x * along + y * across),
-        "force_across": way * (x * across - y * along),
+        "force": way * cell.along(along, across),
+        "force_across": way * cell.across(along, across),
         "position": way * (conditions.velocity * motion.time - c * u_x - s * u_y),
     }
     places = min(conditions.block, MOST_PLACES)  # between two samples

@@ -58,11 +58,14 @@ def _over_load(force: float, run: ObservedRun) -> float:
 MEASURES: dict[str, Measure] = {
     "regime": Measure("1", "kind of motion", lambda run: KINDS.index(run.regime), KINDS, _always),
     "peak_force": Measure(
-        "N", "largest spring force along x, k_x u_x", lambda run: run.peak, known=_always
+        "N",
+        "largest spring force along x, k_x u_x for any cell_angle",
+        lambda run: run.peak,
+        known=_always,
     ),
     "mu_static": Measure(
         "1",
-        "apparent static friction coefficient: largest spring force along x over a constant load",
+        "apparent static friction coefficient: largest k_x u_x over a constant load",
         lambda run: _over_load(run.peak, run),
         known=_always,
     ),

@@ -6,11 +6,13 @@ from math import nan
 
 import numpy as np
 
+from stiction.analysis.drive.measured_drive import measured_stretches
 from stiction.analysis.motion.metadata.quantity import ALIKE_VALUES, FEWEST_SAMPLES, StatedQuantity
 from stiction.analysis.record import Record
 from stiction.analysis.signals.correlated_noise import correlation_time, standard_error
 from stiction.analysis.signals.straight_line import line
 from stiction.arrays import Floats
+from stiction.errors import ResultError
 
 # Of a record, for the speed of a drive that may turn, or rest within noise
 PARTS_OF_RECORD = 200, 66, 25
@@ -21,7 +23,10 @@ STARTS = 3.0  # times what noise alone may move by: a drive that rests between i
 
 
 def drive_velocity(record: Record) -> StatedQuantity | None:
-    """Compare the slope of the drive's displacement with the stated velocity."""
+    """Compare the slope of the drive's displacement with the stated velocity.
+
+    A drive that steps from one velocity to another has no slope; the stated one is one of them.
+    """
     if record.drive_position is None or len(record) < FEWEST_SAMPLES:
         return None
     way, stated = line(record.time, record.drive_position), record.stated_velocity or nan
@@ -32,6 +37,8 @@ def drive_velocity(record: Record) -> StatedQuantity | None:
     )  # fmt: skip
     if whole.agrees:  # a drive that jerks, or rings, rests and turns as well
         return whole
+    if _steps_to(stated, record.time, record.drive_position):
+        return None
     divided = [
         _speeds_of_parts(record.time, record.drive_position, most) for most in PARTS_OF_RECORD
     ]
@@ -42,6 +49,17 @@ def drive_velocity(record: Record) -> StatedQuantity | None:
     how = f"median speed of its displacement{', to and fro' if turns else ' in motion'}"
     error = float(speeds.std()) / len(speeds) ** 0.5
     return whole._replace(found=float(np.median(speeds)), error=error, how=how)
+
+
+def _steps_to(speed: float, time: Floats, position: Floats) -> bool:
+    """Return whether a drive steps between velocities, one of which is such a speed (m/s)."""
+    try:
+        speeds = [abs(each.velocity) for _, each in measured_stretches(time, position)]
+    except ResultError:
+        return False
+    several = max(speeds) - min((each for each in speeds if each), default=0.0)
+    near = [abs(each - speed) <= ALIKE_VALUES * speed for each in speeds]
+    return any(near) and several > ALIKE_VALUES * max(speeds)
 
 
 def _speeds_of_parts(
