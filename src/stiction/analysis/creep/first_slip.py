@@ -43,7 +43,16 @@ class FirstLoading(NamedTuple):
     end: int
 
 
-def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Floats) -> FirstLoading:
+def first_loading(
+    slider: Slider,
+    time: Floats,
+    elongation: Floats,
+    rate: Floats,
+    drive: Floats,
+    *,
+    fastest: float | None = None,
+    more: float = 0.0,
+) -> FirstLoading:
     """Find the start of the first slip.
 
     In a slip the mass gains on the drive, and the spring's elongation along the drive falls: by
@@ -57,13 +66,16 @@ def first_loading(slider: Slider, time: Floats, elongation: Floats, drive: Float
     A slip goes on while the drive holds, and may begin there. It gains then on a drive that keeps
     its largest speed, as every slip does: a mass that relaxes in a hold is slower.
 
-    The elongation (n,), m, is that along X, u_x cos(phi) + u_y sin(phi), and the velocity of the
-    drive (n,), m/s, too; (1,) if it is constant.
+    The elongation (n,), m, is that along X, u_x cos(phi) + u_y sin(phi), with its rate (n,), m/s,
+    and the velocity of the drive (n,), m/s, too; (1,) if it is constant. Its `fastest` speed (m/s)
+    is by default that of these samples. In a slip the mass gains by so much `more` (m) than usual.
     """
     from stiction.analysis.creep.slip_finder import find_slip
 
-    least = float(np.abs(drive).max()) * _least_gain(slider)
-    return FirstLoading(*find_slip(time, elongation, drive, least, np.empty(len(time))))
+    speed = float(np.abs(drive).max()) if fastest is None else fastest
+    least = speed * _least_gain(slider) + more
+    lag = np.empty(len(time))
+    return FirstLoading(*find_slip(time, elongation, rate, drive, speed, least, lag))
 
 
 def slips_at_once(slider: Slider) -> bool:
@@ -103,9 +115,10 @@ def _least_gain(slider: Slider) -> float:
 
 
 def _first_loading(run: Trajectory) -> FirstLoading:
-    samples = run.samples
-    elongation = run.slider.along_drive(samples["u_x"], samples["u_y"])
-    return first_loading(run.slider, samples["time"], elongation, samples["drive_X"])
+    samples, slider = run.samples, run.slider
+    elongation = slider.along_drive(samples["u_x"], samples["u_y"])
+    rate = slider.along_drive(samples["v_x"], samples["v_y"])
+    return first_loading(slider, samples["time"], elongation, rate, samples["drive_X"])
 
 
 def first_slip_time(run: Trajectory) -> float:

@@ -1,8 +1,11 @@
-"""The gain of a mass on its drive while a spring is loaded, in one pass of compiled code."""
+"""The gain of a mass on its drive while a spring is loaded, in one pass of compiled code.
+
+No NumPy function is called: a process would have to load the compiled copy of each.
+"""
 
 from __future__ import annotations
 
-from math import copysign
+from math import copysign, sqrt
 
 import numpy as np
 
@@ -11,27 +14,49 @@ from stiction.solver.compilation.jit import compiled
 
 @compiled
 def find_slip(
-    time: np.ndarray, elongation: np.ndarray, drive: np.ndarray, least: float, lag: np.ndarray
+    time: np.ndarray,
+    elongation: np.ndarray,
+    rate: np.ndarray,
+    drive: np.ndarray,
+    fastest: float,
+    least: float,
+    lag: np.ndarray,
 ) -> tuple[int, int]:
     """Return the samples of `FirstLoading`, for a gain of at least so much on the drive (m).
 
+    The drive is nowhere faster than `fastest`, m/s.
+
     While the drive holds, its way is that of its last motion; before its first, that of this one.
-    `lag` (n,) is filled with the way by which the spring was loaded. No NumPy function is called:
-    a process would have to load the compiled copy of each.
+    A gain begins and ends between samples, where rates of elongation (m/s) turn, as long as the
+    drive moves by less than that gain from one sample to the next. `lag` (n,) is filled with the
+    way by which the spring was loaded.
     """
-    fastest, way = 0.0, 0.0
+    way = 0.0
     for v in drive:
-        fastest = max(fastest, abs(v))
         way = copysign(1.0, v) if way == 0.0 and v != 0.0 else way
     behind, peak, slip, most = 0.0, 0.0, 0, 0.0
     lag[0] = 0.0
     for i in range(1, len(time)):
-        v = drive[min(i, len(drive) - 1)]
+        v, last = drive[min(i, len(drive) - 1)], drive[min(i - 1, len(drive) - 1)]
+        turns = way * v < 0.0
         way = copysign(1.0, v) if v != 0.0 else way
-        loaded = way * (elongation[i] - elongation[i - 1])
+        step, loaded = time[i] - time[i - 1], way * (elongation[i] - elongation[i - 1])
         lag[i] = lag[i - 1] + (loaded if v != 0.0 else 0.0)
         most = max(most, lag[i])
-        behind += loaded + (0.0 if v != 0.0 else fastest * (time[i] - time[i - 1]))
+        given = 0.0 if v != 0.0 else fastest
+        change = loaded + given * step
+        if not turns and (v == 0.0) == (last == 0.0) and fastest * step < least:
+            before, after = way * rate[i - 1] + given, way * rate[i] + given
+            if (
+                before < 0.0 < after
+                and peak - behind - trough(step, change, before, after)[1] > least
+            ):
+                return slip, slip
+            if before > 0.0 > after:
+                top = behind + crest(step, change, before, after)[1]
+                if top > peak:
+                    peak, slip = top, i if change > 0.0 else i - 1
+        behind += change
         if behind > peak:
             peak, slip = behind, i
         elif peak - behind > least:
@@ -40,3 +65,26 @@ def find_slip(
     while lag[end] < most - least:
         end += 1
     return -1, end
+
+
+@compiled
+def trough(step: float, change: float, before: float, after: float) -> tuple[float, float]:
+    """Return when a fall ends within a step, and by how much a value has fallen then, negative.
+
+    Slip decelerates uniformly, and may stick before the step's end, after which the rate is
+    constant. The change in the step, and the rates at both ends, then determine when it was zero.
+    """
+    short = after * step - change
+    passed = min(max(-2.0 * before * short / (after - before) ** 2, 0.0), step)
+    return passed, 0.5 * before * passed
+
+
+@compiled
+def crest(step: float, change: float, before: float, after: float) -> tuple[float, float]:
+    """Return when the cubic with these rates at both ends of a step is largest, and its rise."""
+    mean = change / step
+    # the rate is c s^2 + 2 b s + before, of which one root lies between
+    b, c = 3.0 * mean - 2.0 * before - after, 3.0 * (before + after - 2.0 * mean)
+    root = sqrt(b * b - c * before)
+    s = before / (root - b) if b <= 0.0 else -(b + root) / c
+    return s * step, step * s * (before + s * (b + s * c / 3.0))

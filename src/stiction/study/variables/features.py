@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.creep.slip_finder import crest, trough
 from stiction.solver.compilation.jit import compiled_with_arrays
 from stiction.study.variables.zigzag import zigzag
 
@@ -182,18 +183,13 @@ def mean(time: np.ndarray, values: np.ndarray, begin: int, end: int, even: bool)
 
 @compiled_with_arrays
 def bottom(time: np.ndarray, values: np.ndarray, rate: np.ndarray, i: int) -> tuple[float, float]:
-    """Return the time and value at the end of a fall.
-
-    Slip decelerates uniformly, and may stick before the next sample, after which the rate is
-    constant. Rates and values at both samples then determine when the rate was zero.
-    """
+    """Return the time and value at the end of a fall, beside a sample; see `trough`."""
     a = i if rate[i] < 0.0 else i - 1
     before, after, step = rate[a], rate[a + 1], time[a + 1] - time[a]
     if not before < 0.0 < after:
         return time[i], values[i]
-    short = after * step - (values[a + 1] - values[a])
-    passed = min(max(-2.0 * before * short / (after - before) ** 2, 0.0), step)
-    return time[a] + passed, values[a] + 0.5 * before * passed
+    passed, fall = trough(step, values[a + 1] - values[a], before, after)
+    return time[a] + passed, values[a] + fall
 
 
 @compiled_with_arrays
@@ -202,20 +198,16 @@ def summit(
 ) -> tuple[float, float]:
     """Return time and value of a turning point beside a sample: a peak, or with -1 a trough.
 
-    It is that of the cubic through two samples and their rates (Hermite's), or the sample itself
-    where the rates at both do not show it; `stiction.result.peak.turning_points` for one interval.
+    It is that of the cubic through two samples and their rates (Hermite's, see `crest`), or the
+    sample itself where the rates at both do not show it; `stiction.result.peak.turning_points` for
+    one interval.
     """
     a = min(max(i if sign * rate[i] > 0.0 else i - 1, 0), len(time) - 2)
     before, after, step = sign * rate[a], sign * rate[a + 1], time[a + 1] - time[a]
     if not before > 0.0 > after:
         return time[i], values[i]
-    mean = sign * (values[a + 1] - values[a]) / step
-    # the rate is c s^2 + 2 b s + before, of which one root lies between
-    b, c = 3.0 * mean - 2.0 * before - after, 3.0 * (before + after - 2.0 * mean)
-    root = np.sqrt(b * b - c * before)
-    s = before / (root - b) if b <= 0.0 else -(b + root) / c
-    rise = step * s * (before + s * (b + s * c / 3.0))
-    return time[a] + s * step, values[a] + sign * rise
+    passed, rise = crest(step, sign * (values[a + 1] - values[a]), before, after)
+    return time[a] + passed, values[a] + sign * rise
 
 
 @compiled_with_arrays

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import nan
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,11 +50,28 @@ UNEXPLAINED, UNEXPLAINED_VELOCITY = 0.02, 0.05
 AT_ONCE = 8  # samples, in which a stiff system comes from its initial state into balance
 # Times the way of the drive between two samples: creep by more is known to 1e-3 from these; and the
 # number of closer ones about the slip, where it is less
-CLEARLY, CLOSE = 10.0, 4097
+CLEARLY, CLOSE = 40.0, 4097
+ROUNDED = 1e-12  # relative: elongations of a mass at rest in a hold that differ by less are equal
+# Samples for each period of the faster swing, and the most of them, where a gain of the mass on the
+# drive is nearly that of a slip
+PER_FAST_PERIOD, MOST_CLOSE = 32.0, 2.0**18
 # Samples that follow the solver are refined so often, until each change is explained to this share;
 # what is not explained falls with the third power of their distance
 ROUNDS, REFINED, MOST_PARTS = 5, 0.1, 32.0
 JUMPS = 0.01  # of the samples: with so few a drive may jump between
+
+
+class Loading(NamedTuple):
+    """How the spring is loaded along X, over time (s).
+
+    That is its elongation (m), its rate and the velocity of the drive (m/s), (n,) each; the last is
+    one value if constant.
+    """
+
+    time: Floats
+    elongation: Floats
+    rate: Floats
+    drive: Floats
 
 
 @dataclass(frozen=True)
@@ -203,6 +221,11 @@ class ObservedRun:
         """Elongation of the spring along the drive direction X, m."""
         return np.asarray(self._columns[4])
 
+    @property
+    def elongation_rate(self) -> Floats:
+        """Rate of that elongation, m/s."""
+        return np.asarray(self.drive - self.way * self.velocity)
+
     @cached_property
     def features(self) -> Features:
         """Features of the samples at `time`."""
@@ -232,44 +255,63 @@ class ObservedRun:
     def first_slip(self) -> tuple[float, float]:
         """Start of the first slip (s), and the distance of the mass until then (m).
 
-        Its speed is the drive's there, so that the next sample is up to half as far again: where
-        the mass crept hardly farther than the drive between two samples, it is solved again with
-        closer ones. A distance below that between these is not known.
+        Wherever samples fall, each is known to 1e-3 of itself. The mass moves as fast as the drive
+        there, so that the next sample is up to half as far again: where it crept hardly farther
+        than the drive between two samples, it is solved again with closer ones. A distance below
+        that between these is not known.
         """
-        slider = self.description.slider
-        at = first_loading(slider, self.time, self.elongation, self.drive).slip
+        seen, at = self._surely_loaded()
         if at < 0:
             return nan, nan
-        rate = self.drive - self.way * self.velocity
-        found = self._slip_near(self.time, self.elongation, rate, at)
-        passed = np.abs(self.drive).max() * (self.time[at] - self.time[at - 1])
-        if found[1] > CLEARLY * passed:
+        found = self._slip_near(seen, at)
+        time, fastest = seen.time, np.abs(seen.drive).max()
+        if found[1] > CLEARLY * fastest * (time[at] - time[at - 1]):
             return found
-        times = np.linspace(self.time[max(at - 1, 0)], self.time[min(at + 1, len(rate) - 1)], CLOSE)
-        _, _, velocity, _, elongation = self._solve_again(times)
-        drive = np.asarray(slider.motion.rate(times)[0])
-        longest = int(np.argmax(self.way * elongation))
-        begin, crept = self._slip_near(times, elongation, drive - self.way * velocity, longest)
-        return begin, crept if crept > np.abs(drive).max() * (times[1] - times[0]) else nan
+        times = np.linspace(time[max(at - 1, 0)], time[min(at + 1, len(time) - 1)], CLOSE)
+        close = self._solve_again(times)
+        long = self.way * close.elongation
+        longest = long >= long.max() - ROUNDED * np.abs(long).max()
+        begin, crept = self._slip_near(close, int(np.flatnonzero(longest)[-1]))  # a rest's end
+        return begin, crept if crept > np.abs(close.drive).max() * (times[1] - times[0]) else nan
 
-    def _slip_near(
-        self, time: Floats, elongation: Floats, rate: Floats, at: int
-    ) -> tuple[float, float]:
+    def _surely_loaded(self) -> tuple[Loading, int]:
+        """Return samples of the first loading, and that at which its slip begins, -1 without one.
+
+        A mass that gains on its drive by nearly as much as in a slip has slipped, or not, by what
+        happens between samples: there it is solved again with closer ones.
+        """
+        slider = self.description.slider
+        seen = Loading(self.time, self.elongation, self.elongation_rate, self.drive)
+        at = first_loading(slider, *seen).slip
+        missed = residual_changes(*seen[:3])[: at if at > 0 else None]
+        hidden = float(np.abs(missed).max())
+        early, late = (first_loading(slider, *seen, more=off).slip for off in (-hidden, hidden))
+        if early == late:
+            return seen, at
+        begin, swing = float(seen.time[max(early - 1, 0)]), 1.0 / slider.natural_frequencies[0]
+        until = self.end if late < 0 else min(float(seen.time[late]) + swing, self.end)
+        count = PER_FAST_PERIOD * slider.natural_frequencies[1] * (until - begin)
+        close = self._solve_again(np.linspace(begin, until, int(min(count, MOST_CLOSE)) + 2))
+        fastest = float(np.abs(seen.drive).max())
+        found = first_loading(slider, *close, fastest=fastest).slip
+        return (seen, late) if found < 0 <= late else (close, found)
+
+    def _slip_near(self, seen: Loading, at: int) -> tuple[float, float]:
         """Return the time (s) of the longest spring near a sample, and the travel by then (m)."""
-        begin, longest = summit(time, elongation, rate, at, self.way)
+        begin, longest = summit(*seen[:3], at, self.way)
         travel = self.description.slider.motion.travel(0.0, np.array([begin]))[0][0]
         return float(begin), float(self.way * (travel - longest) - self.positions[0])
 
-    def _solve_again(self, times: Floats) -> Floats:
-        """Return the columns (5, n) of the run at other times (s), until the last of them."""
+    def _solve_again(self, times: Floats) -> Loading:
+        """Return the loading of the run at other times (s), until the last of them."""
         slider, initial, settings = self.description
         until = settings.model_copy(update={"duration": float(times[-1]) - initial.time})
         solution = solve(self.description._replace(run=until), times)
         drive = np.atleast_1d(np.asarray(slider.motion.rate(times)[0]))
-        found: Floats = even_columns(
+        _, _, velocity, _, elongation = even_columns(
             solution.samples, 0, 1, drive, self.way, slider.k_x, *slider.direction
         )
-        return found
+        return Loading(times, elongation, np.asarray(drive - self.way * velocity), drive)
 
     @cached_property
     def swings(self) -> SwingShapes:
