@@ -8,15 +8,16 @@ from math import exp, isfinite, nan
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from stiction.analysis.creep.first_slip import first_slip_time, slips_at_once
+from stiction.analysis.creep.first_slip import first_slip_time, slips, slips_at_once
 from stiction.analysis.limit_cycle import KICK
 from stiction.analysis.measurement.run_record import across_force, record_of
 from stiction.analysis.motion.cycle_columns import CycleTable
 from stiction.analysis.motion.cycles import Swings, own_swings
 from stiction.analysis.motion.regime.classify import regime_of
 from stiction.analysis.motion.regime.evidence import SLOWER, Evidence, Regime
-from stiction.analysis.motion.regime.kinds import SETTLING, STEADY, STUCK
+from stiction.analysis.motion.regime.kinds import SETTLING, STEADY
 from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record
 from stiction.arrays import Floats, xr
@@ -42,12 +43,15 @@ FINE_SAMPLES = 1000.0  # samples from the one before the first slip to the one a
 MANY = 50_000  # transverse periods above which fewer cycles are simulated
 
 SMALL = "an oscillation too small for the load cell to tell"
-# final states of a run
-SLIDES, OSCILLATES, UNSETTLED = "slides", "oscillates", "unsettled"
+LOADING = "a loading that outlasts the test"
+# final states of a run, and the states of one that ends too early
+SLIDES, OSCILLATES = "slides", "oscillates"
+UNSETTLED, LOADS = "unsettled", "loads"
 CALM = 0.02  # of the drive's speed: a smaller deviation is steady sliding
 DECAYED, KEPT = 0.5, 0.8  # of a deviation, a quarter of the run later: dies out, lasts
 AS_FAST = 0.5  # of the rate at which small disturbances decay: it does so, too
-SLIPPED = 0.5  # of the drive's speed: a mass that stays slower has not slipped
+SLIPPED = 0.5  # of the drive's speed: a mass that stays slower does not slip
+FOLLOWS = 0.9  # of the drive's travel: a mass that covers less lags ever more, and springs load
 
 
 class Shares(NamedTuple):
@@ -108,9 +112,21 @@ class SimulatedTest:
     def comes_to(self) -> str:
         """The final state of the mass.
 
-        It slides, oscillates, is stuck, or is still changing when the test ends ("unsettled").
+        It slides or oscillates; or the test ends too early, while springs are loaded ("loads") or
+        the motion still changes ("unsettled").
         """
         return final_state(self.run, self.growth)
+
+    @property
+    def decided(self) -> bool:
+        """Whether the test reached a final state."""
+        return self.comes_to in (SLIDES, OSCILLATES)
+
+    @property
+    def duration(self) -> float:
+        """The duration of the test, s."""
+        times = self.run.samples["time"]
+        return float(times[-1] - times[0])
 
     @cached_property
     def settled(self) -> float:
@@ -142,7 +158,7 @@ class SimulatedTest:
             return self.regime.kind if calm else SETTLING
         if self.comes_to == OSCILLATES:
             return SMALL if calm else self.regime.kind
-        return STUCK if self.comes_to == STUCK else self.regime.kind
+        return LOADING if self.comes_to == LOADS else self.regime.kind
 
     @property
     def blind(self) -> bool:
@@ -179,21 +195,11 @@ def simulate_test(
 ) -> SimulatedTest:
     """Simulate a friction test.
 
-    The prediction decides how long the test lasts: until a disturbance of steady sliding has died
-    out where its rate of `growth` (1/s) is negative. The sample rate is reduced if there would be
-    too many samples. It starts at rest with unloaded springs by default, and is `multiscale` by
+    It lasts for `duration_of`. The sample rate is reduced if there would be too many samples. It
+    starts at rest with unloaded springs by default, and is `multiscale` by
     default where it has very many transverse periods; the solver takes `most_steps` at most.
     """
-    load_up = prediction.load_up
-    if slips_at_once(slider):  # the soft spring goes on loading until friction lies along the drive
-        load_up = max(load_up, slider.loading_time)
-    slips = CYCLES * prediction.period if prediction.slips else 0.0
-    if not prediction.slips and growth > 0.0:  # what grows swings, and may rest between swings
-        slips = CYCLES * 2.0 / prediction.f_x
-    wait = DECAYS / abs(growth) if growth != 0.0 else 0.0
-    longest = LOAD_UPS * load_up + LONGEST_WAIT / min(prediction.f_x, prediction.f_y)
-    duration = min(max(LOAD_UPS * load_up, 1.2 * load_up + max(slips, wait)), longest)
-    duration = duration or CYCLES / prediction.f_x  # without friction nothing is loaded
+    duration = duration_of(slider, prediction, growth)
     if multiscale is None:
         multiscale = duration * prediction.f_y > MANY
     run = simulate(
@@ -206,6 +212,36 @@ def simulate_test(
         progress=progress,
     )
     return SimulatedTest(run, growth)
+
+
+def duration_of(slider: Slider, prediction: Prediction, growth: float) -> float:
+    """Return the duration of a test by all time scales that theory knows, s.
+
+    It covers the loading of both springs, cycles of the predicted stick-slip, and the decay or the
+    growth of a disturbance of steady sliding at the rate `growth` (1/s).
+    """
+    load_up, soft = time_of_loading(slider, prediction), min(prediction.f_x, prediction.f_y)
+    cycles = CYCLES * prediction.period if prediction.slips else 0.0
+    if not prediction.slips and growth > 0.0:  # what grows swings, and may rest between swings
+        cycles = CYCLES * 2.0 / soft
+    wait = DECAYS / abs(growth) if growth != 0.0 else 0.0
+    longest = LOAD_UPS * load_up + LONGEST_WAIT / soft
+    duration = min(max(LOAD_UPS * load_up, 1.2 * load_up + max(cycles, wait)), longest)
+    return duration or CYCLES / soft  # without friction nothing is loaded
+
+
+def time_of_loading(slider: Slider, prediction: Prediction) -> float:
+    """Return the time in which the drive loads both springs, s.
+
+    The first stick is the shortest; where it ends without a slip, friction turns until it lies
+    along the drive, and the softer spring goes on loading.
+    """
+    load_up = max(prediction.load_up, prediction.first_stick)
+    if slips_at_once(slider):
+        return max(load_up, slider.loading_time)
+    if slider.stiffer_axis == 0:  # Eq. (7), which `prediction` takes, supposes a stiff y
+        return max(load_up, slider.F_0 / (slider.k_y * slider.drive_speed))
+    return load_up
 
 
 def simulate_coarsely(
@@ -244,7 +280,8 @@ def from_sliding(
 def final_state(run: Trajectory, growth: float = nan) -> str:
     """Return the final state of a run, by the deviation from the drive's speed at the end.
 
-    The last quarters of the run count. A mass at rest deviates by the full speed; larger deviations
+    The last quarters of the run count. As long as the mass lags ever more behind the drive, springs
+    are loaded, which does not last. A mass at rest deviates by the full speed; larger deviations
     in the slips of a mass that comes to rest are cut to that. What dies out as a small disturbance
     does, by its `growth` rate (1/s), lasts no longer than that, however slowly it does.
     """
@@ -254,8 +291,10 @@ def final_state(run: Trajectory, growth: float = nan) -> str:
     third = late & ~last
     if not third.any():  # it ended before
         return UNSETTLED
-    if speed[late].max() < SLIPPED:
-        return STUCK
+    if _lags(run, last) and not slips(run):
+        return LOADS
+    if speed[late].max() < SLIPPED:  # it rests too long to tell whether it slips again alike
+        return UNSETTLED
     deviation = np.abs(speed - 1.0)
     if speed[late].min() <= 0.0:
         deviation = np.minimum(deviation, 1.0)
@@ -265,6 +304,13 @@ def final_state(run: Trajectory, growth: float = nan) -> str:
     quarter = 0.25 * float(times[-1] - times[0])
     dies_out = growth < 0.0 and now <= before * exp(AS_FAST * growth * quarter)
     return OSCILLATES if now >= KEPT * before and not dies_out else UNSETTLED
+
+
+def _lags(run: Trajectory, part: NDArray[np.bool_]) -> bool:
+    """Return whether the mass covers less than the drive does in a part of a run."""
+    time, X = run.samples["time"][part], run.samples["X"][part]
+    drive = run.slider.motion.rate(0.0)[0] * (time[-1] - time[0])
+    return bool((X[-1] - X[0]) / drive < FOLLOWS)
 
 
 def coarse_rate(prediction: Prediction) -> float:

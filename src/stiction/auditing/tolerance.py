@@ -14,7 +14,12 @@ import numpy as np
 from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.arrays import Floats
 from stiction.auditing.prediction import Prediction, predict
-from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip, simulate_coarsely
+from stiction.auditing.simulated_test import (
+    LOADS,
+    SimulatedTest,
+    creep_before_slip,
+    simulate_coarsely,
+)
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.errors import StictionError
 from stiction.inference.rig import Rig
@@ -137,7 +142,7 @@ class Budget:
 
 
 def read(slider: Slider) -> Reading:
-    """Return the readings of a test from rest; NaN if it cannot be simulated to its end."""
+    """Return the readings of a test from rest; NaN where it is cut, or ends before a slip."""
     prediction = predict(slider)
     return reading(prediction, partial(simulate_coarsely, slider, prediction, MOST_STEPS))
 
@@ -149,7 +154,7 @@ def reading(prediction: Prediction, simulate: Callable[[], SimulatedTest]) -> Re
         seen = simulate()
     except StictionError:
         return unknown
-    if not seen.run.status.ok:
+    if not seen.run.status.ok or seen.comes_to == LOADS:
         return unknown
     return Reading(peak(seen), kinetic(seen), creep_before_slip(seen), prediction.amplitude)
 

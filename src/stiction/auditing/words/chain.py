@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from stiction.auditing.chain import SMALL, Chain, Part, Replacement
 from stiction.auditing.prediction import Prediction
 from stiction.auditing.simulated_test import SimulatedTest
-from stiction.auditing.words.numbers import apparent_stiffness, peak
+from stiction.auditing.words.numbers import apparent_stiffness, largest
 from stiction.auditing.words.verdict import final_motion, motion_and_travel
 from stiction.errors import echo
 from stiction.system.slider import Slider
@@ -130,7 +130,7 @@ def _row(name: str, slider: Slider, p: Prediction, seen: SimulatedTest | None) -
         in_words(p.A, ""),
         in_words(p.zeta, ""),
         in_words(p.f_y, "Hz"),
-        "" if seen is None else in_words(peak(seen), ""),
+        "" if seen is None else largest(seen),
         motion,
     )
 

@@ -11,11 +11,10 @@ from stiction.auditing.simulated_test import (
     CALM,
     MOST_WORK,
     OSCILLATES,
-    UNSETTLED,
     SimulatedTest,
 )
+from stiction.auditing.words.stick import ROUGHLY
 from stiction.auditing.words.verdict import (
-    ROUGHLY,
     final_motion,
     settling,
     travel,
@@ -53,7 +52,7 @@ def changes(found: Audit) -> tuple[list[str], Table | None]:
         for each in every
         if each.works and each.tried
     ]
-    undecided = any(each.tried and each.tried.comes_to == UNSETTLED for each in every)
+    undecided = any(each.tried and not each.tried.decided for each in every)
     none = f"None of these {'is seen to make' if undecided else 'makes'} it {goal}"
     what = f"To {goal}: {', or '.join(remedies)}" if remedies else none
     lines = [f"{what}. Each change was simulated from rest; the last columns show the result."]
@@ -153,7 +152,7 @@ def _result(found: Audit, seen: SimulatedTest, works: bool) -> tuple[str, str, s
     if not seen.run.status.ok:
         end = in_words(float(seen.record.time[-1]), "s")
         return "", "", f"not known: the simulation was cut at {end}"
-    if seen.comes_to == UNSETTLED:
+    if not seen.decided:
         return "", "", f"not decided: {final_motion(seen)}"
     what, drop = f"no remedy: {final_motion(seen)}", seen.mean("drop")
     if seen.comes_to == OSCILLATES and isfinite(drop):

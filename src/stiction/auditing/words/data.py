@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any
 from stiction.auditing.advice import Remedy
 from stiction.auditing.oscillation import TransverseSwings
 from stiction.auditing.pairs import Pair
+from stiction.auditing.simulated_test import LOADS, SimulatedTest
 from stiction.auditing.words.numbers import peak
 from stiction.storage.table_files import number
 
 if TYPE_CHECKING:
     from stiction.auditing.report import Audit
-    from stiction.auditing.simulated_test import SimulatedTest
 
 THEORY = {
     "F_0": "N", "F_static": "N", "f_x": "Hz", "f_y": "Hz", "A": "", "zeta": "", "theta_c": "rad",
@@ -55,7 +55,9 @@ def of_test(seen: SimulatedTest) -> dict[str, Any]:
     means = {name: with_unit(seen.mean(name), unit) for name, unit in MEANS.items()}
     shares = {name: with_unit(share, "") for name, share in seen.shares._asdict().items()}
     reached = {"time": with_unit(seen.settled, "s"), "travel": with_unit(seen.travel, "m")}
-    return {"mu_static": with_unit(peak(seen), ""), **means, "shares": shares, "reached": reached}
+    friction = with_unit(nan if seen.comes_to == LOADS else peak(seen), "")
+    found = {"decided": seen.decided, "mu_static": friction, **means}
+    return {**found, "shares": shares, "reached": reached}
 
 
 def _swings(shown: TransverseSwings) -> dict[str, Any]:

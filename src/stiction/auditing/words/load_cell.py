@@ -7,7 +7,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from stiction.auditing.simulated_test import CALM, SLIDES, SimulatedTest, relative_speed
+from stiction.auditing.simulated_test import (
+    CALM,
+    LOADS,
+    SLIDES,
+    SimulatedTest,
+    relative_speed,
+)
 from stiction.auditing.words.numbers import kinetic, peak
 from stiction.friction import Anisotropic
 from stiction.friction.law import static_coefficient
@@ -79,6 +85,11 @@ def load_cell(found: Audit) -> list[str]:
         return ["There is no friction to read."]
     if seen.blind:
         return [f"It {ACROSS}."]
+    if seen.comes_to == LOADS:
+        return [
+            "The springs are still being loaded when the test ends: no force of it shows the "
+            "friction of the surfaces."
+        ]
     return [_readings(seen), *_largest(seen), *_sliding(seen)]
 
 

@@ -11,7 +11,7 @@ from stiction.analysis.creep.first_slip import slips_at_once
 from stiction.analysis.motion.friction import friction_of
 from stiction.analysis.signals.correlated_noise import statistics
 from stiction.auditing.assumptions import creep_suppositions, suppositions
-from stiction.auditing.simulated_test import SimulatedTest, creep_before_slip
+from stiction.auditing.simulated_test import LOADS, SimulatedTest, creep_before_slip
 from stiction.friction import has_state
 from stiction.linear_stability.linear import STABLE, UNSTABLE
 from stiction.system.slider import Slider
@@ -38,9 +38,10 @@ def violated_assumptions(found: Audit) -> list[str]:
 def numbers(found: Audit) -> Table:
     """Return the table of predicted and simulated quantities."""
     p, seen, s = found.prediction, found.observation, found.slider
-    first = float(np.diff(seen.run.stick_intervals[:1]).sum())  # zero if it never sticks
     creep_at_slip, creep_distance = (p.creep_at_slip, p.creep_distance) if p.slips else (nan, nan)
     theta_c = p.theta_c if p.zeta < 1.0 else nan  # else friction never turns so far
+    until_creep = nan if has_state(s.law) else p.first_stick
+    until_slip = p.load_up if p.slips else nan
     rough = bool(suppositions(s, p))
     creep_rough = rough or bool(creep_suppositions(s, p))
     creep = "creep before the first slip", creep_distance, creep_before_slip(seen), "m", creep_rough
@@ -53,12 +54,12 @@ def numbers(found: Audit) -> Table:
         ("damping number A, Eq. (10)", p.A, "", "", rough),
         ("damping ratio ζ at θ = φ, Eq. (10)", p.zeta, "", "", rough),
         ("θ at which ζ = 1: slow slip turns fast", theta_c, "", "rad", rough),
-        ("first stick (true rest)", nan if has_state(s.law) else p.first_stick, first, "s", False),
-        ("time until the first slip", p.load_up if p.slips else nan, seen.slip_time, "s", rough),
+        ("first stick (true rest)", until_creep, _rest(seen), "s", False),
+        ("time until the first slip", until_slip, _slip(seen), "s", rough),
         ("creep velocity at first, V sin² φ", p.creep_at_start, "", "m/s", rough),
         ("creep velocity when it slips, Eq. (7)", creep_at_slip, "", "m/s", rough),
         creep,
-        ("apparent static friction, largest force", p.mu_static, peak(seen), "", rough),
+        ("apparent static friction, largest force", p.mu_static, largest(seen), "", rough),
         ("apparent kinetic friction, mean", p.mu_kinetic, kinetic(seen), "", rough),
         ("force drop, mean", p.drop, mean_of(seen, "drop", "N"), "N", rough),
         ("period, mean", p.period, mean_of(seen, "period", "s"), "s", rough),
@@ -83,6 +84,21 @@ def _growth(found: Audit) -> list[tuple[str, float, str, str, bool]]:
     way = "decay" if found.sliding.stable else "growth"
     name = f"{way} of small disturbances, factor of e in"
     return [(name, 1.0 / abs(found.sliding.growth_rate), "", "s", False)]
+
+
+def _rest(seen: SimulatedTest) -> str:
+    """Return the duration of the first stick; a lower bound where the test ends with it."""
+    end = seen.run.samples["time"][-1]
+    first = np.minimum(seen.run.stick_intervals[:1], end)  # empty if it never sticks
+    lasts = in_words(float(np.diff(first).sum()), "s")
+    return f"> {lasts}" if np.any(first == end) else lasts
+
+
+def _slip(seen: SimulatedTest) -> str:
+    """Return the time of the first slip; a lower bound where the test ends too early."""
+    if isnan(seen.slip_time) and not seen.decided:
+        return f"> {in_words(seen.duration, 's')}"
+    return in_words(seen.slip_time, "s")
 
 
 def mean_of(seen: SimulatedTest, quantity: str, unit: str) -> str:
@@ -115,5 +131,9 @@ def apparent_stiffness(slider: Slider) -> float:
 
 def peak(seen: SimulatedTest) -> float:
     """Return the apparent coefficient of static friction."""
-    largest = float(np.max(seen.record.force, initial=0.0))
-    return largest / seen.run.slider.normal_load
+    return float(np.max(seen.record.force, initial=0.0)) / seen.run.slider.normal_load
+
+
+def largest(seen: SimulatedTest) -> str:
+    """Return the apparent static friction; a lower bound while the springs are loaded."""
+    return f"{'> ' if seen.comes_to == LOADS else ''}{in_words(peak(seen), '')}"

@@ -12,6 +12,7 @@ from stiction.analysis.motion.rest import HELD, share_held
 from stiction.arrays import Floats, Indices
 from stiction.auditing.simulated_test import (
     CALM,
+    LOADS,
     SLIDES,
     SimulatedTest,
     end_of_loading,
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 VIBRATES = (HARMONIC, TRANSVERSE, IRREGULAR)  # about steady sliding: nothing creeps
 NEVER = 1e-3  # of the time: a smaller share is a matter of samples
 FEW_RESTS = 3  # rests in a loading: fewer are not those of a transverse oscillation
+ROUGHLY = 2  # digits of a travel, and of a time that it takes
 HARDLY = 0.05  # of the time: a smaller share of creep or rest is negligible
 
 
@@ -34,6 +36,8 @@ def answer(found: Audit) -> str:
     seen = found.observation
     if seen.blind:
         return "The load cell shows nothing that could be taken for stick."
+    if seen.comes_to == LOADS:
+        return f"Whether the mass sticks or slips is {no_decision(seen)}."
     if not len(seen.table) and (share := _following(seen)) > 0.5:
         return (
             f"For {percent(share)} of the loading the mass is as fast as the drive to within "
@@ -49,9 +53,16 @@ def answer(found: Audit) -> str:
     )
 
 
+def no_decision(seen: SimulatedTest) -> str:
+    """Return that a test ended too early, to end a clause."""
+    return f"not determined within {in_words(seen.duration, 's', ROUGHLY)}"
+
+
 def stick(found: Audit) -> list[str]:
     """Return the share of creep in the apparent stick, in numbers."""
     seen, s = found.observation, found.slider
+    if seen.comes_to == LOADS and not seen.blind:
+        return [answer(found), _loading(seen)]
     if seen.blind or (not len(seen.table) and _following(seen) > 0.5):
         rises = "The load cell shows a rising force while friction turns."
         turns = s.misalignment and not seen.blind
@@ -78,6 +89,13 @@ def stick(found: Audit) -> list[str]:
             "in each slip, so the trough alone is not a property of the interface."
         )
     return lines
+
+
+def _loading(seen: SimulatedTest) -> str:
+    """Return the shares of a loading that outlasts the test."""
+    its = ("rests", seen.shares.rest), ("moves more slowly than the drive", seen.shares.creep)
+    how = " and ".join(f"{verb} for {percent(share)}" for verb, share in its if share > NEVER)
+    return f"Until then the springs are loaded, and the mass {how} of the time."
 
 
 def _hastens(seen: SimulatedTest, inertia: float) -> bool:

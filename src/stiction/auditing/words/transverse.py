@@ -15,7 +15,7 @@ from stiction.auditing.oscillation import (
     theoretical_oscillation,
 )
 from stiction.auditing.prediction import SEEN
-from stiction.auditing.simulated_test import SLIDES
+from stiction.auditing.simulated_test import LOADS, SLIDES
 from stiction.auditing.words.stick import HARDLY, VIBRATES
 from stiction.friction import has_state
 from stiction.text.quantity.wording import advice, in_words, percent, span
@@ -139,7 +139,8 @@ def _beside_theory(found: Audit, shown: TransverseSwings) -> Table:
     """Return the simulated swings at both ends of creep beside linear theory's."""
     p, k_y = found.prediction, found.slider.k_y
     natural, _ = theoretical_oscillation(found.slider)
-    end = "steady sliding" if found.observation.comes_to == SLIDES else "a slip"
+    ends = {SLIDES: "steady sliding", LOADS: "the end of the test"}
+    end = ends.get(found.observation.comes_to, "a slip")
     parts = [
         ("as creep begins", [shown.first] if shown.first else []),
         ("after a slip", shown.later),

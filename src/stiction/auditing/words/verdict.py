@@ -10,13 +10,12 @@ import numpy as np
 from stiction.analysis.motion.regime.kinds import (
     SETTLING,
     STEADY,
-    STUCK,
     TRANSITIONAL,
     UNDETERMINED,
 )
 from stiction.analysis.signals.correlated_noise import statistics
-from stiction.auditing.simulated_test import OSCILLATES, SLIDES, SMALL, UNSETTLED, SimulatedTest
-from stiction.auditing.words.stick import answer
+from stiction.auditing.simulated_test import LOADS, OSCILLATES, SLIDES, SMALL, SimulatedTest
+from stiction.auditing.words.stick import ROUGHLY, answer, no_decision
 from stiction.friction.law import implausible
 from stiction.linear_stability import Critical
 from stiction.linear_stability.examination import (
@@ -34,12 +33,10 @@ RECORD = "What the record says"  # title of the verdict on a measured record
 # and of that on the apparatus: beside a record, the verdict is what the record says
 VERDICT, AS_DESCRIBED = "Verdict", "The rig as it is described"
 MEANS = ("period", "s"), ("drop", "N")  # over the cycles
-ROUGHLY = 2  # digits of a travel, and of the time that it takes
 SHOWN_ERROR = 1e-3  # of a mean: a smaller error is not worth a word
 SEEN = {  # kinds of motion, in a sentence
     TRANSITIONAL: f"a {TRANSITIONAL} between stick-slip and harmonic vibration",
     SETTLING: "steady sliding, after a motion at the start that dies out",
-    STUCK: "loading without a slip",
     UNDETERMINED: "a motion of no clear kind",
 }
 
@@ -116,12 +113,19 @@ def motions(found: Audit) -> list[str]:
                 f"{other}."
             ]
     else:
+        lasting = " in the time of the test" if sliding.comes_to == SLIDES else ""
         lines = [
-            f"From rest it comes to {final_motion(rest)}; started from steady sliding, disturbed "
-            f"by 1 % of the drive's speed, to {final_motion(sliding)}"
-            f"{' in the time of the test' if sliding.comes_to == SLIDES else ''}."
+            f"From rest {outcome(rest)}; started from steady sliding, disturbed by 1 % of the "
+            f"drive's speed, {outcome(sliding)}{lasting}."
         ]
     return [*lines, f"Started from rest, the load cell shows {describe_motion(rest)}."]
+
+
+def outcome(seen: SimulatedTest) -> str:
+    """Return the final motion of a test, or that it ended too early, as a main clause."""
+    if seen.comes_to == LOADS:
+        return f"the motion is {no_decision(seen)}, as the springs are still being loaded"
+    return f"it comes to {final_motion(seen)}"
 
 
 def final_motion(seen: SimulatedTest) -> str:
@@ -129,7 +133,9 @@ def final_motion(seen: SimulatedTest) -> str:
     if seen.comes_to == SLIDES:
         return "steady sliding"
     name = SEEN.get(seen.motion, seen.motion) + short_rest(seen)
-    if seen.comes_to != UNSETTLED:
+    if seen.comes_to == LOADS:
+        return f"{name} of {in_words(seen.duration, 's', ROUGHLY)}"
+    if seen.decided:
         return name
     if seen.motion in (SETTLING, STEADY):  # as far as the load cell sees it
         return "a motion that still changes when the test ends"
@@ -154,11 +160,10 @@ def travel(seen: SimulatedTest) -> str:
 
 def settling(seen: SimulatedTest) -> tuple[str, str]:
     """Return the time and the drive's travel until steady sliding."""
-    whole = float(seen.run.samples["time"][-1])
     if isfinite(seen.travel):
         return in_words(seen.settled, "s", ROUGHLY), in_words(seen.travel, "m", ROUGHLY)
-    way = seen.run.slider.drive_speed * whole
-    times = in_words(whole, "s", ROUGHLY), in_words(way, "m", ROUGHLY)
+    way = seen.run.slider.drive_speed * seen.duration
+    times = in_words(seen.duration, "s", ROUGHLY), in_words(way, "m", ROUGHLY)
     return f"more than {times[0]}", f"more than {times[1]}"
 
 
@@ -173,7 +178,7 @@ def short_motion(seen: SimulatedTest) -> str:
     if seen.comes_to == SLIDES:
         return STEADY
     name = "tiny oscillation" if seen.motion == SMALL else seen.motion
-    return f"{name}, still changing" if seen.comes_to == UNSETTLED else name
+    return name if seen.decided or seen.comes_to == LOADS else f"{name}, still changing"
 
 
 def describe_motion(seen: SimulatedTest) -> str:
