@@ -17,8 +17,6 @@ SMALL = 4.0 * EPSILON  # relative rounding error after a few operations
 NEIGHBOUR = 1e-9  # relative distance of neighbours; functions are linear but for rounding
 FIRST_COLUMN, COLUMNS = 2, 6  # of Richardson's scheme: errors of order six to twelve in the step
 RATIO = 2.0  # of successive steps
-SMOOTH = 2.0  # narrowest steps of derivatives: the step of a law that is smooth
-CLOSE = 1e-7  # relative difference of orders four and six; the error of six is far smaller
 SHARE = 1.0 / 16.0  # error as a share of the last change; at sixth order, the next change is 1/64
 
 
@@ -87,23 +85,18 @@ def with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
     return Response(np.array(response(at.tolist()), dtype=np.float64), slopes, error)
 
 
-def quickly_with_state(slider: Slider, slip: Floats, state: Floats) -> Response:
-    """Return the response as `with_state` does, from fewer evaluations where the law is smooth."""
-    response, at = answer_of(slider), np.concatenate([slip, state])
-    value = np.array(response(at.tolist()), dtype=np.float64)
-    steps = [
-        (min(SMOOTH * narrowest, widest), widest, narrowest) for widest, narrowest in steps_of(at)
-    ]
-    columns = [
-        smooth_derivative(response, at, i, h) or derivative(response, at, i, *ends)
-        for i, (h, *ends) in enumerate(steps)
-    ]
-    slopes, error = (np.column_stack(part) for part in zip(*columns, strict=True))
+def by_gradient(slider: Slider, slip: Floats, state: Floats) -> Response:
+    """Return the response from a law's own ``gradient``, with the errors of rounding."""
+    law: Any = slider.law
+    at = np.concatenate([slip, state])
+    where = tuple(at[:2].tolist()), slider.normal_load, tuple(at[2:].tolist())
+    value = np.array([*law.force(*where), *law.change(*where)], dtype=np.float64)
+    slopes = np.array(law.gradient(*where), dtype=np.float64)
     # what rounds is as large as each unknown's share of a value, also where all add up to nothing
     sizes = np.where(np.abs(at) > SMALL, np.abs(at), 1.0)
     sizes[:2] = hypot(*slip)
     terms = np.abs(value) + np.abs(slopes) @ sizes
-    return Response(value, slopes, error + SMALL * terms[:, None] / [h for h, *_ in steps])
+    return Response(value, slopes, SMALL * terms[:, None] / sizes)
 
 
 def answer_of(slider: Slider) -> Callable[[list[float]], Sequence[float]]:
@@ -128,29 +121,6 @@ def steps_of(at: Floats) -> Iterator[tuple[float, float]]:
     yield from [(0.5 * speed, 2.0**-9 * speed)] * 2
     for size in np.abs(at[2:]).tolist():
         yield 0.5 * max(size, 1.0), 2.0**-13 * (size if size > SMALL else 1e-4)
-
-
-def smooth_derivative(
-    function: Callable[[list[float]], Sequence[float] | Floats], at: Floats, i: int, h: float
-) -> tuple[Floats, Floats] | None:
-    """Return a `derivative` and its truncation error; None if the step `h` is too coarse.
-
-    From six values `h` apart, to order six in the step. That of order four, from the inner four of
-    them, differs by far more than the error.
-    """
-    others, here = at.tolist(), float(at[i])
-    values = [
-        value_or_nan(lambda x: function([*others[:i], x, *others[i + 1 :]]), here + k * h, len(at))
-        for k in (1, -1, 2, -2, 3, -3)
-    ]
-    near = np.array(values, dtype=np.float64)
-    one, two, three = near[::2] - near[1::2]
-    fine = (45.0 * one - 9.0 * two + three) / (60.0 * h)
-    coarse = (8.0 * one - two) / (12.0 * h)
-    rounding = EPSILON * np.abs(near).max(axis=0) / h
-    change = np.abs(fine - coarse)
-    clear = change <= CLOSE * np.abs(fine) + 64.0 * rounding
-    return (fine, SHARE * change) if clear.all() else None
 
 
 def derivative(

@@ -17,7 +17,7 @@ from stiction.errors import DescriptionError, Fault, StictionError, echo
 from stiction.friction import has_state, states
 from stiction.linear_stability.derivatives import (
     Response,
-    quickly_with_state,
+    by_gradient,
     response_of,
     set_valued,
     with_state,
@@ -342,7 +342,8 @@ def quick_response(slider: Slider, slip: Floats) -> Response:
     if not has_state(slider.law):
         value, slopes = set_valued(slider, slip)
         return Response(value, slopes, np.full((2, 2), np.nan))
-    response = quickly_with_state(slider, slip, settled_state(slider, slip))
+    respond = by_gradient if hasattr(slider.law, "gradient") else with_state
+    response = respond(slider, slip, settled_state(slider, slip))
     if np.isfinite(response.error).all():
         refuse_unsettled(response.value, response.slopes, slip)
     return response

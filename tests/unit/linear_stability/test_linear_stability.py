@@ -16,7 +16,6 @@ from stiction.linear_stability import boundary, critical, growth_rate, modes_ove
 from stiction.linear_stability.derivatives import (
     derivative,
     response_of,
-    smooth_derivative,
     with_state,
 )
 from stiction.linear_stability.eigenvalues import leading_growth
@@ -271,8 +270,8 @@ def test_the_matrix_of_a_disturbance_is_that_of_the_equations_of_any_rig():
     assert seen > 80
 
 
-def test_slopes_at_few_places_are_those_at_many():
-    """A law's derivatives for growth rates, and those that find their own steps."""
+def test_the_gradients_of_laws_are_their_numerical_derivatives():
+    """The derivatives for growth rates, and those that find their own steps."""
     seen = 0
     for number in range(80):
         slider = state_system(11, number).slider
@@ -289,14 +288,6 @@ def test_slopes_at_few_places_are_those_at_many():
         left = growth_rate(slider) - linear.growth_rate
         assert abs(left) <= 1e-9 * np.abs(linear.eigenvalues).max() + linear.growth_uncertainty
     assert seen > 40
-
-
-def test_a_kink_within_the_steps_is_told():
-    for place in (0.9, 2.2):  # between the inner values, and between the outer ones
-        kink = smooth_derivative(lambda at, p=place: [abs(at[0] - p)], np.zeros(1), 0, 1.0)
-        assert kink is None
-    wave = smooth_derivative(lambda at: [math.sin(at[0]), 1.0], np.array([0.3]), 0, 2.0**-7)
-    assert wave[0] == pytest.approx([math.cos(0.3), 0.0], rel=1e-13, abs=1e-13)
 
 
 def test_the_ellipse_of_an_anisotropic_surface_turns_friction():
