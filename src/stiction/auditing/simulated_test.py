@@ -20,10 +20,12 @@ from stiction.analysis.motion.regime.evidence import SLOWER, Evidence, Regime
 from stiction.analysis.motion.regime.kinds import SETTLING, STEADY
 from stiction.analysis.motion.rest import stuck_share
 from stiction.analysis.record import Record
+from stiction.analysis.signals.reversals import extrema
 from stiction.arrays import Floats, xr
 from stiction.auditing.prediction import SEEN, Prediction
 from stiction.linear_stability import Linearisation, growth_rate
 from stiction.progress.report import Progress, silent
+from stiction.result.table import mean_speeds
 from stiction.simulation import simulate
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider
@@ -52,6 +54,7 @@ DECAYED, KEPT = 0.5, 0.8  # of a deviation, a quarter of the run later: dies out
 AS_FAST = 0.5  # of the rate at which small disturbances decay: it does so, too
 SLIPPED = 0.5  # of the drive's speed: a mass that stays slower does not slip
 FOLLOWS = 0.9  # of the drive's travel: a mass that covers less lags ever more, and springs load
+MOSTLY = 0.5  # of the drive's speed: how far a larger deviation goes, samples may not show
 
 
 class Shares(NamedTuple):
@@ -278,32 +281,47 @@ def from_sliding(
 
 
 def final_state(run: Trajectory, growth: float = nan) -> str:
-    """Return the final state of a run, by the deviation from the drive's speed at the end.
+    """Return the final state of a run, by its deviation from steady sliding at the end.
 
-    The last quarters of the run count. As long as the mass lags ever more behind the drive, springs
-    are loaded, which does not last. A mass at rest deviates by the full speed; larger deviations
-    in the slips of a mass that comes to rest are cut to that. What dies out as a small disturbance
-    does, by its `growth` rate (1/s), lasts no longer than that, however slowly it does.
+    The last quarters of the run count, and what samples show however short a slip is: the mean
+    speed from one to the next, the slow part of a cycle, and the swing of the force. The fastest
+    sample of a slip that lasts less than their distance is chance. As long as the mass lags ever
+    more behind the drive, springs are loaded, which does not last. A deviation of speed counts up
+    to that of a mass at rest, and where it is most of that in both quarters, their swings of the
+    force are compared. What dies out as a small disturbance does, by its `growth` rate (1/s), lasts
+    no longer than that, however slowly it does; nothing dies out where that grows in a quarter.
     """
     times, speed = run.samples["time"], relative_speed(run)
-    late = times - times[0] >= 0.5 * (times[-1] - times[0])
-    last = times - times[0] >= 0.75 * (times[-1] - times[0])
-    third = late & ~last
+    spring = run.slider.along_drive(run.samples["u_x"], run.samples["u_y"])
+    whole = float(times[-1] - times[0])
+    last = times - times[0] >= 0.75 * whole
+    third = (times - times[0] >= 0.5 * whole) & ~last
     if not third.any():  # it ended before
         return UNSETTLED
     if _lags(run, last) and not slips(run):
         return LOADS
-    if speed[late].max() < SLIPPED:  # it rests too long to tell whether it slips again alike
+    means = mean_speeds(times, run.samples["X"]) / run.slider.drive_speed
+    fastest = np.maximum(speed, np.append(means, 0.0))
+    if fastest[third | last].max() < SLIPPED:  # too long at rest: does it slip again alike?
         return UNSETTLED
-    deviation = np.abs(speed - 1.0)
-    if speed[late].min() <= 0.0:
-        deviation = np.minimum(deviation, 1.0)
+    deviation = np.minimum(np.maximum(1.0 - speed, fastest - 1.0), 1.0)
     before, now = float(deviation[third].max()), float(deviation[last].max())
-    if now < CALM or now <= DECAYED * before:
-        return SLIDES
-    quarter = 0.25 * float(times[-1] - times[0])
-    dies_out = growth < 0.0 and now <= before * exp(AS_FAST * growth * quarter)
-    return OSCILLATES if now >= KEPT * before and not dies_out else UNSETTLED
+    grown = growth * 0.25 * whole
+    if now < CALM:
+        return UNSETTLED if grown > 1.0 else SLIDES
+    if min(before, now) > MOSTLY:
+        if grown > 1.0 or fastest[last].max() < SLIPPED:  # it rests again
+            return OSCILLATES
+        before, now = _largest_leg(spring[third]), _largest_leg(spring[last])
+    if now >= KEPT * before:
+        dies_out = growth < 0.0 and now <= before * exp(AS_FAST * grown)
+        return UNSETTLED if dies_out else OSCILLATES
+    return SLIDES if now <= DECAYED * before and not grown > 1.0 else UNSETTLED
+
+
+def _largest_leg(values: Floats) -> float:
+    """Return the largest change from one turning point to the next: a drift has no part in it."""
+    return float(np.abs(np.diff(values[extrema(values)])).max(initial=0.0))
 
 
 def _lags(run: Trajectory, part: NDArray[np.bool_]) -> bool:

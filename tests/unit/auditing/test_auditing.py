@@ -865,6 +865,78 @@ def test_what_dies_out_slowly_is_no_second_motion(phi):
     assert simulated_test.final_state(run, 1e-3) == OSCILLATES
 
 
+ROCK = st.Slider(
+    mass=1.0, k_x="200 kN/m", k_y="20 MN/m", phi="1 deg", normal_load="5 kN",
+    friction=st.laws.RateStateAgeing(0.008, 0.014, "10 um", 0.6, "1 um/s"),
+    drive=st.ConstantVelocity("1 um/s"),
+)  # fmt: skip
+SLIP_LAW = st.laws.RateStateSlip(0.008, 0.014, "10 um", 0.6, "1 um/s")
+FAULT = st.Slider(
+    mass=2e6, k_x="3 MN/m", k_y="3 GN/m", phi="0 deg", normal_load="50 MN",
+    friction=st.laws.RateStateSlip(0.010, 0.015, "20 mm", 0.6, "1 um/s"),
+    drive=st.ConstantVelocity("37 mm/yr"),
+)  # fmt: skip
+BELT = st.presets.leine_lugre().slider
+
+
+@pytest.mark.parametrize(
+    ("slider", "lasts", "comes_to"),
+    [
+        (ROCK, 30e3, OSCILLATES),
+        (
+            ROCK.replace(friction=st.laws.RateStateSlip(0.008, 0.014, "10 um", 0.6, "1 um/s")),
+            30e3,
+            OSCILLATES,
+        ),
+        (ROCK.replace(k_x="1 MN/m", drive=st.ConstantVelocity("10 um/s")), 800.0, OSCILLATES),
+        (ROCK.replace(k_x="5 MN/m"), 30e3, SLIDES),
+        (FAULT, 2e10, OSCILLATES),
+        (FAULT.replace(k_x="20 MN/m"), 2e10, SLIDES),
+        (BELT, 150.0, OSCILLATES),
+        (PAPER.replace(phi="0 deg"), 60.0, OSCILLATES),
+        (PAPER.replace(phi="12 deg"), 60.0, SLIDES),
+    ],
+)
+def test_the_final_state_is_that_of_the_motion_and_not_of_its_samples(slider, lasts, comes_to):
+    """Slips of 10 ms between samples 0.3 s apart: "it slides steadily", or "dying out", by chance.
+
+    The fastest sample of each quarter was compared with that of the next.
+    """
+    growth = st.linear_stability.growth_rate(slider)
+    assert (growth > 0.0) == (comes_to == OSCILLATES)
+    for samples in (701, 1013, 1999, 4001, 7919):
+        run = st.simulate(slider, lasts, sample_rate=samples / lasts)
+        for known in (growth, nan):
+            assert simulated_test.final_state(run, known) == comes_to
+
+
+def test_a_rig_whose_slips_no_sample_shows_is_not_stuck():
+    run = st.simulate(PAPER.replace(phi="0 deg", mass="1 mg"), 60.0, sample_rate=11.0)
+    assert run.samples["V_X"].max() < 0.5 * PAPER.drive_speed
+    assert simulated_test.final_state(run) == OSCILLATES
+
+
+def test_a_drift_that_ends_is_not_taken_for_cycles_that_die_out():
+    """Small cycles go on while the force comes to its level: its range falls, theirs does not."""
+    time = np.linspace(0.0, 1.0, 4001)
+    ripple = 0.02 * ((200.3 * time) % 1.0)
+    run = SimpleNamespace(slider=PAPER, samples={})
+    level = np.exp(-8.0 * time)
+    run.samples = {
+        "time": time, "u_x": 1e-3 * (level + ripple), "u_y": np.zeros_like(time),
+        "X": 1e-3 * time, "V_X": np.where(ripple < 0.018, 0.0, 1e-2),
+    }  # fmt: skip
+    assert simulated_test.final_state(run) == OSCILLATES
+
+
+def test_what_grows_within_the_test_has_not_come_to_slide():
+    """A run so near steady sliding that it has not grown yet, by a factor of e in a hundredth."""
+    slider = PAPER.replace(phi="12 deg")
+    run = st.simulate(slider, 60.0, sample_rate=100.0)
+    assert simulated_test.final_state(run, 0.01 / 60.0) == SLIDES
+    assert simulated_test.final_state(run, 100.0 / 60.0) == UNSETTLED
+
+
 def test_a_remedy_that_is_not_tried_is_not_said_to_be_none():
     """At phi = 0 and c_x = 0, on the boundary, "tried: 0 N s/m: no remedy"."""
     slider = st.Slider(
