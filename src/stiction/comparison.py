@@ -102,7 +102,7 @@ def row(label: str, run: Trajectory, o: Outcome) -> tuple[str, ...]:
     least = drive * (REST if o.fastest > release * drive else release)  # it sticks at once
     creeps = has_state(run.slider.law)
     speeds = [speed_in_words(v, least, creeps) for v in (o.fastest, o.slowest, o.creep)]
-    speeds[0] = f"> {speeds[0]}" if o.hidden else speeds[0]
+    speeds[0] = f"> {speeds[0]}" if o.hidden and o.fastest > least else speeds[0]
     stuck = share_in_words(o.time_stuck, float(run.samples["time"][-1] - run.samples["time"][0]))
     return label, str(o.sticks), stuck, f"{o.peak:.4f}", *speeds
 

@@ -7,12 +7,14 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
 
 from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.arrays import Floats, Indices
 from stiction.errors import Status
 from stiction.result.peak import largest_between
-from stiction.result.table import largest
+from stiction.result.table import fastest_slip, largest, unseen_ways
+from stiction.simulation import sample_coarsely, step_times
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
@@ -20,7 +22,8 @@ FINE_BINS = 8  # bins in each time that is averaged over
 SEEN = 4  # samples for each stick: with fewer, what lies between two sticks is not seen
 OF_A_SLIP = 2  # nor with fewer in each slip
 HUNDREDTHS = 100  # of the first loading
-FASTER = 1.01  # times the speed at samples: less is rounding
+MOST_STEPS, PER_STEP = 20_000, 16  # of a run solved again, and samples in each: it takes 1 s
+ROUNDS = 4  # of solving it, each with so many samples in an interval that needs them
 ROUNDED = 1e-14  # of the travel of drive or mass: places are known to some roundings
 
 
@@ -133,10 +136,10 @@ class Outcome(NamedTuple):
     # largest ratio of the load cell's force, in either direction, to the normal load at the same
     # instant; NaN without a load. Under a load that falls it comes later than the largest force
     peak: float
-    # largest slip speed of the samples, m/s; or of the means between two of them, where one of
-    # those is larger
+    # largest slip speed, m/s. Where samples do not show it, the run is solved again, sampled by the
+    # steps of the solver; where these are too many, it is a lower bound
     fastest: float
-    hidden: bool  # whether it is a mean: then the mass is faster still, between two samples
+    hidden: bool  # whether it is a lower bound: the mass is faster, between two samples
     # smallest mean speed over a hundredth of the first loading, m/s, so that the speed at the
     # release does not count; zero if the mass rests during the loading, however shortly
     slowest: float
@@ -154,9 +157,7 @@ def outcome(run: Trajectory) -> Outcome:
     loading = speed[: np.searchsorted(times, end) + 1]
     ends = np.unique(np.linspace(0, len(loading) - 1, HUNDREDTHS + 1).astype(np.intp))
     means = _mean_speeds(run, ends) if len(ends) > 1 else loading[:1]
-    sampled = float(np.fmax.reduce(speed))  # ignores NaN at the end of a run
-    between = float(_mean_speeds(run, np.arange(len(times))).max(initial=0.0))
-    hidden = between > FASTER * sampled
+    fastest, shown = _fastest_slip(run)
     rests = bool((run.stick_intervals[:, 0] < end).any())
     statistics = run.statistics
     return Outcome(
@@ -164,9 +165,33 @@ def outcome(run: Trajectory) -> Outcome:
         statistics.stick_count,
         statistics.time_stuck,
         largest_coefficient(run),
-        between if hidden else sampled,
-        hidden,
+        fastest,
+        not shown,
         0.0 if rests else float(means.min()),
         float(np.median(means)),
         statistics.steps,
     )
+
+
+def _fastest_slip(run: Trajectory) -> tuple[float, bool]:
+    """Return the largest slip speed (m/s) of a run, and whether it is more than a lower bound."""
+    fastest, shown = fastest_slip(run.samples)
+    times = step_times(run.description, MOST_STEPS) if run.status.ok and not shown else None
+    if times is None:
+        return fastest, shown
+    chosen = np.full(len(times) - 1, True)
+    for _ in range(ROUNDS):  # cycles that are taken at once are one step
+        times = _divide(times, chosen)
+        closer = sample_coarsely(run.description, times)
+        by_steps, shown = fastest_slip(closer)
+        fastest = max(fastest, by_steps)
+        chosen = unseen_ways(closer, fastest)
+        if shown or PER_STEP * chosen.sum() > MOST_STEPS:
+            break
+    return fastest, shown
+
+
+def _divide(times: Floats, chosen: NDArray[np.bool_]) -> Floats:
+    """Return times with some of the intervals between them divided into equal parts."""
+    start, step = times[:-1][chosen, None], np.diff(times)[chosen, None]
+    return np.union1d(times, start + step * (np.arange(1, PER_STEP) / PER_STEP))
