@@ -1292,6 +1292,29 @@ def test_an_arc_about_an_unknown_zero_ends_where_the_loadings_do(
     assert any(each.startswith("best arc (fitted zero, ") for each in legend)
 
 
+def test_the_force_of_an_aligned_rig_has_no_plane_to_draw() -> None:
+    """An empty panel had a colour bar, an arc in its legend alone, and one name over another."""
+    slider = st.presets.nakano_popov_2020().replace(phi="0 deg")
+    found = st.analyse(st.simulate(slider, "5 s", sample_rate="1 kHz"))
+    assert found.parts["rotation"] is not None
+    assert "rotation" not in overview.figures(found)
+    with pytest.raises(st.ResultError, match="it has no part across"):
+        st.plotting.plot_rotation(found)
+
+
+def test_names_of_arrows_that_lie_close_together_do_not_overlap() -> None:
+    slider = st.presets.nakano_popov_2020().replace(phi="0.2 deg", k_y="20 kN/m")
+    found = st.analyse(st.simulate(slider, "5 s", sample_rate="1 kHz"))
+    figure = figure_of(st.plotting.plot_rotation, found)
+    figure.canvas.draw()
+    early, late = (
+        each.get_window_extent()
+        for each in figure.axes[0].texts
+        if each.get_text() in ("early", "before slip")
+    )
+    assert not early.overlaps(late)
+
+
 def test_colours_of_the_loadings_are_ordered_in_print() -> None:
     """Without colour a later loading is lighter, and the last stands out from the paper."""
     shades = TIMES(np.linspace(0.0, 1.0, 20))[:, :3] @ (0.2126, 0.7152, 0.0722)

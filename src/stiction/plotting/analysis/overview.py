@@ -23,7 +23,7 @@ from stiction.plotting.analysis.creep_curve import Line, creep_theory, plot_cree
 from stiction.plotting.analysis.cycles import plot_motion
 from stiction.plotting.analysis.energy import plot_energy
 from stiction.plotting.analysis.oscillation import plot_oscillation
-from stiction.plotting.analysis.rotation import plot_rotation
+from stiction.plotting.analysis.rotation import is_along_drive, plot_rotation
 from stiction.plotting.page.canvas import figure_of
 from stiction.trajectory import Trajectory
 
@@ -55,7 +55,7 @@ def figures(found: Analysis) -> dict[str, Figure]:
         drawn["creep"] = figure_of(plot_creep, found.curves, found.creep, V, lines)
         if (end := end_of_creep(found)) != "slip":
             drawn["creep"].axes[0].set_xlabel(f"time until {end} (s)")
-    if found.parts["rotation"] is not None:
+    if (turns := found.parts["rotation"]) is not None and not is_along_drive(turns):
         drawn["rotation"] = figure_of(plot_rotation, found)
     its = found.oscillation
     if isinstance(found.source, Trajectory) and stands_out(its):

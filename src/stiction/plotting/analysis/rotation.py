@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from stiction.analysis.report import Analysis
 
 PARTS_OF_LOADING = 80  # of a loading: means over them leave noise and fast oscillation out
+ALIGNED = 1e-3  # across over along: less is not seen beside the width of a line
+CLOSE = 0.25  # of an arrow: across, names in the middles of two that are so close would overlap
 MOST_LOADINGS = 40  # drawn, evenly chosen from more
 # yellow, at the upper end of the map, is too pale on white
 TIMES = ListedColormap(colormaps["viridis"](np.linspace(0.0, 0.85, 256)), "times")
@@ -52,7 +54,8 @@ def plot_rotation(found: Analysis, ax: Axes | None = None) -> Axes:
     Raises
     ------
     ResultError
-        If the analysis does not know how the force changes: `Analysis.missing` says why.
+        If the analysis does not know how the force changes: `Analysis.missing` says why. If the
+        force has no part across, as of an aligned rig.
 
     Examples
     --------
@@ -65,6 +68,8 @@ def plot_rotation(found: Analysis, ax: Axes | None = None) -> Axes:
     if its is None or record is None:
         why = found.missing.get("rotation", "the record has no force across")
         raise ResultError(f"there is no rotation of the force to draw: {why}")
+    if is_along_drive(its):
+        raise ResultError("there is no rotation of the force to draw: it has no part across")
     forces = np.stack([record.force, np.asarray(record.force_across)])
     mean = loadings(record.time, forces, found.cycles).mean()
     zero = its.zero if its.kind == TURNING else 0.0
@@ -93,6 +98,11 @@ def plot_rotation(found: Analysis, ax: Axes | None = None) -> Axes:
                 ScalarMappable(lines.norm, TIMES), ax=ax, label="time of the loading (s)", pad=0.02
             )
     return ax
+
+
+def is_along_drive(its: Rotation) -> bool:
+    """Return whether the force of a rig, such as an aligned one, has no part across."""
+    return its.stated and bool(np.abs(its.across).max() < ALIGNED * np.abs(its.along).max())
 
 
 def _paths(time: Floats, forces: Floats, found: Analysis) -> tuple[Floats, list[Floats]]:
@@ -135,12 +145,19 @@ def _draw_rivals(ax: Axes, its: Rotation, mean: MeanLoading, factor: float, zero
 
 def _draw_arrows(ax: Axes, mean: MeanLoading, factor: float, zero: float) -> None:
     """Draw the mean force early and late in the loadings, as arrows from zero."""
-    for at, name in ((0, "early"), (-1, "before slip")):
-        end = factor * mean.x[at], factor * (mean.y[at] - zero)
+    ends = factor * np.array([mean.x[[0, -1]], mean.y[[0, -1]] - zero]).T
+    across = np.abs(np.diff(ends[:, 1]))[0]
+    close = across < CLOSE * np.abs(ends).max()  # a name is wider than it is high
+    for end, name, below in zip(ends, ("early", "before slip"), (False, True), strict=True):
         arrow = {"arrowstyle": "-|>", "color": BLACK, "lw": 0.9, "shrinkA": 0, "shrinkB": 0}
         ax.annotate("", end, (0.0, 0.0), arrowprops=arrow, zorder=4)
+        if close:
+            at, offset, side = end, (0.0, -7.0 if below else 7.0), "top" if below else "bottom"
+        else:
+            at, offset, side = 0.5 * end, (0.0, 0.0), "center"
         ax.annotate(
-            name, (0.5 * end[0], 0.5 * end[1]), ha="center", va="center", fontsize=7, zorder=5,
+            name, at, offset, textcoords="offset points", va=side, fontsize=7, zorder=5,
+            ha="right" if close and below else "center",
             bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.8},
         )  # fmt: skip
     ax.plot(0.0, 0.0, "o", color=BLACK, markersize=2.5)
