@@ -115,14 +115,14 @@ def test_an_audit_takes_the_second_argument_of_its_old_name():
 def test_the_seed_of_an_audit_reaches_the_fit_and_the_odds(run, monkeypatch):
     """Without it an audit could not be repeated with other draws, as a fit can."""
     from stiction.auditing import measured
+    from stiction.inference.mechanism import comparison
 
-    record, asked = st.measure(run, st.Sensor()), []
-    monkeypatch.setattr(measured, "observe_with_one", lambda *_: SimpleNamespace(seen=[None]))
+    record, asked, rig = st.measure(run, st.Sensor()), [], st.Rig(PAPER, {"phi": "1 +- 0.5 deg"})
+    its = SimpleNamespace(seen=[None], rig=rig)
+    monkeypatch.setattr(measured, "observe_with_one", lambda *_: its)
     monkeypatch.setattr(measured, "predict", lambda *_: None)
-    for name in ("fit_observed", "odds_of_observed"):
-        monkeypatch.setattr(
-            measured, name, lambda _, count, place, seed, report: asked.append(seed)
-        )
+    for room, name in (measured, "fit_observed"), (comparison, "odds_of_observed"):
+        monkeypatch.setattr(room, name, lambda _, count, place, seed, report: asked.append(seed))
 
     def withdraw(_):
         raise st.StictionError("enough")
@@ -130,7 +130,7 @@ def test_the_seed_of_an_audit_reaches_the_fit_and_the_odds(run, monkeypatch):
     monkeypatch.setattr(measured, "withdraw", withdraw)
     for given in ({}, {"seed": 3}):
         with pytest.raises(st.StictionError, match="enough"):
-            st.audit(st.Rig(PAPER, {"phi": "1 +- 0.5 deg"}), record, **given)
+            st.audit(rig, record, **given)
     assert asked == [0, 0, 3, 3]
 
 

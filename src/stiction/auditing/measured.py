@@ -15,13 +15,13 @@ from stiction.analysis.report import analyse
 from stiction.analysis.signals.correlated_noise import BOUNDS_95, interval_95
 from stiction.arrays import Floats
 from stiction.auditing.words.verdict import RECORD
-from stiction.errors import DescriptionError, ResultError
+from stiction.errors import ResultError
 from stiction.inference.features import USED
 from stiction.inference.fit import check, fit_observed
 from stiction.inference.measured.observed_rig import observe_with_one
-from stiction.inference.mechanism.comparison import check_comparable, odds_of_observed
+from stiction.inference.mechanism.comparison import odds_or_reason
 from stiction.inference.mechanism.likeness import BENT
-from stiction.inference.mechanism.odds import SHARE, TURNING, UNDECIDED, Odds, near_one
+from stiction.inference.mechanism.odds import TURNING, UNDECIDED, Odds, near_one
 from stiction.inference.mechanism.rivals import MISALIGNED_STATIC, ROTATION
 from stiction.inference.observation import Conditions, Observation
 from stiction.inference.posterior import RARE, Estimate, Fit, at_most, middle
@@ -118,7 +118,7 @@ class RecordComparison:
         return [name for name in USED if getattr(self.record, name) is None]
 
 
-def compare(
+def explain_record(
     record: Record,
     rig: Rig,
     *,
@@ -144,15 +144,11 @@ def compare(
         return RecordComparison(record, reason=str(error), stated=stated)
     (seen,) = its.seen
     made = predict(found, seen, part(report, 10, 20))
-    odds, why = None, ""
-    try:
-        check_comparable(rig, simulations // SHARE)
-        odds = odds_of_observed(its, simulations // SHARE, place, seed, part(report, 11, 20, of=9))
-    except (ResultError, DescriptionError) as error:
-        why = str(error)
-    return withdraw(
-        RecordComparison(record, seen, found, made, odds=odds, incomparable=why, stated=stated)
-    )
+    beside = RecordComparison(record, seen, found, made, stated=stated)
+    odds = odds_or_reason(its, simulations, place, seed, part(report, 11, 20, of=9))
+    if isinstance(odds, str):
+        return replace(beside, incomparable=odds)
+    return withdraw(replace(beside, odds=odds))
 
 
 def with_description(record: Record, rig: Rig) -> Record:

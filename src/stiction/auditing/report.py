@@ -249,12 +249,12 @@ def audit(
     before = FITTING if record is not None else 0.0
     measured = None
     if record is not None:
-        from stiction.auditing.measured import compare
+        from stiction.auditing.measured import explain_record
         from stiction.inference.observation import record_from
 
         seen = record_from(record, load_of_records(rig))
         end_reading()
-        measured = compare(
+        measured = explain_record(
             seen, rig, simulations=simulations, library=library, seed=seed,
             progress=lambda fraction: inform(before * fraction),
         )  # fmt: skip

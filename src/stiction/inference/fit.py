@@ -124,7 +124,7 @@ def fit_observed(
     begun = Ensemble.within(place, plan_for(its.rig, its.conditions), seed)
     begun = refuse_early(begun, simulations, part(simulating, 0, 20))
     simulated = build_enough(begun, simulations, part(simulating, 1, 20, of=19))
-    found = compare(simulated, its.seen, begun.folder, learning)
+    found = posterior_of(simulated, its.seen, begun.folder, learning)
     progress(1.0)
     return replace(found, drive=its.drive)
 
@@ -160,10 +160,12 @@ def build_enough(begun: Ensemble, simulations: int, progress: Progress) -> Libra
 def refuse_few_of(library: Library) -> None:
     """Refuse a library of which too few simulations have cycles."""
     usable = len(library.scores)
-    refuse_few("simulated records", usable, library.wanted, FEWEST_SIMULATIONS)
+    refuse_few_simulations("simulated records", usable, library.wanted, FEWEST_SIMULATIONS)
 
 
-def refuse_few(what: str, usable: int, simulated: int, fewest: int, recorded: bool = True) -> None:
+def refuse_few_simulations(
+    what: str, usable: int, simulated: int, fewest: int, recorded: bool = True
+) -> None:
     """Refuse simulations of which fewer have cycles, and name the priors that decide it.
 
     They are compared with those of a record, or else with that of the rig in the middle of its
@@ -264,13 +266,13 @@ def one_sided(prior: Prior, rounding: float = SMALLEST_ANGLE) -> Prior:
     return replace(prior, low=max(prior.low, 0.0))
 
 
-def compare(
+def posterior_of(
     library: Library,
     seen: Sequence[Observation],
     folder: Path | None = None,
     progress: Progress = silent,
 ) -> Fit:
-    """Estimate the parameters from the features of records, by comparison with a library.
+    """Return the posterior by the features of records, by comparison with a library.
 
     What is learned from the library is kept in `folder`.
 

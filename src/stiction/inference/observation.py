@@ -30,7 +30,7 @@ from stiction.inference.suitability import (
     changes_within,
     dispute,
     refuse_far,
-    refuse_few,
+    refuse_few_cycles,
     refuse_hidden,
     refuse_no_mean,
     refuse_other_motion,
@@ -261,7 +261,7 @@ def observe(record: Record, slider: Slider, name: str = "the record") -> Observa
     refuse_far(record, slider, name)
     record, seen, regime = classify_record(record)
     refuse_other_motion(record, regime, name)
-    refuse_few(name, len(seen.lasting))  # what the analysis does not call cycles is noise
+    refuse_few_cycles(name, len(seen.lasting))  # what the analysis does not call cycles is noise
     step, lineless = float(f"{grid.step:.{DIGITS}g}"), without_lines(record, grid, seen)
     noise = {each: noise_of(record, each, *its) for each, its in lineless.items()}
     found = slip_cycles(

@@ -74,7 +74,7 @@ def refuse_other_motion(record: Record, regime: Regime, name: str) -> None:
         )
 
 
-def refuse_few(name: str, count: int) -> None:
+def refuse_few_cycles(name: str, count: int) -> None:
     """Refuse a record with too few cycles."""
     if count < LEAST_CYCLES:
         raise ResultError(

@@ -15,8 +15,8 @@ from stiction.auditing.measured import (
     WITHDRAWN,
     alternatives,
     changes,
-    compare,
     contradictions,
+    explain_record,
     sections,
     verdict,
     with_description,
@@ -94,7 +94,7 @@ def test_a_record_with_static_friction_and_no_rotation_is_not_explained_by_the_r
     """Coulomb friction with a static coefficient, square on: no creep, steeper slips."""
     slider = rig.slider.replace(phi="0 deg", friction=st.Coulomb(mu_0=0.45, mu_static=0.6))
     record = record_of(slider, 8, 12.0, channels=("force",))
-    seen = compare(record, rig, simulations=SIMULATIONS, library=tmp_path)
+    seen = explain_record(record, rig, simulations=SIMULATIONS, library=tmp_path)
     assert not seen.like
     assert seen.odds.decision == STATIC, seen.odds
     assert not seen.odds.straight_excluded
@@ -196,7 +196,7 @@ def test_an_explanation_beside_an_unusual_loading_curve_says_how_both_hold(found
 
 def test_a_record_without_cycles_gets_no_verdict_and_says_why(rig):
     flat = st.Record(time=np.arange(100.0), force=np.ones(100))
-    seen = compare(flat, rig)
+    seen = explain_record(flat, rig)
     assert seen.fit is None
     (part,) = sections(seen)
     assert "No verdict: the record has 0 whole cycles of stick and slip" in part.sentences[0]
@@ -289,7 +289,7 @@ def test_a_record_that_contradicts_its_description_is_told_even_without_a_fit(ri
     plain = st.analysis.record_of(run)
     record = st.Record(time=plain.time, force=plain.force)
     text = rig.slider.replace(phi="2 deg").to_toml().replace('"2 deg"', '"2 +- 1 deg"')
-    _, *doubts = sections(compare(record, st.Rig.from_toml(text, changes)))
+    _, *doubts = sections(explain_record(record, st.Rig.from_toml(text, changes)))
     assert said in " ".join(sentence for part in doubts for sentence in part.sentences)
     assert bool(said) == bool(doubts)
 

@@ -750,7 +750,7 @@ def test_rest_is_that_of_simulations_with_the_parameters_of_the_record(rig, rota
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(comparison, "shares_at_rest", apart)
-        found = comparison.compare(simulated, rig, [seen]).rest
+        found = comparison.odds_of(simulated, rig, [seen]).rest
     every = Rest.among(apart(rivals[0].plans[0], simulated.parameters[0]))
     assert found.middle < 0.85 * every.middle, (found, every)
 
@@ -961,7 +961,7 @@ def test_the_odds_name_what_contacts_with_memory_were_not_compared_with(
         (ROTATION, RATE_AND_STATE), places + 0.5 * random.standard_normal(places.shape),
         np.repeat([0, 1], 60), (MISALIGNED_STATIC,), (random.standard_normal((60, width)),) * 2,
     )  # fmt: skip
-    assert comparison.compare(simulated, rig, [seen]).absent == absent
+    assert comparison.odds_of(simulated, rig, [seen]).absent == absent
 
 
 def test_a_claim_of_static_friction_names_the_rate_and_state_that_is_like_it():

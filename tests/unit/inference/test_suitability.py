@@ -19,7 +19,7 @@ from stiction.inference.observation import observe
 from stiction.inference.priors import Normal, Uniform
 from stiction.inference.simulated.library import BLOCK, FIRST_SIMULATIONS, Ensemble
 from stiction.inference.simulated.plan import plan
-from stiction.inference.suitability import dispute, explain_unlike, refuse_few
+from stiction.inference.suitability import dispute, explain_unlike, refuse_few_cycles
 from stiction.progress.report import silent
 
 RIG = st.Rig.from_toml(
@@ -177,7 +177,7 @@ def test_behind_an_amplifier_without_constant_force_nothing_is_fitted(no_simulat
 def test_too_few_cycles_ask_for_more_of_them():
     """The remedy was to drive more slowly: fewer cycles in the same time."""
     with pytest.raises(ResultError, match=r"3 whole cycles .* record for longer, or drive faster$"):
-        refuse_few("the record", 3)
+        refuse_few_cycles("the record", 3)
 
 
 def test_cycles_that_noise_hides_ask_for_less_noise():

@@ -20,7 +20,7 @@ from scipy.special import log_softmax, softmax
 
 from stiction.arrays import Floats
 from stiction.errors import ResultError
-from stiction.inference.fit import refuse_few
+from stiction.inference.fit import refuse_few_simulations
 from stiction.inference.learning.summary import (
     Regression,
     Standard,
@@ -169,7 +169,7 @@ def refuse_few_of_all(usable: Mapping[str, tuple[int, int]], left: Sequence[str]
         return
     most = max(usable, key=lambda name: usable[name][0] / usable[name][1])
     what = f"simulated records of {most}, and by no mechanism more,"
-    refuse_few(what, *usable[most], FEWEST_SIMULATIONS)
+    refuse_few_simulations(what, *usable[most], FEWEST_SIMULATIONS)
 
 
 def common_columns(plans: Sequence[Plan], scores: Sequence[Floats]) -> Floats:

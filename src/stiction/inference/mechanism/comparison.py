@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 
 from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
-from stiction.errors import DescriptionError, Fault, Instruction
+from stiction.errors import DescriptionError, Fault, Instruction, ResultError
 from stiction.inference.columns import bend_features
 from stiction.inference.fit import check, plan_for
 from stiction.inference.measured.observed_rig import ObservedRig, observe_rig
 from stiction.inference.mechanism import classifier, likeness
-from stiction.inference.mechanism.classifier import Simulations, begin, simulate
+from stiction.inference.mechanism.classifier import Classifier, Simulations, begin, simulate
+from stiction.inference.mechanism.likeness import Reference
 from stiction.inference.mechanism.odds import SHARE, SIMULATIONS, Odds, surely
 from stiction.inference.mechanism.rest import ALIKE_SIMULATIONS, Rest, shares_at_rest
 from stiction.inference.mechanism.rivals import CLAIMED, ROTATION, Mechanism, mechanisms
@@ -104,9 +105,21 @@ def odds_of_observed(
     simulating, comparing = part(progress, 0, 10, of=8), part(progress, 8, 10, of=2)
     simulated = simulate(rivals, simulations, place, seed=seed, progress=simulating)
     kept = None if place is None else place / f"{key(rivals)}-{simulations}-{seed}"
-    found = compare(simulated, its.rig, its.seen, kept, comparing, simulations)
+    found = odds_of(simulated, its.rig, its.seen, kept, comparing, simulations)
     progress(1.0)
     return found
+
+
+def odds_or_reason(
+    its: ObservedRig, simulations: int, place: Path | None, seed: int, progress: Progress
+) -> Odds | str:
+    """Return the odds beside a fit of so many simulations; the reason where there are none."""
+    of_each = simulations // SHARE
+    try:
+        check_comparable(its.rig, of_each)
+        return odds_of_observed(its, of_each, place, seed, progress)
+    except (ResultError, DescriptionError) as error:
+        return str(error)
 
 
 def check_comparable(rig: Rig, simulations: int = SIMULATIONS) -> None:
@@ -144,7 +157,7 @@ def key(rivals: Sequence[Mechanism]) -> str:
     return sha256("".join(keys).encode()).hexdigest()[:16]
 
 
-def compare(
+def odds_of(
     simulated: Simulations,
     rig: Rig,
     seen: Sequence[Observation],
@@ -156,42 +169,32 @@ def compare(
 
     `simulations` is the number of those of each mechanism, with cycles or without.
     """
-    every, simulated = simulated, simulated.among(CLAIMED)
+    claimed = simulated.among(CLAIMED)
     observed = np.concatenate([each.features for each in seen])
     bend = np.concatenate([bend_features(each.conditions, rig.slider) for each in seen])
-    to_tell, to_compare, to_check = (part(progress, done, 3) for done in range(3))
-    learned = classifier.learn_or_read(simulated, beside(path, "classifier"), to_tell)
+    learned, references = _learn(claimed, bend, path, part(progress, 0, 3, of=2))
     record = learned.standard.scores(observed)
-    references = likeness.learn_or_read(
-        simulated,
-        learned.whole.scores,
-        simulated.features[:, bend],
-        beside(path, "likeness"),
-        to_compare,
-    )
-    labels = simulated.labels
     probabilities = learned.probabilities(observed)[0]
-    name = simulated.names[int(np.argmax(probabilities))]
-    beside_static, absent = 1.0, simulated.absent
+    name = claimed.names[int(np.argmax(probabilities))]
+    beside_static, absent = 1.0, claimed.absent
     if name in ELASTIC:
-        absent = every.absent  # static friction on the misaligned rig among them
-        static = StaticCheck.of(every, beside(path, "check"), to_check)
+        absent = simulated.absent  # static friction on the misaligned rig among them
+        static = StaticCheck.of(simulated, beside(path, "check"), part(progress, 2, 3))
         beside_static = float(static.probability(name, observed[None])[0])
     rest = None
     if name == ROTATION:
-        place = simulated.names.index(name)
+        place = claimed.names.index(name)
         rows = references[place].typicality.alike(record, ALIKE_SIMULATIONS)
-        plan = plan_for(rig, [each.conditions for each in seen])
-        rest = Rest.among(shares_at_rest(plan, simulated.parameters[place][rows]))
+        rest = _rest_of(rig, seen, claimed.parameters[place][rows])
     return Odds(
-        names=simulated.names,
+        names=claimed.names,
         probabilities=probabilities,
         by_halves=learned.probabilities_by_halves(observed)[:, 0],
-        confusion=confusion(learned.whole.left_out, learned.left_out_by_halves, labels),
+        confusion=confusion(learned.whole.left_out, learned.left_out_by_halves, claimed.labels),
         likeness=tuple(each.likeness(record, observed[bend]) for each in references),
         bend=observed[bend],
         steady=steadiness(trend_of(seen)),
-        counts=tuple(np.bincount(labels).tolist()),
+        counts=tuple(np.bincount(claimed.labels).tolist()),
         simulations=simulations,
         absent=absent,
         channels=tuple({name: None for each in seen for name in each.conditions.noise}),
@@ -200,6 +203,27 @@ def compare(
         beside_static=beside_static,
         rest=rest,
     )
+
+
+def _learn(
+    claimed: Simulations, bend: NDArray[np.bool_], path: Path | None, progress: Progress
+) -> tuple[Classifier, tuple[Reference, ...]]:
+    """Return the classifier of mechanisms, and the reference of each for the record's likeness."""
+    learned = classifier.learn_or_read(claimed, beside(path, "classifier"), part(progress, 0, 2))
+    references = likeness.learn_or_read(
+        claimed,
+        learned.whole.scores,
+        claimed.features[:, bend],
+        beside(path, "likeness"),
+        part(progress, 1, 2),
+    )
+    return learned, references
+
+
+def _rest_of(rig: Rig, seen: Sequence[Observation], parameters: Floats) -> Rest:
+    """Return the rest of the mass in simulations with these parameters, under the conditions."""
+    plan = plan_for(rig, [each.conditions for each in seen])
+    return Rest.among(shares_at_rest(plan, parameters))
 
 
 def beside(path: Path | None, name: str) -> Path | None:

@@ -13,7 +13,7 @@ from stiction.arguments import end_reading, read_together
 from stiction.arrays import Floats
 from stiction.errors import Faults, Instruction, ResultError
 from stiction.inference.columns import features_from
-from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for, refuse_few
+from stiction.inference.fit import FEWEST_SIMULATIONS, plan_for, refuse_few_simulations
 from stiction.inference.learning import calibration
 from stiction.inference.measured.drive_of_records import with_measured_drive
 from stiction.inference.next_test.advice import Advice
@@ -179,11 +179,11 @@ def answer(
     _, features = begun.rows(FIRST_SIMULATIONS)
     cycles, recorded = int(show_cycles(trial, measured, features).sum()), seen is not None
     if will_be_too_few(cycles, FIRST_SIMULATIONS, count, FEWEST_RIGS):
-        refuse_few(DRAWN, cycles, FIRST_SIMULATIONS, FEWEST_RIGS, recorded)
+        refuse_few_simulations(DRAWN, cycles, FIRST_SIMULATIONS, FEWEST_RIGS, recorded)
     begun = begun.simulate(count, part(simulating, 1, 20, of=19))
     scores, features = begun.rows(count)
     cycles = int(show_cycles(trial, measured, features).sum())
-    refuse_few(DRAWN, cycles, count, FEWEST_RIGS, recorded)
+    refuse_few_simulations(DRAWN, cycles, count, FEWEST_RIGS, recorded)
     file = f"tests-{count}-{'-'.join(measured)}.npz"
     path = None if begun.folder is None else begun.folder / file
     every = [Further("the present test", measured), *tests]

@@ -10,7 +10,7 @@ import stiction as st
 from stiction.errors import DescriptionError
 from stiction.inference.disagreement import stated_rate
 from stiction.inference.features import features
-from stiction.inference.fit import check, compare, plan_for
+from stiction.inference.fit import check, plan_for, posterior_of
 from stiction.inference.observation import Conditions, Noise, Observation
 from stiction.inference.posterior import CONTRADICTS
 from stiction.inference.priors import Normal
@@ -44,7 +44,7 @@ def records(library, velocity):
 @pytest.mark.parametrize("velocity", [0.93, 1.07])
 def test_a_velocity_that_is_stated_wrongly_is_doubted(library, velocity):
     """Of 82 such records, by 5 %, 46 were not doubted, while the stiffness took its part."""
-    found = [compare(library, [each]) for each in records(library, velocity)]
+    found = [posterior_of(library, [each]) for each in records(library, velocity)]
     doubted = [each for each in found if each.loading.p_value < CONTRADICTS]
     assert len(doubted) >= 0.6 * len(found) > 6
     factors = [np.exp(each.loading.found) for each in doubted]
@@ -57,7 +57,7 @@ def test_a_velocity_that_is_stated_wrongly_is_doubted(library, velocity):
 
 
 def test_a_velocity_that_is_stated_rightly_is_not(library):
-    found = [compare(library, [each]) for each in records(library, 1.0)]
+    found = [posterior_of(library, [each]) for each in records(library, 1.0)]
     assert not [its for each in found for its in each.doubts if "times the rate" in its]
 
 

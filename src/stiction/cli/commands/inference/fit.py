@@ -22,7 +22,7 @@ from stiction.cli.options import (
 )
 from stiction.cli.terminal import say
 from stiction.cli.writing import check_output, write_figure
-from stiction.errors import DescriptionError, Faults, ResultError
+from stiction.errors import DescriptionError, Faults
 from stiction.text.sections import Section
 
 if TYPE_CHECKING:
@@ -99,7 +99,7 @@ def fit(
     from stiction.inference.measured.observed_rig import observe_rig
     from stiction.inference.mechanism.comparison import (
         check_comparable,
-        odds_of_observed,
+        odds_or_reason,
         refuse_incomparable,
     )
     from stiction.inference.mechanism.odds import SHARE
@@ -145,13 +145,12 @@ def fit(
     plots: dict[str, Any] = {"posterior": found, "corner": found}
     if mechanism:
         with show_progress("simulating and telling mechanisms apart") as report:
-            try:
-                odds = odds_of_observed(its, of_each, place, seed, report)
-            except ResultError as error:  # seldom: the first simulations did not tell it
-                sections = [*sections, Section("Mechanism", [f"Not compared: {error}."])]
-            else:
-                sections = [*sections, *odds.tables()]
-                groups["mechanism"], plots["mechanism"] = odds.data, odds
+            odds = odds_or_reason(its, simulations, place, seed, report)
+        if isinstance(odds, str):  # seldom: the first simulations did not tell it
+            sections = [*sections, Section("Mechanism", [f"Not compared: {odds}."])]
+        else:
+            sections = [*sections, *odds.tables()]
+            groups["mechanism"], plots["mechanism"] = odds.data, odds
     sections = [*sections, *warnings(names, given), *origins(names, given)]
     print_sections(", ".join(names), sections)
     say(f"wrote {found.save(output, **groups)}")
