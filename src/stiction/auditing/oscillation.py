@@ -21,6 +21,7 @@ from stiction.system.tensors import damping_tensor
 SWINGS = 10  # of which medians are taken, at either end
 FEWEST_SWINGS = 3  # fewer have no rhythm
 WINDOW = 100.0  # transverse periods that hold so many, as the frequency falls to a tenth
+SLOWEST = 20.0  # such windows hold them even before a slip; the rest of a long creep is left out
 FINE_SAMPLES = 50.0  # samples per transverse period in a window, which is simulated again
 LOADINGS = 4  # that are looked at after the first
 SILENT = 1e-3  # of V sin(phi)/omega_y: smaller swings may be noise of the solver
@@ -129,17 +130,21 @@ def _creeps(seen: SimulatedTest) -> Iterator[tuple[float, float, float]]:
         begin = float(early[np.argmax(early[:, 1] - early[:, 0]), 1]) if len(early) else start
         rest = float(inside[-SWINGS:][0, 0]) if len(inside) else end  # swings get ever slower
         late = min(end - window, rest - (end - rest) / SWINGS)
-        yield begin, max(late, begin), end
+        yield begin, max(late, begin, end - SLOWEST * window), end
 
 
 def _again(seen: SimulatedTest, begin: float, end: float) -> tuple[Floats, Floats, Floats]:
-    """Return time (s), u_y (m) and the sticks of a part of a test that is simulated again."""
+    """Return time (s), u_y (m) and the sticks of a part of a test that is simulated again.
+
+    It begins at a sample: the first in the part, or the last before it if there is none.
+    """
     run, time = seen.run, seen.run.samples["time"]
-    at = min(int(np.searchsorted(time, begin)), len(time) - 2)
+    at = max(min(int(np.searchsorted(time, begin)), int(np.searchsorted(time, end)) - 1), 0)
     start, rate = run.state(float(time[at])), FINE_SAMPLES * run.slider.natural_frequency_y
-    lasts = max(end - float(time[at]), 2.0 / rate)
-    again = simulate(run.slider, lasts, initial=start, sample_rate=rate)
-    return again.samples["time"], again.samples["u_y"], again.stick_intervals
+    first = max(begin, start.time)
+    times = first + np.arange(int(max((end - first) * rate, 2.0)) + 1) / rate
+    again = simulate(run.slider, initial=start, times=times)
+    return times, again.samples["u_y"], again.stick_intervals
 
 
 def _swings(

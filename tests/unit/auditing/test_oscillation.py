@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from tests.rigs import PIN_ON_PLATE
+from tests.rigs import PIN_ON_PLATE, STIFF_PRESS
 
 import stiction as st
+from stiction.analysis.creep.first_slip import creep_end
 from stiction.analysis.signals.reversals import extrema
-from stiction.auditing import report
+from stiction.auditing import oscillation, report
 from stiction.auditing.oscillation import oscillation_of, theoretical_oscillation
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import coarse_rate, simulate_test
@@ -51,6 +52,24 @@ def test_the_report_has_the_swings_of_the_test_and_marks_theory():
     assert "Hz; below 98" in lines[2]  # of the test, of which a sample rate is no matter
     shown = found.to_dict()["transverse_oscillation"]
     assert in_words(shown["first"][0]["frequency"]["value"], "Hz", 3) == rows["as creep begins"][0]
+
+
+def test_a_long_creep_is_not_simulated_again_as_a_whole(monkeypatch):
+    """Of a slow press it took 66 million samples, and the report failed for their rate."""
+    slow = STIFF_PRESS.replace(drive=st.ConstantVelocity("0.1 um/s"))
+    p = predict(slow)
+    growth = steady_sliding(slow).growth_rate
+    seen, asked = simulate_test(slow, p, growth, sample_rate=coarse_rate(p)), []
+    simulate = oscillation.simulate
+    monkeypatch.setattr(
+        oscillation,
+        "simulate",
+        lambda *a, times, **k: asked.append(times) or simulate(*a, times=times, **k),
+    )
+    shown = oscillation_of(seen)
+    assert shown.first.frequency == pytest.approx(theoretical_oscillation(slow)[0], rel=0.01)
+    assert max(map(len, asked)) <= 20.0 * 100.0 * 50.0 + 1.0  # 20 windows of 100 periods
+    assert asked[-1][-1] == pytest.approx(creep_end(seen.run), abs=1.0 / p.f_y)
 
 
 def test_an_audit_measures_its_oscillation_once(monkeypatch):
