@@ -58,7 +58,7 @@ from stiction.plotting.run.comparison import plot_comparison
 from stiction.plotting.run.law import plot_law
 from stiction.plotting.run.lines import draw_line, envelope, mean_course, oscillations
 from stiction.plotting.run.overview import GAP, LINE, SERIES, plot_glance, plot_run
-from stiction.plotting.run.time_series import cut_open, draw_slip_speed
+from stiction.plotting.run.time_series import UNSEEN, cut_open, draw_slip_speed
 from stiction.plotting.shades import COLORS, measure_shades
 from stiction.plotting.stability.damping import draw_damping_map
 from stiction.reproduction.creep import creep, zero_slip
@@ -484,7 +484,28 @@ def test_overview_has_the_law_up_to_the_largest_slip_speed(slider: st.Slider) ->
     fastest = float(run.samples["slip_speed"].max())
     assert fastest > 10.0 * slider.drive_speed
     (other,) = figure_of(plot_law, slider, fastest).axes
-    assert overview_axes(run)["law"].get_xlim() == pytest.approx(other.get_xlim())
+    axes = overview_axes(run)
+    assert axes["law"].get_xlim() == pytest.approx(other.get_xlim())
+    assert not axes["speed"].get_title(loc="right")  # which would say that samples hide its peaks
+
+
+def test_overview_of_a_fault_is_in_years_and_says_what_its_samples_hide() -> None:
+    """Slips of 0.13 m/s had 3e-8 m/s, 1e10 s had no year, and mu(v) bent where the law ends."""
+    fault = st.Slider(
+        mass="3e7 kg", k_x="3 MN/m", k_y="300 MN/m", phi="0 deg", normal_load="50 MN",
+        friction=st.laws.RateStateAgeing(0.010, 0.015, "20 mm", 0.6, "1 um/s"),
+        drive=st.ConstantVelocity("37 mm/yr"),
+    )  # fmt: skip
+    ax = overview_axes(st.simulate(fault, "1500 yr", sample_rate=4e-7))
+    assert ax["speed"].get_xlabel() == "time $t$ (yr)"
+    draw(ax["speed"].get_figure(root=True))
+    labels = [float(text.get_text()) for text in ax["speed"].get_xticklabels() if text.get_text()]
+    assert 1000.0 in labels
+    assert not any(label % 100.0 for label in labels)
+    assert ax["speed"].get_title(loc="right") == UNSEEN
+    (law,) = ax["law"].lines
+    mu = law.get_ydata()
+    assert np.diff(mu).max() < 0.0  # it falls all along
 
 
 # --- what they are made of ---

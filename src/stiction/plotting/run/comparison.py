@@ -34,7 +34,13 @@ from stiction.plotting.run.curves import (
 )
 from stiction.plotting.run.excerpt import excerpts
 from stiction.plotting.run.lines import EDGE
-from stiction.plotting.run.time_series import fastest_drive, say_only, set_speed_limits, slipping
+from stiction.plotting.run.time_series import (
+    fastest_drive,
+    name_years,
+    say_only,
+    set_speed_limits,
+    slipping,
+)
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
 
@@ -232,6 +238,7 @@ def draw_rests(ax: Axes, curves: Sequence[RunCurve]) -> None:
     ax.set_ylabel("zero\nslip", rotation=0, ha="right", va="center")
     ax.set_xlabel("time $t$ (s)")
     ax.set_xlim(edges[0], edges[-1])
+    name_years(ax)
 
 
 def draw_held(ax: Axes, curves: Sequence[RunCurve]) -> None:

@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 
 from stiction.friction import has_state
 from stiction.friction.law import static_coefficient
+from stiction.friction.laws.rate_and_state.common import SLOWEST
 from stiction.plotting.page.canvas import panel
 from stiction.plotting.page.style import PURPLE, style
 from stiction.system.description import Description
@@ -54,13 +55,15 @@ def draw_law(ax: Axes, slider: Slider, fastest: float) -> Line2D:
     """Draw the friction coefficient over slip speed.
 
     At zero slip friction takes any value up to the static coefficient: the vertical line. For a law
-    with internal state the coefficient is that of steady sliding, over the logarithm.
+    with internal state the coefficient is that of steady sliding, over the logarithm; not below
+    1 pm/s, where it is constant under rate and state, which have no steady state at rest.
 
     The `fastest` slip speed is in m/s; 1 m/s if it is zero or not finite.
     """
     top = fastest if 0 < fastest < np.inf else 1.0
     law, rests = slider.law, not has_state(slider.law)
-    speeds = np.linspace(0.0, top, 201) if rests else np.geomspace(1e-6 * top, top, 201)
+    least = min(max(1e-6 * top, SLOWEST), 0.1 * top)
+    speeds = np.linspace(0.0, top, 201) if rests else np.geomspace(least, top, 201)
     mu = [law.coefficient(float(speed)) for speed in speeds]
     factor, prefix = metric_prefix(speeds)
     speeds *= factor

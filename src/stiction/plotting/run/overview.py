@@ -156,6 +156,7 @@ def _series(run: Trajectory) -> dict[str, Callable[[Axes, Trajectory], Any]]:
             times = run.samples["time"]
             if times[-1] > times[0]:
                 ax.set_xlim(times[0], times[-1])
+                time_series.name_years(ax)
             if draw not in (time_series.draw_slip_speed, time_series.draw_time_stuck):
                 ax.margins(y=0.12)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -17,7 +18,8 @@ from stiction.arrays import Floats
 from stiction.plotting.page.parameter import label_decades
 from stiction.plotting.page.style import BLACK, BLUE, GREEN, GREY, PURPLE, RED
 from stiction.plotting.run.lines import BAND, EDGE, FEW_SAMPLES, draw_line, mean_course
-from stiction.text.quantity.prefix import metric_prefix
+from stiction.result.table import fastest_slip
+from stiction.text.quantity.prefix import YEAR, metric_prefix
 from stiction.text.quantity.wording import percent
 from stiction.trajectory import Trajectory
 
@@ -27,6 +29,7 @@ DEEPEST = 1e-6  # of the drive's speed: slower motion counts as rest
 LEAST_MOTION = 1e-9  # of the drive's speed, or of its path: smaller values are rounding
 CONSTANT = 1e-9  # of a quantity: a smaller range is rounding
 STILL = 1.0  # deg: least range of the axis of an angle
+UNSEEN = "faster between samples"
 
 
 def draw_quantity(
@@ -65,11 +68,28 @@ def imposed_quantities(run: Trajectory) -> list[tuple[str, Floats, str, str]]:
 
 
 def name_time(ax: Axes) -> None:
-    """Label a time axis, whose values are in s, in a suitable unit: s, ms, ..."""
+    """Label a time axis, whose values are in s, in a suitable unit: yr, s, ms, ..."""
     factor, prefix = metric_prefix(ax.get_xlim())
     factor, prefix = (factor, prefix) if factor > 1.0 else (1.0, "")
     ax.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{factor * t:.10g}"))
     ax.set_xlabel(f"time $t$ ({prefix}s)")
+    name_years(ax)
+
+
+class WholeYears(MaxNLocator):
+    """Ticks of an axis in s at round numbers of years."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        """Return the places of the ticks, s."""
+        return YEAR * np.asarray(super().tick_values(vmin / YEAR, vmax / YEAR))
+
+
+def name_years(ax: Axes) -> None:
+    """Label a time axis, whose values are in s, in years if it is that long, as texts do."""
+    if np.abs(ax.get_xlim()).max() >= YEAR:
+        ax.xaxis.set_major_locator(WholeYears(nbins="auto", steps=[1, 2, 2.5, 5, 10]))
+        ax.xaxis.set_major_formatter(FuncFormatter(lambda t, _: f"{t / YEAR:.10g}"))
+        ax.set_xlabel("time $t$ (yr)")
 
 
 def draw_spring_force(ax: Axes, run: Trajectory, axis: str) -> Line2D:
@@ -188,6 +208,8 @@ def draw_slip_speed(ax: Axes, run: Trajectory) -> Line2D:
     band.set_facecolor((GREEN, BAND))  # the edge shows slips shorter than a dot
     line = draw_line(ax, slip.time, mean, GREEN)
     set_speed_limits(ax, [(slip, fastest_drive(run))])
+    if not fastest_slip(run.samples)[1]:
+        ax.set_title(UNSEEN, loc="right", fontsize=7, color=GREY, pad=2.0)
     return line
 
 
