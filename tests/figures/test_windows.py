@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 import stiction as st
+from stiction.analysis.measurement.excerpt import excerpt
 from stiction.cli import main
-from stiction.plotting.run.excerpt import excerpt
 from stiction.result.window import window_of
 
 PAPER = st.presets.nakano_popov_2020()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
@@ -17,6 +18,7 @@ from stiction.analysis.creep.findings import attempt, find_creep
 from stiction.analysis.creep.misalignment import Misalignment
 from stiction.analysis.export import export
 from stiction.analysis.measured_line import strongest_line
+from stiction.analysis.measurement.excerpt import excerpt, excerpt_of_record
 from stiction.analysis.measurement.reading import read_source
 from stiction.analysis.measurement.run_record import as_record
 from stiction.analysis.motion.cycle_columns import CycleTable, summary
@@ -33,6 +35,7 @@ from stiction.arrays import TINY, xr
 from stiction.formats.table import number_of
 from stiction.names import draw, page_of, warn_renamed
 from stiction.text.sections import Report, Section
+from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
 
 HARMONICS = 10.0  # of the stick-slip; oscillations are sought above them
@@ -151,7 +154,12 @@ class Analysis(Report):
         return drawn
 
 
-def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) -> Analysis:
+def analyse(
+    source: Trajectory | Record | str | Path,
+    *,
+    window: Sequence[Quantity] | None = None,
+    trust: bool = False,
+) -> Analysis:
     """Analyse a run or a record completely.
 
     Parameters
@@ -160,6 +168,8 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
         A run, sampled several times per transverse period for creep and oscillation; a measured
         force with the known parameters of its apparatus; or the file of either, which
         `stiction.read_record` reads where it is not that of a run.
+    window : tuple of float or str, optional
+        Start and end of the part to analyse, in the times of the run or record; by default all.
     trust : bool, optional
         For a file; see `stiction.load`.
 
@@ -171,7 +181,8 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     Raises
     ------
     ResultError
-        If a file cannot be read; see `stiction.read_record` and `stiction.load`. What a run or
+        If a file cannot be read; see `stiction.read_record` and `stiction.load`. If the window is
+        not a part of the run or record. What a run or
         record does not tell is not an error: `Analysis.missing` says why.
 
     Examples
@@ -184,6 +195,10 @@ def analyse(source: Trajectory | Record | str | Path, *, trust: bool = False) ->
     """
     if isinstance(source, str | Path):
         source = read_source(source, trust=trust)
+    if isinstance(source, Trajectory):
+        source = excerpt(source, window)
+    elif isinstance(source, Record):
+        source = excerpt_of_record(source, window)
     run = source if isinstance(source, Trajectory) else None
     record = as_record(source)
     _, found, regime = classify_record(record, run)

@@ -21,8 +21,19 @@ def window_of(description: Description, window: Sequence[Quantity] | None) -> tu
     """
     first = description.initial.time
     last = first + description.run.duration
-    if window is None:
-        return first, last
+    return (first, last) if window is None else window_between(first, last, window, "run")
+
+
+def window_between(
+    first: float, last: float, window: Sequence[Quantity], whole: str
+) -> tuple[float, float]:
+    """Return start and end of a window, s, in a `whole` from `first` to `last`.
+
+    Raises
+    ------
+    ResultError
+        If it is not a start and an end, or not between these.
+    """
     try:
         begins, ends = window
     except (TypeError, ValueError):
@@ -34,7 +45,7 @@ def window_of(description: Description, window: Sequence[Quantity] | None) -> tu
         raise ResultError(f"window must end after it starts, is {start:g} s to {end:g} s")
     if start < first or end > last * (1 + 1e-12):
         raise ResultError(
-            f"{start:g} s to {end:g} s is not a part of the run, {first:g} s to {last:g} s"
+            f"{start:g} s to {end:g} s is not a part of the {whole}, {first:g} s to {last:g} s"
         )
     return start, min(end, last)
 

@@ -173,6 +173,40 @@ def test_a_loading_without_a_slip_has_no_stick_phase_that_ends(run):
     assert found.missing["creep"] == "no whole stick phase ends in a slip"
 
 
+def test_a_part_of_a_run_is_analysed_with_all_that_the_run_knows(run, found):
+    """As a record of the cut arrays it lost the misalignment."""
+    first, last = run.samples["time"][[0, -1]]
+    assert str(st.analyse(run, window=(first, last))) == str(found)
+    part = st.analyse(run, window=("1 s", f"{last} s"))
+    assert part.cycles["start"].values.min() >= 1.0
+    assert 0 < part.cycles.sizes["cycle"] < found.cycles.sizes["cycle"] + 1
+    off = abs(part.misalignment.phi - found.misalignment.phi)
+    assert off < part.misalignment.phi_error + found.misalignment.phi_error
+
+
+def test_a_part_of_a_record_is_analysed_with_its_apparatus():
+    time = np.arange(0.0, 60.0, 0.01)
+    record = st.Record(time=time, force=1.0 + time % 2.0, stiffness="1 kN/m", drive_velocity=1e-3)
+    part = st.analyse(record, window=("10 s", "40 s"))
+    assert (part.record.time[0], part.record.time[-1]) == (10.0, 40.0)
+    assert part.record.stiffness == 1000.0
+    assert part.cycles.sizes["cycle"] < st.analyse(record).cycles.sizes["cycle"]
+    for window, words in (
+        ((40, 70), "40 s to 70 s is not a part of the record, 0 s to 59.99 s"),
+        ((3, 1), "must end after it starts"),
+        ((1.001, 1.002), "has 0 samples of the record"),
+    ):
+        with pytest.raises(st.ResultError, match=words):
+            st.analyse(record, window=window)
+
+
+def test_a_dataset_is_told_the_ways_to_a_record(run):
+    for table in (run.data, run.to_dataframe()):
+        told = r"neither a run nor a record.*st\.Record\(time=.*st\.read_record.*window=\(1, 2\)"
+        with pytest.raises(st.ResultError, match=told):
+            st.analyse(table)
+
+
 def test_without_misalignment_the_last_motion_is_the_slip():
     found = st.analyse(st.simulate(PAPER.replace(phi="0 deg"), duration=4.0, sample_rate=5e3))
     assert "A motion in the last moments is the slip itself" in " ".join(str(found).split())

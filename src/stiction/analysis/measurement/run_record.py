@@ -16,6 +16,8 @@ from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.trajectory import Trajectory
 
+TABLES = {"Dataset", "DataArray", "DataFrame"}  # of xarray and pandas
+
 
 def as_record(source: Trajectory | Record) -> Record:
     """Return the record of a run, or a record in which a slow sensor's repeated values stand once.
@@ -34,6 +36,8 @@ def as_record(source: Trajectory | Record) -> Record:
     what = with_article(type(source).__name__)
     is_rig = isinstance(getattr(source, "slider", source), Slider)
     remedy = "st.simulate(...)" if is_rig else "st.Record(time=..., force=...)"
+    if type(source).__name__ in TABLES:
+        remedy += ", or write it to a file for st.read_record; a part of a run has window=(1, 2)"
     raise ResultError(f"{what} is neither a run nor a record; make one with {remedy}")
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
+from stiction.analysis.measurement.excerpt import excerpts
 from stiction.analysis.motion.cycles import find_cycles
 from stiction.analysis.motion.rest import stuck_until
 from stiction.analysis.slip import cell_force, is_undersampled
@@ -32,7 +33,6 @@ from stiction.plotting.run.curves import (
     force_symbol,
     mark_early_end,
 )
-from stiction.plotting.run.excerpt import excerpts
 from stiction.plotting.run.lines import EDGE
 from stiction.plotting.run.time_series import (
     fastest_drive,

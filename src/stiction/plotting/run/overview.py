@@ -10,6 +10,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
+from stiction.analysis.measurement.excerpt import excerpt
 from stiction.arrays import Floats
 from stiction.plotting.apparatus.schematic import draw_schematic
 from stiction.plotting.page.canvas import canvas, find_drawing, fix_ticks, panels_by_name
@@ -21,7 +22,6 @@ from stiction.plotting.page.words import (
     system_in_words,
 )
 from stiction.plotting.run import time_series
-from stiction.plotting.run.excerpt import excerpt
 from stiction.plotting.run.law import draw_law
 from stiction.plotting.run.lines import BAND, draw_line
 from stiction.text.quantity.prefix import metric_prefix

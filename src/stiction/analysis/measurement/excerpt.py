@@ -1,4 +1,4 @@
-"""A part of a run, drawn as large as the whole."""
+"""A part of a run or of a record, seen as large as the whole."""
 
 from __future__ import annotations
 
@@ -7,9 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from stiction.analysis.record import Record
+from stiction.arrays import Floats
 from stiction.errors import ResultError, Status
+from stiction.formats.table import number_of
 from stiction.result.table import ColumnTable
-from stiction.result.window import window_of
+from stiction.result.window import window_between, window_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
 
@@ -42,7 +45,7 @@ def excerpt(run: Trajectory, window: Sequence[Quantity] | None) -> Trajectory:
         return run
     start, end = window_of(run.description, window)
     times = run.samples["time"]
-    within = slice(*np.searchsorted(times, [start * (1 - ROUNDED), end * (1 + ROUNDED)]))
+    within = _within(times, start, end)
     if (count := len(times[within])) < 2:
         raise ResultError(
             f"window: {start:.10g} s to {end:.10g} s has {count} of the run's samples, whose last "
@@ -60,6 +63,39 @@ def excerpt(run: Trajectory, window: Sequence[Quantity] | None) -> Trajectory:
         stick_intervals=run.stick_intervals[overlap].clip(start, end),
         status=run.status if times[within][-1] == times[-1] else Status.COMPLETED,
     )
+
+
+def excerpt_of_record(record: Record, window: Sequence[Quantity] | None) -> Record:
+    """Return the part of a record in a window of its times, with all that is known of it.
+
+    Raises
+    ------
+    ResultError
+        If it is not a part of the record, or has fewer than two samples.
+
+    Examples
+    --------
+    >>> import stiction as st
+    >>> record = st.Record(time=[0.0, 1.0, 2.0], force=[1.0, 2.0, 3.0], mass="1 kg")
+    >>> part = excerpt_of_record(record, ("1 s", "2 s"))
+    >>> part.force.tolist(), part.mass
+    ([2.0, 3.0], 1.0)
+    """
+    if window is None or not len(record):
+        return record
+    start, end = window_between(float(record.time[0]), float(record.time[-1]), window, "record")
+    part = record.part(_within(record.time, start, end))
+    if len(part) < 2:
+        raise ResultError(
+            f"window: {start:.10g} s to {end:.10g} s has {number_of(len(part), 'sample')} of the "
+            "record; choose another window"
+        )
+    return part
+
+
+def _within(times: Floats, start: float, end: float) -> slice:
+    """Return the samples in a window, whose ends may be rounded."""
+    return slice(*np.searchsorted(times, [start * (1 - ROUNDED), end * (1 + ROUNDED)]))
 
 
 def excerpts(
