@@ -16,7 +16,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from enum import Enum
 from functools import lru_cache, partial
-from logging import Logger
 from pathlib import Path
 from types import CodeType, FunctionType, MethodType, ModuleType
 from typing import Any, NamedTuple
@@ -203,8 +202,10 @@ def _constant_text(value: Any) -> str | None:
 
 def package_name(value: Any) -> str | None:
     """Return the name of a module, or of a function or class of a package; None for others."""
-    if isinstance(value, ModuleType | Logger):
-        return f"{type(value).__name__} {getattr(value, '__name__', '')}"
+    if type(value).__module__ == "logging":  # which changes no result
+        return "logger"
+    if isinstance(value, ModuleType):
+        return f"module {value.__name__}"
     name, module = getattr(value, "__name__", None), getattr(value, "__module__", None)
     if isinstance(value, np.ufunc):
         module = "numpy"
