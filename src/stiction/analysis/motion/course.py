@@ -40,7 +40,7 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     """Return whether swings decrease until (nearly) nothing is left.
 
     They may grow first, while the spring is loaded, if the quiet afterwards lasts longer than they
-    did.
+    did, or if as many as show it by themselves, the later half, decrease.
 
     The `rest` is the time from the last of them until the drive or the load changes, or the record
     ends, in the unit of their periods.
@@ -54,7 +54,8 @@ def dies_out(drop: ArrayLike, period: ArrayLike, rest: float) -> bool:
     enough, left = (FEW_SWINGS, LEFT_BEFORE_QUIET) if quiet else (MANY, LEFT)
     if len(size) < enough:
         return _decays_steadily(size)
-    return order(size) <= ORDERED and bool(size[-1] < left * size[0])
+    halves = (size, size[len(size) // 2 :]) if len(size) >= 2 * MANY else (size,)
+    return any(order(each) <= ORDERED and bool(each[-1] < left * each[0]) for each in halves)
 
 
 def is_over(period: Floats, rest: float) -> bool:
