@@ -22,12 +22,12 @@ from rich.console import Console
 from rich.table import Table
 
 import stiction as st
+from stiction.analysis.motion.noiseless.zigzag import zigzag
 from stiction.analysis.motion.regime.kinds import STICK_SLIP
 from stiction.auditing.prediction import predict
 from stiction.auditing.simulated_test import coarse_rate, simulate_test
 from stiction.linear_stability import growth_rate
 from stiction.study.variables.observed_run import observe_run
-from stiction.study.variables.zigzag import zigzag
 
 Floats = NDArray[np.float64]
 

@@ -95,7 +95,8 @@ class OfRun(NamedTuple):
     """The run of a record: slider and sticks, and (n,) each of all samples, for its parts, too.
 
     `time` is in s, `rate_across`, of the mass along the stiffer axis, in m/s, and `drive_travel`,
-    along the force, in m; None where the drive is constant.
+    along the force, in m; None where the drive is constant. `force_rate` is in N/s; None where the
+    force is not the run's any more. `rtol` is the tolerance of the solver.
     """
 
     slider: Slider
@@ -103,6 +104,22 @@ class OfRun(NamedTuple):
     time: Floats
     rate_across: Floats
     drive_travel: Floats | None
+    force_rate: Floats | None
+    rtol: float
+
+
+class ExactForce(NamedTuple):
+    """The force of a run, (n,), with its rate and all else that its kind of motion depends on."""
+
+    slider: Slider
+    # s, N, N/s, and m/s: of slip, and of the mass along the stiffer axis
+    time: Floats
+    force: Floats
+    rate: Floats
+    slip_speed: Floats
+    rate_across: Floats
+    sticks: Floats  # (k, 2), s
+    rtol: float  # of the solver
 
 
 class Record(Described):
@@ -408,10 +425,27 @@ class Record(Described):
         """Velocity of the mass along the stiffer axis, (n,), m/s, of a run."""
         return self._of_run and self._at_own_times(self._of_run.rate_across)
 
+    @property
+    def exact(self) -> ExactForce | None:
+        """The force of a run, as the solver found it; None of any other."""
+        if self._of_run is None or self.slip_speed is None:
+            return None
+        slider, sticks, _, _, _, _, rtol = self._of_run
+        rate, across = (
+            self._at_own_times(each) for each in (self._of_run.force_rate, self._of_run.rate_across)
+        )
+        if rate is None or across is None:
+            return None
+        return ExactForce(
+            slider, self.time, self.force, rate, self.slip_speed, across, sticks, rtol
+        )
+
     def _at_own_times(self, values: Floats | None) -> Floats | None:
         """Return values at this record's times, from all samples of the run."""
         if self._of_run is None or values is None:
             return None
+        if np.array_equal(self.time, self._of_run.time):
+            return values
         return np.asarray(np.interp(self.time, self._of_run.time, values))
 
     def steady_until(self, time: float) -> float:
@@ -498,7 +532,10 @@ class Record(Described):
     def with_force(self, force: Floats) -> Self:
         """Return the record with another force (n,), N, that cannot be changed any more."""
         force.setflags(write=False)
-        return self.model_copy(update={"force": force})
+        changed = self.model_copy(update={"force": force})
+        if self._of_run is not None:
+            changed._of_run = self._of_run._replace(force_rate=None)
+        return changed
 
     def channels(self) -> dict[str, Floats]:
         """Return the measured channels by name, (n,) each, in SI; the force first."""

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.noiseless.zigzag import zigzag
 from stiction.arrays import Floats, Indices
-from stiction.study.variables.zigzag import zigzag
 
 # of the usual fall: a larger one is a slip. The force rises by 0.16 of a fall after it behind a
 # filter of eighth order, and irregular slips of a third of the usual one would be missed by 0.3

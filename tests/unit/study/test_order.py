@@ -7,7 +7,7 @@ import xarray as xr
 import stiction as st
 from stiction.plotting.maps import draw_measure
 from stiction.study.execution.refine import changes
-from stiction.study.variables.fast_regime import KINDS
+from stiction.study.variables.kinds import KINDS
 from stiction.study.view.mapping import in_order, side
 
 BASE = st.Description(st.presets.nakano_popov_2020(), st.Initial(), st.Settings(duration="20 ms"))

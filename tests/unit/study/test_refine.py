@@ -7,10 +7,10 @@ import pytest
 import xarray as xr
 
 import stiction as st
+from stiction.analysis.motion.noiseless.resolution import REVERSAL
 from stiction.study.execution import refine
 from stiction.study.execution.refine import Intervals, narrow, side
-from stiction.study.variables.fast_regime import KINDS
-from stiction.study.variables.observed_run import REVERSAL
+from stiction.study.variables.kinds import KINDS
 from stiction.study.view.view import kinds
 
 PAPER = st.presets.nakano_popov_2020()

@@ -9,6 +9,11 @@ from tests.rigs import NEARLY_ISOTROPIC
 
 import stiction as st
 from stiction.analysis.creep.first_slip import first_loading, first_slip_time
+from stiction.analysis.motion.noiseless.extremes import bottom, summit
+from stiction.analysis.motion.noiseless.features import features
+from stiction.analysis.motion.noiseless.resolution import least_rate
+from stiction.analysis.motion.noiseless.swings import SwingShapes
+from stiction.analysis.motion.noiseless.zigzag import zigzag
 from stiction.analysis.motion.regime.kinds import (
     BACKWARD,
     STICK_SLIP,
@@ -16,14 +21,13 @@ from stiction.analysis.motion.regime.kinds import (
     UNDETERMINED,
     shape,
 )
+from stiction.analysis.motion.regime.of_run import kind_of_cycles
 from stiction.result.peak import largest_spring_force, turning_points
 from stiction.result.table import sample_table
 from stiction.simulation import sample_times, solve
-from stiction.study.variables.fast_regime import KINDS, SwingShapes, by_shape
-from stiction.study.variables.features import bottom, features, summit, zigzag
+from stiction.study.variables.kinds import KINDS
 from stiction.study.variables.measures import MEASURES
 from stiction.study.variables.observed_run import observe_run
-from stiction.study.variables.sampling import least_rate
 
 PAPER = st.presets.nakano_popov_2020()
 TURN = 2.0 * np.pi
@@ -227,8 +231,9 @@ def test_a_trough_behind_the_last_sample_but_one_ends_a_cycle_if_the_force_rises
         for after, count in ((0.0099, 4), (0.0102, 5), (0.02, 5)):
             t = 2.5 + after - step * np.arange(160)[::-1]
             turns = features(
-                t, np.cos(TURN * t), -TURN * np.sin(TURN * t), t, 1e-3, 0.0, len(t), 4, True
-            ).turn_time
+                t, np.cos(TURN * t), -TURN * np.sin(TURN * t), t, least=0.0, driven=len(t),
+                parts=4, even=True,
+            ).turn_time  # fmt: skip
             late = turns[turns > 0.2]
             assert len(late) == count
             np.testing.assert_allclose(late, 0.5 * np.arange(1, count + 1), atol=1e-3)
@@ -346,8 +351,9 @@ def test_turning_points_of_a_known_signal():
     t = np.arange(0.0, 1.0, 1.0 / 320.0)
     signal = np.sin(2.0 * np.pi * 10.0 * t + 0.3) + 1e-4 * np.sin(2.0 * np.pi * 100.0 * t)
     found = features(
-        t, signal, np.gradient(signal, t), np.zeros(len(t)), 0.01, 0.0, len(t), 32, True
-    )
+        t, signal, np.gradient(signal, t), np.zeros(len(t)), least=0.0, driven=len(t), parts=32,
+        even=True, reversal=0.01,
+    )  # fmt: skip
     exact = (np.pi / 2 - 0.3 + np.pi * np.arange(20)) / (2.0 * np.pi * 10.0)
     np.testing.assert_allclose(found.turn_time, exact, atol=1e-4)
     np.testing.assert_allclose(np.abs(found.turn_value), 1.0, atol=3e-4)
@@ -504,13 +510,7 @@ def test_a_ripple_before_a_hold_is_no_cycle():
     assert value("cycles", run) == 0
 
 
-FEW_SWINGS = pytest.mark.xfail(reason="few swings before a hold, which an analysis does not find")
-
-
-@pytest.mark.parametrize(
-    "number",
-    [pytest.param(n, marks=FEW_SWINGS) if n in (3, 9, 15) else n for n in range(24)],
-)
+@pytest.mark.parametrize("number", range(24))
 def test_a_study_and_an_analysis_call_a_run_the_same(number):
     """Where the drive holds, or the transverse motion goes on, they had two names."""
     random = np.random.default_rng([17, number])
@@ -528,14 +528,15 @@ def test_a_study_and_an_analysis_call_a_run_the_same(number):
 def test_an_even_number_of_cycles_has_the_shape_of_the_middle_two():
     """As in an analysis: neither of the two alone says what is typical."""
     shares = np.array([0.70, 0.82])
-    cycles = SwingShapes(np.ones(2), np.ones(2), shares, 2.0)
-    kind = by_shape(cycles, 0.1, (lambda _: np.zeros(2), lambda _: np.zeros(2)))
+    cycles = SwingShapes(np.arange(2.0), np.ones(2), np.ones(2), shares)
+    none = lambda _: np.zeros(2)  # noqa: E731
+    kind = kind_of_cycles(cycles, 0.1, none, none, lambda: None)
     assert kind == shape(float(np.median(shares))) != shape(shares[1])
 
 
 def test_two_swings_die_out_by_the_rule_of_an_analysis():
     """A second swing of 0.6 of the first, and quiet for long: it has less than two thirds."""
-    swings = SwingShapes(np.array([1.0, 0.6]), np.ones(2), np.full(2, 0.5), 2.0)
+    swings = SwingShapes(np.arange(2.0), np.ones(2), np.array([1.0, 0.6]), np.full(2, 0.5))
     assert swings.die_out(2.0 + 3.1)
     assert not swings.die_out(2.0 + 2.9)
 
@@ -585,7 +586,7 @@ def test_a_slow_motion_of_a_light_mass_is_seen_by_the_steps_of_the_solver(slider
     run = run_in_study(slider, duration)
     assert run.resolved
     assert not run.sampling.even
-    assert len(run.time) < 0.1 * duration * least_rate(run.description)
+    assert len(run.time) < 0.1 * duration * least_rate(slider)
     fine = st.simulate(slider, duration)
     found = st.analyse(fine)
     assert run.regime == found.regime.kind

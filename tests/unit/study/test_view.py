@@ -11,7 +11,7 @@ from stiction.plotting.maps import Side
 from stiction.plotting.page.canvas import figure_of
 from stiction.study.presets import PRESETS, preset
 from stiction.study.store.seal import seal
-from stiction.study.variables.fast_regime import KINDS
+from stiction.study.variables.kinds import KINDS
 from stiction.study.view import mapping
 from stiction.study.view.boundaries import PHI_C, ZETA, plane
 from stiction.study.view.mapping import gaps_in_words

@@ -5,10 +5,11 @@ No NumPy function is called: a process would have to load the compiled copy of e
 
 from __future__ import annotations
 
-from math import copysign, sqrt
+from math import copysign
 
 import numpy as np
 
+from stiction.analysis.motion.noiseless.extremes import crest, trough
 from stiction.solver.compilation.jit import compiled
 
 
@@ -65,26 +66,3 @@ def find_slip(
     while lag[end] < most - least:
         end += 1
     return -1, end
-
-
-@compiled
-def trough(step: float, change: float, before: float, after: float) -> tuple[float, float]:
-    """Return when a fall ends within a step, and by how much a value has fallen then, negative.
-
-    Slip decelerates uniformly, and may stick before the step's end, after which the rate is
-    constant. The change in the step, and the rates at both ends, then determine when it was zero.
-    """
-    short = after * step - change
-    passed = min(max(-2.0 * before * short / (after - before) ** 2, 0.0), step)
-    return passed, 0.5 * before * passed
-
-
-@compiled
-def crest(step: float, change: float, before: float, after: float) -> tuple[float, float]:
-    """Return when the cubic with these rates at both ends of a step is largest, and its rise."""
-    mean = change / step
-    # the rate is c s^2 + 2 b s + before, of which one root lies between
-    b, c = 3.0 * mean - 2.0 * before - after, 3.0 * (before + after - 2.0 * mean)
-    root = sqrt(b * b - c * before)
-    s = before / (root - b) if b <= 0.0 else -(b + root) / c
-    return s * step, step * s * (before + s * (b + s * c / 3.0))

@@ -57,10 +57,9 @@ def record_of(run: Trajectory) -> Record:
     """
     slider, samples = run.slider, run.samples
     way = slider.load_cell.way
-    stiffer = ("v_x", "v_y")[slider.stiffer_axis]
-    names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", stiffer)
+    names = ("time", "spring_x", "spring_y", "X", "slip_speed", "normal_load", "v_x", "v_y")
     columns = np.stack([samples[name] for name in names])
-    time, f_x, f_y, X, slip_speed, load, rate = columns[:, np.isfinite(columns).all(axis=0)]
+    time, f_x, f_y, X, slip_speed, load, *rates = columns[:, np.isfinite(columns).all(axis=0)]
     if not len(time):
         raise ResultError("no sample of the run is a number; simulate it again")
     record = Record(
@@ -73,7 +72,11 @@ def record_of(run: Trajectory) -> Record:
     )
     steady = isinstance(slider.motion, ConstantVelocity)
     travel = None if steady else travel_along_cell(slider, time)
-    record._of_run = OfRun(slider, run.stick_intervals, time, rate, travel)
+    force_rate = way * slider.load_cell.along(slider.k_x * rates[0], slider.k_y * rates[1])
+    record._of_run = OfRun(
+        slider, run.stick_intervals, time, rates[slider.stiffer_axis], travel, force_rate,
+        run.description.run.rtol,
+    )  # fmt: skip
     return record
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -16,7 +16,7 @@ from stiction.analysis.motion.changes.quick_falls import EVEN_CHANCE, quick_fall
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
 from stiction.analysis.motion.changes.velocity import made_by_jumps, velocity_jumps
-from stiction.analysis.motion.course import dies_out, is_over
+from stiction.analysis.motion.course import COURSE_PARTS, dies_out
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
     have_period,
@@ -38,8 +38,9 @@ from stiction.analysis.motion.load_cell.free_swings import (
     ringing_cell,
     without_free_swings,
 )
+from stiction.analysis.motion.noiseless.swings import SwingShapes, corners
 from stiction.analysis.motion.rest import STICKING, rest_share
-from stiction.analysis.record import Record
+from stiction.analysis.record import ExactForce, Record
 from stiction.analysis.signals.digitised import fall_by_rounding, rounding_line
 from stiction.analysis.signals.even_grid import EvenGrid, even_grid
 from stiction.analysis.signals.hum import (
@@ -52,18 +53,20 @@ from stiction.analysis.signals.hum import (
 )
 from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.robust import uniform_mean, without_outliers
-from stiction.analysis.signals.turning_points import TurningPoints, turning_points
-from stiction.arrays import Floats, xr
+from stiction.analysis.signals.turning_points import turning_points
+from stiction.arrays import Floats, median, xr
+from stiction.drive import ConstantVelocity
 from stiction.trajectory import Trajectory
+
+if TYPE_CHECKING:  # else numba would be loaded for a measured record, too
+    from stiction.analysis.motion.noiseless.features import Features
 
 # A slip before a trough falls by such a part of the usual drop, and lasts for so many samples
 PART, FEWEST_LOW = 0.5, 3
 FEWEST_CYCLES = 3  # cycles beside a ringing, or of a load cell that rings
 BESIDE = 0.1  # of a frequency: so far noise takes that of a line
 FEWEST_SWINGS, FAR_FEWER = 8, 0.75  # swings beside a load cell's own, and cycles over these
-# Of the span of the force in the last quarter: a run, whose force has no noise, ends in a trough if
-# the force has risen by more after it. A study counts each reversal by this share
-REVERSAL = 1e-3
+DIP = 0.05  # of a usual drop: a hesitation of a run is as deep, as one that noise lets see
 LINES = 4  # subtracted at most
 SAME = 0.01  # of a line's frequency: two lines are at least so far apart
 # Times the largest drops, all but one in 50, from crest to trough: the means of irregular cycles
@@ -87,9 +90,10 @@ def find_cycles(source: Trajectory | Record) -> xr.Dataset:
     swings that jumps of the drive's velocity make, in a run or where it was measured
     (`stiction.analysis.motion.changes.velocity`).
 
-    A study (`stiction.Study`) counts the same cycles in the same run, but for one cycle in 8 of 250
-    random rigs: where swings build up, in the loading before irregular slips, or just before the
-    end. Its samples have no noise, and each reversal by more than a thousandth of the swing counts.
+    The force of a run has no noise, and its rate is known: peaks and troughs lie between its
+    samples, and each reversal by more than a thousandth of the swing counts. A study
+    (`stiction.Study`) counts the same cycles by the same rules, and so does an analysis of other
+    samples of the run: ``python -m benchmarks.explore.rigs.sampling`` compares them.
 
     Parameters
     ----------
@@ -175,6 +179,8 @@ class Swings(NamedTuple):
         The load that the force follows: swings and `force` are those under its mean.
     levels : tuple of Level
         Where there is no swing, the levels at which the force stays one after the other.
+    features : Features or None
+        Those of a run, whose force has no noise: its turning points between samples.
     """
 
     table: CycleTable
@@ -192,6 +198,7 @@ class Swings(NamedTuple):
     cell: RingingCell | None = None
     load: FollowedLoad | None = None
     levels: tuple[Level, ...] = ()
+    features: Features | None = None
 
     @property
     def lasting(self) -> CycleTable:
@@ -218,7 +225,8 @@ def swings(record: Record) -> Swings:
 
     Those that jumps of the drive's velocity make are left out, and counted.
     """
-    found = _swings_of_any_drive(record)
+    known = record.exact
+    found = _swings_of_any_drive(record) if known is None else _swings_of_run(record, known)
     its = found.table if len(found.table) or found.few is None else found.few
     if not len(its) and record.slip_speed is None:
         return found._replace(levels=levels(record.with_force(found.force)))
@@ -398,13 +406,13 @@ def swings_without(line: Line, record: Record) -> tuple[Record, Swings]:
 def own_swings(record: Record, wave: Floats | None = None) -> Swings:
     """Return the swings of the force as it is: no line in it is taken for a disturbance.
 
-    So in a run with steady drive and load; in measured records `swings` looks for some. Of a
-    force that a `wave` (N) carries the swings are those less the wave, but tabulated with it.
+    So in a run; in measured records `swings` looks for some. Of a force that a `wave` (N) carries
+    the swings are those less the wave, but tabulated with it.
     """
+    if wave is None and (known := record.exact) is not None:
+        return _swings_of_run(record, known)
     force = record.force if wave is None else record.force - wave
     points, few = turning_points(force), None
-    if record.sticks is not None and record.steady_until(record.time[0]) >= record.time[-1]:
-        points = without_open_end(points, force)
     if len(points.index) <= 2 * FEW_SLIPS + 1 and wave is None and record.slip_speed is None:
         few = few_slips(record.time, force)
     if few is not None and not len(points.index):
@@ -417,16 +425,51 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
         least = max(least, fall_by_rounding(record.force))  # a staircase less a wave turns back
         dips = Vertices(*(each[dips.value > least] for each in dips))
     table = _without_first_loading(record, tabulate(record, corners, dips, least))
-    over = dying = False
-    if len(table):
-        rest = record.steady_until(table["start"][-1]) - table["trough_time"][-1]
-        over = record.sticks is not None and is_over(table["period"], rest)
-        dying = over or dies_out(table["drop"], table["period"], rest)
+    rest = float(record.time[-1] - table["trough_time"][-1]) if len(table) else 0.0
+    dying = len(table) > 0 and dies_out(table["drop"], table["period"], rest)
     found = Swings(table, dying, turns, points.noise, points.clearness, record.force)
     if few is not None:
         none = Vertices(np.zeros(0), np.zeros(0))
         found = found._replace(few=tabulate(record, few.corners(record.time), none, points.least))
-    return found._replace(over=over)
+    return found
+
+
+def _swings_of_run(record: Record, known: ExactForce) -> Swings:
+    """Return the swings of a run's force, by turning points between its samples."""
+    found = features_of(known)
+    its = corners(found)
+    kept = Vertices(found.turn_time[its.kept], found.turn_value[its.kept])
+    drops = kept.value[1::2] - kept.value[2::2]
+    least = max(found.height, DIP * median(drops)) if len(drops) else found.height
+    deep = its.depth > least
+    dips = Vertices(found.turn_time[its.at[deep]], its.depth[deep])
+    table = tabulate(record, kept, dips, least)
+    shapes, over, dying = shapes_of(table), False, False
+    if len(table):
+        until = record.steady_until(float(table["start"][-1]))
+        over = shapes.are_over(until)
+        dying = over or shapes.die_out(until)
+    turns = len(found.turn_time)
+    return Swings(table, dying, turns, 0.0, 0.0, record.force, over=over, features=found)
+
+
+def features_of(known: ExactForce) -> Features:
+    """Return the features of a run's force."""
+    from stiction.analysis.motion.noiseless.features import features
+
+    time, drive, driven = known.time, known.slider.motion, len(known.time)
+    if not isinstance(drive, ConstantVelocity):
+        moves = np.flatnonzero(np.hypot(*drive.rate(time)))
+        driven = int(moves[-1]) + 1 if len(moves) else driven
+    return features(
+        time, known.force, known.rate, known.rate, least=known.rtol, driven=driven,
+        parts=COURSE_PARTS, even=False,
+    )  # fmt: skip
+
+
+def shapes_of(table: CycleTable) -> SwingShapes:
+    """Return swings in a table by their shapes."""
+    return SwingShapes(*(table[name] for name in SwingShapes._fields))
 
 
 def _without_first_loading(record: Record, table: CycleTable) -> CycleTable:
@@ -445,13 +488,3 @@ def _without_first_loading(record: Record, table: CycleTable) -> CycleTable:
     slipped = float(record.force[first:last].max()) - level > PART * table.median("drop")
     loaded = float(record.force[:last].max()) > 0.5 * (level + float(table["peak"][0]))
     return table if slipped or loaded else table.part(slice(1, None))
-
-
-def without_open_end(points: TurningPoints, force: Floats) -> TurningPoints:
-    """Leave out a trough after which a run's force (n,) has hardly risen: it may fall further."""
-    late = force[3 * len(force) // 4 :]
-    if len(points.index) < 3 or not points.trough[-1]:
-        return points
-    if points.after - points.values[points.index[-1]] > REVERSAL * np.ptp(late):
-        return points
-    return points._replace(index=points.index[:-1], trough=points.trough[:-1])

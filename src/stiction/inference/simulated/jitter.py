@@ -16,11 +16,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from stiction.analysis.motion.noiseless.zigzag import zigzag
 from stiction.arrays import Floats
 from stiction.friction import Anisotropic, states
 from stiction.inference.cycles import slip_cycles
 from stiction.simulation import solve_coarsely
-from stiction.study.variables.zigzag import zigzag
 from stiction.system.description import Description, Settings
 from stiction.system.initial import Initial
 from stiction.system.slider import Slider

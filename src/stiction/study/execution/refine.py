@@ -31,7 +31,7 @@ from stiction.study.store.creation import create
 from stiction.study.store.kept import UNKNOWN, flag_attributes
 from stiction.study.store.seal import seal
 from stiction.study.store.store import errors_as_message, group_at, open_study
-from stiction.study.variables.fast_regime import FORMERLY, KINDS
+from stiction.study.variables.kinds import FORMERLY, KINDS
 from stiction.study.view.view import CHANGES, REFINED, REGIME, kinds
 from stiction.text.paths import canonical_path
 from stiction.text.units import Quantity

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.arrays import Floats
-from stiction.study.variables.fast_regime import KINDS
+from stiction.study.variables.kinds import KINDS
 from stiction.study.variables.observed_run import ObservedRun
 
 
@@ -94,7 +94,7 @@ MEASURES: dict[str, Measure] = {
     "peak_velocity": Measure(
         "m/s",
         "largest velocity of the mass along X in its slow motion: fast swings lie between samples",
-        lambda run: run.features.peak_velocity,
+        lambda run: run.features.fastest,
         known=attrgetter("resolved_velocities"),
     ),
     "first_slip_time": Measure(

@@ -12,42 +12,39 @@ import numpy as np
 
 from stiction.analysis.creep.first_slip import first_loading
 from stiction.analysis.motion.course import COURSE_PARTS
-from stiction.analysis.motion.cycles import REVERSAL
-from stiction.analysis.motion.regime.kinds import STUCK, UNDETERMINED
-from stiction.analysis.motion.rest import (
-    rests_throughout,
-    stick_shares,
-    still_shares,
-    stops_with_drive,
+from stiction.analysis.motion.noiseless.extremes import summit
+from stiction.analysis.motion.noiseless.features import Features, features
+from stiction.analysis.motion.noiseless.resolution import (
+    UNEXPLAINED,
+    least_drop,
+    residual_changes,
+    shows_motion,
 )
+from stiction.analysis.motion.noiseless.swings import SwingShapes, swings
+from stiction.analysis.motion.regime.kinds import STUCK, UNDETERMINED
+from stiction.analysis.motion.regime.of_run import (
+    Circumstances,
+    kind_of_cycles,
+    regime_without_cycles,
+    rest_of,
+    settle,
+    sticks_of,
+)
+from stiction.analysis.motion.rest import rests_throughout
 from stiction.analysis.motion.vibration import FastOscillation
+from stiction.analysis.signals.hum import beat_frequency
 from stiction.arrays import TINY, Floats
 from stiction.drive import ConstantVelocity
 from stiction.drive.program import nominal_velocity
 from stiction.errors import STATUSES
 from stiction.simulation import solve, solve_coarsely, trajectory_of
 from stiction.solver.integrate import Room, Solution
-from stiction.study.variables.fast_regime import (
-    Circumstances,
-    SwingShapes,
-    cycles_among,
-    kind_of,
-    swings,
-)
-from stiction.study.variables.features import Features, even_columns, features, summit
+from stiction.study.variables.columns import even_columns
 from stiction.study.variables.sampling import SampleTimes, even_times, refine, sampling_of
 from stiction.system.description import Description
 from stiction.trajectory import Trajectory
 
-# `REVERSAL`, the smallest reversal of the force that counts, is a share of its span in the last
-# quarter of the time until the drive stops for good; afterwards friction holds the force. It is ten
-# times the fast oscillation of the paper's system, and small enough to see swings die out. It is at
-# least the solver's tolerance for the largest force.
-# Largest change of the force between two samples that their rates do not explain, as a share of the
-# smallest drop, and largest such velocity, as a share of the fastest. Harmonics of 10 and of 8
-# samples a period have as much, and their peaks are 1e-3 and 0.07 off at most
-UNEXPLAINED, UNEXPLAINED_VELOCITY = 0.02, 0.05
-AT_ONCE = 8  # samples, in which a stiff system comes from its initial state into balance
+UNEXPLAINED_VELOCITY = 0.05  # of the fastest: a harmonic of 8 samples, whose peaks are 0.07 off
 # Times the way of the drive between two samples: creep by more is known to 1e-3 from these; and the
 # number of closer ones about the slip, where it is less
 CLEARLY, CLOSE = 40.0, 4097
@@ -140,18 +137,13 @@ class ObservedRun:
         """
         if self.sampling.enough:
             return True
-        missed, least = self.missed[AT_ONCE:], self.least_drop
-        if missed.max() > UNEXPLAINED * least:
-            return False
-        if len(self.cycles.drop):
-            return True
-        counts = max(REVERSAL * self.features.late_span, self.description.run.rtol * abs(least))
-        return bool(missed[3 * len(missed) // 4 :].max() <= counts)
+        drops, span, rtol = self.cycles.drop, float(np.ptp(self.force)), self.description.run.rtol
+        return shows_motion(self.missed, drops, span, self.features, rtol)
 
     @property
     def least_drop(self) -> float:
         """The smallest drop of a cycle, N; without cycles the span of the force."""
-        return float(np.min(self.cycles.drop, initial=np.ptp(self.force)))
+        return least_drop(self.cycles.drop, float(np.ptp(self.force)))
 
     @property
     def missed(self) -> Floats:
@@ -232,11 +224,10 @@ class ObservedRun:
         least, driven = self.description.run.rtol, len(self.time)
         if len(self.drive) > 1 and self.drive.any():
             driven = int(np.flatnonzero(self.drive)[-1]) + 1
-        found: Features = features(
-            self.time, self.force, self.rate, self.velocity, REVERSAL, least, driven, COURSE_PARTS,
-            self.sampling.even,
+        return features(
+            self.time, self.force, self.rate, self.velocity, least=least, driven=driven,
+            parts=COURSE_PARTS, even=self.sampling.even,
         )  # fmt: skip
-        return found
 
     @property
     def peak(self) -> float:
@@ -319,17 +310,18 @@ class ObservedRun:
         return swings(self.features)
 
     @cached_property
-    def until(self) -> float:
-        """The first change of drive or load in or after the last swing, s; else the end."""
-        if not len(self.swings.period):
-            return self.end
-        last = float(self.swings.start[-1])
-        return min(self.end, self.description.slider.steady_until(last))
+    def circumstances(self) -> Circumstances:
+        """Conditions on which the kind of motion depends."""
+        slider = self.description.slider
+        loading = slider.k_x * abs(self.nominal * slider.direction[0])
+        return Circumstances.of(
+            slider, self.time, self.swings, loading, self.slip_speed, self.solution.sticks
+        )
 
     @cached_property
     def cycles(self) -> SwingShapes:
         """The swings that are cycles."""
-        return cycles_among(self.swings, self.until)
+        return self.swings.cycles(self.circumstances.until)
 
     @cached_property
     def transverse_oscillation(self) -> float:
@@ -349,30 +341,34 @@ class ObservedRun:
 
     @cached_property
     def regime(self) -> str:
-        """The kind of motion, one of `stiction.study.variables.fast_regime.KINDS`."""
+        """The kind of motion, one of `stiction.study.variables.kinds.KINDS`."""
         if not self.resolved:
             return UNDETERMINED
         if rests_throughout(self.time, self.slip_speed, self.solution.sticks):
             return STUCK
-        slider = self.description.slider
-        drive = slider.k_x * abs(self.nominal * slider.direction[0])
-        own = 1.0 / slider.natural_frequency_x
-        stops = stops_with_drive(slider.motion, self.end, self.slip_speed)
-        given = Circumstances(self.end - self.start, self.until, drive, own, stops)
-        shares, motion = (self.rests, self.sticks), (self.features, self.swings, self.cycles)
-        return kind_of(*motion, given, self.fast_oscillation, shares)
+        given, found, own = self.circumstances, self.features, self._own_period
+        if not len(self.cycles.drop) or settle(self.swings, given):
+            its = regime_without_cycles(found, self.swings, given, lambda: self.fast_oscillation)
+            return its.kind
+        return kind_of_cycles(self.cycles, own, self.rests, self.sticks, self._beat)
+
+    @property
+    def _own_period(self) -> float:
+        """Period of the mass on the spring along x alone, s."""
+        return 1.0 / self.description.slider.natural_frequency_x
+
+    def _beat(self) -> float | None:
+        """Return the frequency (Hz) at which two vibrations beat, if they do."""
+        return beat_frequency(self.time, self.force)
 
     def rests(self, cycles: SwingShapes) -> Floats:
         """Return the share of each cycle in which the mass rests or creeps, in one piece."""
         V = abs(self.nominal)
-        slip = self.slip_speed
-        peak = cycles.start + cycles.rise_share * cycles.period
-        return still_shares(self.time, slip / V if V else slip, cycles.start, peak, cycles.period)
+        return rest_of(cycles, self.time, self.slip_speed / V if V else self.slip_speed)
 
     def sticks(self, cycles: SwingShapes) -> Floats:
         """Return the share of each cycle in which the mass sticks."""
-        peak = cycles.start + cycles.rise_share * cycles.period
-        return stick_shares(self.solution.sticks, cycles.start, peak, cycles.period)
+        return sticks_of(cycles, self.solution.sticks)
 
 
 def observe_run(
@@ -392,11 +388,6 @@ def observe_run(
         if sampling is None:
             break
     return run
-
-
-def residual_changes(time: Floats, values: Floats, rates: Floats) -> Floats:
-    """Return the changes between samples, (n - 1,), less the integrals of their rates."""
-    return np.asarray(np.diff(values) - 0.5 * np.diff(time) * (rates[1:] + rates[:-1]))
 
 
 def seconds_of(description: Description) -> float:

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil, pi, sqrt
+from math import ceil
 from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.noiseless.resolution import imposed_rate, least_rate
 from stiction.analysis.motion.vibration import FAST_PERIODS
 from stiction.arrays import Floats
 from stiction.simulation import sample_times, step_times
 from stiction.system.description import Description
 from stiction.system.slider import Slider
-from stiction.system.tensors import stiffness_and_mass_along
 
-# With samples this dense, cubics find peaks to 4e-6 of the amplitude for a harmonic, and to 5e-7
-# for the paper's system. The samples cost a fifth of the run's time.
-PER_SLOW_PERIOD = 32
-PER_COUPLED_PERIOD = 16  # of the mass moving only along the drive
-# Of what varies drive or load: friction that turns with it has half its period
-PER_IMPOSED_PERIOD = 2 * PER_SLOW_PERIOD
 LEAST_SAMPLES = 64  # of a run
 # A prime: else a round number of periods in a run could have all samples at one phase
 MOST_SAMPLES = 999_983
@@ -61,7 +55,7 @@ class SampleTimes(NamedTuple):
 def sampling_of(description: Description, report: Callable[[float], None] | None) -> SampleTimes:
     """Return times as dense as measures need, at least as dense as a description states."""
     start, duration = description.initial.time, description.run.duration
-    least = max(least_rate(description), LEAST_SAMPLES / duration)
+    least = max(_least_rate(description), LEAST_SAMPLES / duration)
     needed, stated = duration * least, _stated_rate(description)
     if needed > MANY_SAMPLES and not 0.5 * least < stated <= MOST_SAMPLES / duration:
         steps = step_times(description, min(needed, MOST_SAMPLES) / PER_STEP, report)
@@ -73,23 +67,14 @@ def sampling_of(description: Description, report: Callable[[float], None] | None
     return with_dense_end(even, rate, fast, rate >= least, even=True)
 
 
-def least_rate(description: Description) -> float:
-    """Return the rate of even samples (1/s) that the known frequencies of a system need."""
-    slow = description.slider.natural_frequencies[0]
-    along = PER_COUPLED_PERIOD * coupled_frequency(description.slider)
-    return max(PER_SLOW_PERIOD * slow, along, _stated_rate(description))
+def _least_rate(description: Description) -> float:
+    """Return the rate of even samples (1/s) that a system needs, or its description states."""
+    return max(least_rate(description.slider), description.run.sample_rate or 0.0)
 
 
 def _stated_rate(description: Description) -> float:
     """Return the rate (1/s) that a description states, or that its drive and load need."""
-    imposed = max(description.slider.modulation_frequencies, default=0.0)
-    return max(description.run.sample_rate or 0.0, PER_IMPOSED_PERIOD * imposed)
-
-
-def coupled_frequency(slider: Slider) -> float:
-    """Return the frequency (Hz) of a mass that friction confines to the drive's direction."""
-    stiffness, mass = stiffness_and_mass_along(slider, slider.direction)
-    return sqrt(stiffness / mass) / (2.0 * pi)
+    return max(description.run.sample_rate or 0.0, imposed_rate(description.slider))
 
 
 def by_steps(description: Description, steps: Floats, least: float) -> SampleTimes:
@@ -154,5 +139,5 @@ def with_dense_end(
 def even_times(description: Description) -> Floats:
     """Return even times at the least rate that the known frequencies of a system need."""
     start, duration = description.initial.time, description.run.duration
-    rate = min(least_rate(description), MOST_SAMPLES / duration)
+    rate = min(_least_rate(description), MOST_SAMPLES / duration)
     return sample_times(start, duration, rate)

@@ -18,7 +18,7 @@ from stiction.study.plan.study import Study
 from stiction.study.store import seal
 from stiction.study.store.kept import stored_variables
 from stiction.study.store.store import CHECKED, group_at, open_study
-from stiction.study.variables.fast_regime import KINDS
+from stiction.study.variables.kinds import KINDS
 from stiction.study.variables.measures import FORMERLY, MEASURES
 from stiction.text.suggestion import Suggestion
 from stiction.text.units import Quantity

@@ -169,11 +169,11 @@ def test_a_file_that_is_being_exchanged_counts_as_edited(root, law, monkeypatch)
 
 
 def test_an_edit_in_a_compiled_function_that_is_called_leads_to_new_code():
-    """Code of `features` holds that of `zigzag`, which lies in another file."""
-    from stiction.study.variables.features import features
-    from stiction.study.variables.zigzag import zigzag
+    """Code of `fill_features` holds that of `find_turns`, which lies in another file."""
+    from stiction.analysis.motion.noiseless.features import fill_features
+    from stiction.analysis.motion.noiseless.zigzag import find_turns
 
-    function, shelf = jit.python_of(features), zigzag._cache
+    function, shelf = jit.python_of(fill_features), find_turns._cache
     before, there = shelf._made_from, Shelf(function)._made_from
     shelf._made_from = "edited"
     try:

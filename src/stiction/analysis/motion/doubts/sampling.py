@@ -116,6 +116,8 @@ def usual_fall(record: Record, cycles: CycleTable) -> float:
     falls = cycles["trough_time"] - cycles["peak_time"]
     if not len(falls):
         return inf
+    if record.exact is not None:  # as samples would show it, it seems to last one more
+        return float(np.median(falls)) + 1.0 / record.sample_rate
     reach = 2.0 * REACH * white_noise(record.force) + resolution(record.force)
     shares = np.minimum(reach / cycles["drop"], MOST_HIDDEN)
     first, last = np.searchsorted(record.time, [cycles["peak_time"], cycles["trough_time"]])

@@ -2,19 +2,28 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import hypot
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from stiction.analysis.measurement.run_record import as_record
-from stiction.analysis.motion.changes.cycles import BELOW
 from stiction.analysis.motion.changes.mean_load import followed_load
 from stiction.analysis.motion.changes.sliding import NO_LOAD, sliding
 from stiction.analysis.motion.changes.strokes import strokes
 from stiction.analysis.motion.course import BEGINS_UNLOADED, COURSE_PARTS
 from stiction.analysis.motion.cycle_columns import CycleTable
-from stiction.analysis.motion.cycles import Swings, swings, swings_without
+from stiction.analysis.motion.cycles import Swings, shapes_of, swings, swings_without
 from stiction.analysis.motion.disturbance import RESIDUE
+from stiction.analysis.motion.noiseless.resolution import (
+    AT_ONCE,
+    least_drop,
+    least_rate,
+    residual_changes,
+    shows_cycles,
+    shows_motion,
+)
 from stiction.analysis.motion.regime.band import WIDE
 from stiction.analysis.motion.regime.cycle_shape import ENOUGH, by_parts
 from stiction.analysis.motion.regime.evidence import Evidence, Regime
@@ -27,35 +36,37 @@ from stiction.analysis.motion.regime.kinds import (
     STICK_SLIP,
     STUCK,
     TRANSITIONAL,
-    TRANSVERSE,
     UNDETERMINED,
 )
+from stiction.analysis.motion.regime.of_run import (
+    Circumstances,
+    many_sticks,
+    regime_without_cycles,
+    settle,
+)
 from stiction.analysis.motion.rest import (
-    TOUCHES,
     comes_to_rest,
     rests_throughout,
-    stops_with_drive,
-    stuck_share,
 )
 from stiction.analysis.motion.vibration import (
     COUPLED,
     FAST_PERIODS,
-    LEAST_OSCILLATION,
     OWN_PERIODS,
     FastOscillation,
 )
-from stiction.analysis.record import Record
+from stiction.analysis.record import ExactForce, Record
 from stiction.analysis.signals.digitised import resolution
 from stiction.analysis.signals.even_grid import even_grid
 from stiction.analysis.signals.hum import narrow_lines, of_mains, samples_per_period
 from stiction.analysis.signals.turning_points import without_spikes
+from stiction.arrays import Floats
 from stiction.recording.noise import white_noise
 from stiction.trajectory import Trajectory
 
+if TYPE_CHECKING:  # else numba would be loaded for a measured record, too
+    from stiction.analysis.motion.noiseless.features import Features
+
 FEWEST_PER_CYCLE = 3.5  # samples a cycle: below it is not known, nor what it is
-# A run sticks again and again if it does so by so many times in this part of the record, its end;
-# so many samples from stick to stick show the cycles, though their falls differ in size
-FEWEST_STICKS, LATE, SHOWN_SAMPLES = 3, 0.25, 16.0
 MAY_BE_HUM = (TRANSITIONAL, HARMONIC, IRREGULAR, UNDETERMINED)
 WITHOUT_CYCLES = (SETTLING, STEADY, STUCK)
 SAME = 0.01  # of a period: by so much that of a line and that of the cycles differ
@@ -67,7 +78,9 @@ def classify(source: Trajectory | Record) -> Regime:
 
     The shape of the cycles decides (`stiction.analysis.motion.rest`). If there are none, or they
     die out, the course of the force decides: it rises to the end, settles, or stays about constant.
-    Where jumps of the drive's velocity make the swings, nothing is determined.
+    Where jumps of the drive's velocity make the swings, nothing is determined. A run is classified
+    by its cycles between samples, without noise (`stiction.analysis.motion.regime.of_run`), as a
+    study does it; nothing is determined where its samples are too few to show its motion.
 
     Parameters
     ----------
@@ -103,7 +116,11 @@ def regime_of(record: Record, found: Swings, run: Trajectory | None = None) -> R
     A motion without cycles is one to which nothing else happens. A run that ended early shows that
     for a share of its duration, and the confidence is less by this share.
     """
-    seen = _by_cycles_or_course(record, found)
+    known = record.exact
+    if known is None or found.features is None:
+        seen = _by_cycles_or_course(record, found)
+    else:
+        seen = _regime_of_run(record, found, known, found.features)
     if run is None or run.status.ok or seen.kind not in WITHOUT_CYCLES:
         return seen
     end, whole = float(run.final.time), run.description.run.duration
@@ -115,8 +132,6 @@ def _by_cycles_or_course(record: Record, found: Swings) -> Regime:
     """Return the kind of motion by the cycles of a record, or by the course of its force."""
     if len(record) < COURSE_PARTS:
         return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
-    if rests_throughout(record.time, record.slip_speed, record.sticks):
-        return Regime(STUCK, 1.0, {"rests": record.duration})
     if record.slip_speed is None:
         if np.ptp(record.force) == 0.0 and found.load is None:
             return Regime(UNDETERMINED, 0.0, {"unchanging": float(record.force[0])})
@@ -133,11 +148,11 @@ def _by_cycles_or_course(record: Record, found: Swings) -> Regime:
     if found.dying or _has_stopped(record, found):
         drop = found.table["drop"]
         sure = (len(drop) + 1) / (len(drop) + 3)
-        over = found.over and drop[-1] > BELOW * drop.max()
-        name: Evidence = "over" if over else "swings"
-        evidence: dict[Evidence, float] = {name: len(drop), "last_over_first": drop[-1] / drop[0]}
-        last = float(drop[-1]), float(found.table["period"][-1])
-        return _or_transverse(record, Regime(SETTLING, sure, evidence), *last)
+        evidence: dict[Evidence, float] = {
+            "swings": len(drop),
+            "last_over_first": drop[-1] / drop[0],
+        }
+        return Regime(SETTLING, sure, evidence)
     if len(found.table):
         period = found.lasting.mean("period")
         seen = _unless_against(record, found.lasting, by_parts(record, found))
@@ -175,7 +190,7 @@ def _while_it_slides(record: Record, found: Swings) -> Regime:
     """Return the kind of motion without cycles until the drive turns, or the spring is unloaded."""
     _, last, falls = sliding(record)
     if last == len(record) or last < COURSE_PARTS or record.slip_speed is not None:
-        return _or_transverse(record, by_course(record, found))
+        return by_course(record, found)
     until = record.before(float(record.time[last]))
     seen = by_course(until, found._replace(force=found.force[:last]))
     end = min(falls, len(record) - 1)
@@ -221,48 +236,52 @@ def _beside_gaps(record: Record, seen: Regime) -> Regime:
     return Regime(UNDETERMINED, 0.0, evidence, other)
 
 
-def _or_transverse(record: Record, seen: Regime, *last: float) -> Regime:
-    """Return the transverse oscillation that goes on where the slow motion of a run has settled.
-
-    `last` is drop (N) and period (s) of the last swing, if swings die out.
-    """
-    if seen.kind not in (SETTLING, STEADY):
-        return seen
-    fast = _fast_oscillation(record)
-    if fast is None or not fast.goes_on(*last):
-        return _unless_it_sticks(record, seen)
-    sure = 1.0 - 0.5 * LEAST_OSCILLATION / fast.amplitude  # at the bound either is as likely
-    return Regime(TRANSVERSE, sure, seen.evidence | {"across": fast.amplitude}, seen.kind)
-
-
-def _unless_it_sticks(record: Record, seen: Regime) -> Regime:
-    """Return that nothing is determined of a run that sticks again and again to its end.
-
-    Its samples are too few to show the cycles.
-    """
-    begin, end = float(record.time[-1]) - LATE * record.duration, float(record.time[-1])
-    if record.sticks is None or record.steady_until(begin) < end:
-        return seen
-    count = int(np.count_nonzero(record.sticks[:, 0] > begin))
-    share = stuck_share(begin, end, record.sticks)
-    if count < FEWEST_STICKS or share <= TOUCHES:
-        return seen
-    needed = SHOWN_SAMPLES * count / (end - begin)
-    return Regime(
-        UNDETERMINED, 0.0, {"late_sticks": count, "stick_share": share, "rate_needed": needed}
+def _regime_of_run(record: Record, found: Swings, known: ExactForce, its: Features) -> Regime:
+    """Return the kind of motion of a run, whose force has no noise."""
+    if len(record) < COURSE_PARTS:
+        return Regime(UNDETERMINED, 0.0, {"samples": len(record)})
+    if rests_throughout(known.time, known.slip_speed, known.sticks):
+        return Regime(STUCK, 1.0, {"rests": record.duration})
+    if found.driven:
+        return Regime(UNDETERMINED, 0.0, {"driven": found.driven})
+    if (unseen := _too_coarse(known, found.lasting["drop"], its)) is not None:
+        return unseen
+    shapes, loading = shapes_of(found.table), record.loading_rate
+    given = Circumstances.of(
+        known.slider, known.time, shapes, loading, known.slip_speed, known.sticks
     )
+    if len(found.lasting) and not settle(shapes, given):
+        return by_parts(record, found)
+    return regime_without_cycles(its, shapes, given, partial(_fast_oscillation, known))
 
 
-def _fast_oscillation(record: Record) -> FastOscillation | None:
-    """Return the fast oscillation at the end of a run; None of others, and where all rests."""
-    slider, rate = record.slider, record.rate_across
-    if slider is None or rate is None:
+def _too_coarse(known: ExactForce, drop: Floats, its: Features) -> Regime | None:
+    """Return that nothing is determined of a run whose samples are too few to show its motion.
+
+    The drop (N) is that of each cycle that they seem to show.
+    """
+    needed = least_rate(known.slider)
+    if float(np.diff(known.time).max()) * needed < 1.0 + SAME:
         return None
-    if stops_with_drive(slider.motion, float(record.time[-1]), record.slip_speed):
+    missed = np.abs(residual_changes(known.time, known.force, known.rate))
+    span = float(np.ptp(known.force))
+    if shows_motion(missed, drop, span, its, known.rtol) or shows_cycles(
+        known.time, missed, drop, span, known.sticks
+    ):
         return None
-    lasts = FAST_PERIODS / slider.natural_frequencies[1]
-    first = int(np.searchsorted(record.time, record.time[-1] - lasts))
-    return FastOscillation.at_end(slider, rate[first:])
+    unseen = float(missed[AT_ONCE:].max(initial=0.0)) / least_drop(drop, span)
+    begin, end = float(known.time[0]), float(known.time[-1])
+    sticking = many_sticks(begin, end, known.sticks)
+    if sticking is not None and sticking.evidence["rate_needed"] < needed:
+        return sticking
+    return Regime(UNDETERMINED, 0.0, {"unexplained": unseen, "rate_needed": needed})
+
+
+def _fast_oscillation(known: ExactForce) -> FastOscillation:
+    """Return the fast oscillation at the end of a run."""
+    lasts = FAST_PERIODS / known.slider.natural_frequencies[1]
+    first = int(np.searchsorted(known.time, known.time[-1] - lasts))
+    return FastOscillation.at_end(known.slider, known.rate_across[first:])
 
 
 def _has_stopped(record: Record, found: Swings) -> bool:

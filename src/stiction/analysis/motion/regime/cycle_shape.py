@@ -131,7 +131,7 @@ def by_shape(record: Record, found: Swings) -> Regime:
 def _shapes(record: Record, table: CycleTable) -> Shapes:
     step, period = float(np.median(np.diff(record.time))), table.mean("period")
     rise, other = table["rise_share"], ""
-    if period < ENOUGH * step:
+    if record.slider is None and period < ENOUGH * step:
         share, as_well = _coarse_shares(table, step)
         rise = np.full(len(table), share)
         other = shape(as_well) if shape(as_well) != shape(share) else ""
@@ -230,7 +230,7 @@ def _sizes(found: Swings) -> dict[Evidence, float]:
 
 def _no_vibration(record: Record, found: Swings, shapes: Shapes) -> Regime | None:
     """Return that nothing is determined if the shape is of neither vibration nor stick-slip."""
-    if shapes.by_speed not in (TRANSITIONAL, HARMONIC):
+    if shapes.by_speed not in (TRANSITIONAL, HARMONIC) or _is_driven_evenly(record):
         return None
     stays, count = _near_ends(record, found.lasting), len(found.lasting)
     if min(stays) > PLATEAU:
@@ -240,6 +240,14 @@ def _no_vibration(record: Record, found: Swings, shapes: Shapes) -> Regime | Non
     if not known and max(stays) < STRAIGHT and clear:
         return Regime(UNDETERMINED, 0.0, {"cycles": count, "straight": sum(stays)})
     return None
+
+
+def _is_driven_evenly(record: Record) -> bool:
+    """Return whether a record is that of a run under one drive and load."""
+    slider = record.slider
+    if slider is None or slider.modulation_frequencies:
+        return False
+    return bool(record.steady_until(float(record.time[0])) >= record.time[-1])
 
 
 def _near_ends(record: Record, table: CycleTable) -> tuple[float, float]:

@@ -27,7 +27,8 @@ Evidence = Literal[
     "ends_falling_from", "ends_falling_by", "stops", "ended_early", "across", "late_share",
     "one_way", "rate_kept", "rate_over_drive", "hump", "hump_height", "fading", "fades_to",
     "hidden", "hidden_height", "quick_falls", "quick_fall", "gaps", "few_periods", "late_sticks",
-    "samples_per_cycle", "rate_needed", "samples", "unchanging", "forth", "back",
+    "samples_per_cycle", "unexplained", "fastest_slip", "rate_needed", "samples", "unchanging",
+    "forth", "back",
 ]
 # fmt: on
 SLOWER: Final = "slower_share"  # evidence, too: of the motion itself, as an audit knows it
@@ -159,6 +160,15 @@ WORDS: dict[Evidence, tuple[str, Callable[[float], str]]] = {
         _whole,
     ),
     "samples_per_cycle": ("a cycle has {} samples, too few to show it", _three_digits),
+    "unexplained": (
+        "the samples are too far apart to show the motion: from one to the next the force changes "
+        "by up to {} of its smallest swing in a way that its rates do not explain",
+        percent,
+    ),
+    "fastest_slip": (
+        "the mass slips at up to {} times the drive's velocity, so that it is not stuck",
+        _three_digits,
+    ),
     "rate_needed": ("sample at {} or more", lambda value: advice(value, "Hz")),
     "samples": ("number of samples: {}, too few", _whole),
     "unchanging": ("all samples are exactly {}", _force),

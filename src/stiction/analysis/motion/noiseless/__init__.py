@@ -1,0 +1,1 @@
+"""Turning points, swings and kinds of motion of runs, whose samples have rates and no noise."""
