@@ -427,10 +427,12 @@ def damping_number_of(
 
 
 def _one_number(name: str, value: Any) -> float:
-    """Return a single quantity in SI."""
+    """Return a single finite quantity in SI."""
     value = _in_si(name, value) if isinstance(value, str) else value
     if not isinstance(value, bool | np.bool_) and is_numeric(value) and np.ndim(value) == 0:
-        return float(value)
+        if np.isfinite(value):
+            return float(value)
+        raise DescriptionError.of(name, f"must be finite, is {echo(value)}")
     raise DescriptionError.of(name, f"must be one number, or one with its unit, is {echo(value)}")
 
 

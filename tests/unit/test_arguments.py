@@ -247,3 +247,36 @@ def test_a_wrong_whole_number_alone_is_refused_before_the_work(name, monkeypatch
 
 def test_every_function_that_reads_its_arguments_together_is_tried():
     assert {each.__name__ for each in _patient} == set(TOGETHER)
+
+
+def quantities():
+    """Yield each public function with a quantity, its other arguments, and whether it is needed."""
+    P = st.protocols
+    calls = (
+        (st.measure, {"sensor": st.Sensor()}, "sample_rate"),
+        (st.simulate, {"slider": PAPER, "duration": "1 ms"}, "duration sample_rate regularisation"),
+        (st.compare, {"description": PAPER, "laws": ["coulomb"]}, "duration"),
+        (st.design, {"rig": st.Rig(PAPER, {"phi": "1 +- 1 deg"})}, "noise position_noise"),
+        (st.animate, {}, "length at"),
+        (st.plotting.plot_law, {"slider": PAPER}, "fastest"),
+        (st.theory.damping_number_of, {"slider": PAPER, "V": "1 mm/s"}, "V phi"),
+        (P.load_ramp, {"levels": ["20 N"], "ramp": "1 s"}, "ramp hold"),
+        (P.reversal_loops, {"velocity": "1 mm/s", "travel": "1 mm"}, "velocity travel"),
+        (P.slide_hold_slide, {"velocity": 1e-3, "holds": [1.0], "slide": 1.0}, "velocity slide"),
+        (P.velocity_steps, {"velocities": [1e-3, 2e-3]}, "duration distance"),
+    )
+    for public, values, names in calls:
+        for name in names.split():
+            optional = "None" in inspect.signature(public).parameters[name].annotation
+            yield pytest.param(public, values, name, optional, id=f"{public.__name__}-{name}")
+
+
+@pytest.mark.parametrize(("public", "values", "name", "optional"), [*quantities()])
+def test_what_is_not_one_quantity_is_refused_by_its_name(public, values, name, optional):
+    """An array as a sample rate showed NumPy's "truth value of an array is ambiguous"."""
+    if public in (st.measure, st.animate):
+        values = values | {"run": st.simulate(PAPER, "2 ms", sample_rate="10 kHz")}
+    several = np.array([1.0, 2.0]), [1.0, 2.0], np.array(["1 s", "2 s"]), np.array([])
+    for wrong in (*several, True, np.nan, np.inf, 1j, {}, *([] if optional else [None])):
+        with pytest.raises(st.StictionError, match=rf"\b{name}\b"):
+            public(**values | {name: wrong})

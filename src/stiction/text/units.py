@@ -25,6 +25,7 @@ from typing import (
     get_args,
     get_origin,
     get_type_hints,
+    runtime_checkable,
 )
 
 from pydantic import AfterValidator, BeforeValidator, Field, PlainSerializer
@@ -45,6 +46,7 @@ class Kind(NamedTuple):
     example: str
 
 
+@runtime_checkable
 class PintQuantity(Protocol):
     """A number with a unit, as pint has it."""
 

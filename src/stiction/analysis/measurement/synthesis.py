@@ -74,7 +74,7 @@ def measure(
             "st.Sensor(noise='2 mN')"
         )
     plain, own = record_of(run), even_rate(run)
-    sampling = read_arguments(Sampling, sample_rate=sample_rate or 0.0)
+    sampling = read_arguments(Sampling, sample_rate=0.0 if sample_rate is None else sample_rate)
     rate = sampling.sample_rate or own
     if rate > own * (1.0 + 1e-9):
         raise ResultError(
