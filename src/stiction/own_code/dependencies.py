@@ -31,7 +31,9 @@ BEGINS_CHAIN = {
     *("LOAD_FROM_DICT_OR_GLOBALS", "LOAD_FROM_DICT_OR_DEREF"),
 }
 CONTINUES_CHAIN = {"LOAD_ATTR", "LOAD_METHOD"}
+VECTORISED = {"DUFunc", "GUFunc"}  # of numba, which keep the values with which they are compiled
 OF_TUPLES = {"_fields", "_field_defaults"}  # which an instance has, too
+OF_ENUMS = re.compile("_[a-z0-9]\\w*_")  # names that Python keeps for itself in enumerations
 
 OF = " of "  # between a name and the function that reads it
 
@@ -98,6 +100,8 @@ class Dependencies:
         if (said := package_name(value) or constant_text(value)) is not None:
             yield Dependency(path, said, given)
         elif isinstance(value, FunctionType):
+            if type(given).__name__ in VECTORISED and _reads_values(value):
+                raise ValueError(f"{path}, a function of numba.vectorize that reads variables")
             yield Dependency(path, value, given)
             self._functions.append((value, value.__qualname__))
         elif isinstance(value, type):
@@ -131,9 +135,14 @@ class Dependencies:
                     yield from self._of(start + name, value)
 
 
+def _reads_values(function: FunctionType) -> bool:
+    """Return whether a function reads anything but functions."""
+    return any(isinstance(each.token, str) for each in Dependencies(function))
+
+
 def _is_constant(name: str, value: Any) -> bool:
     """Return whether a member of a class is a value of its own, which nothing computes."""
-    hidden = name.startswith(("__", "_abc_")) or name in OF_TUPLES
+    hidden = name.startswith(("__", "_abc_")) or name in OF_TUPLES or OF_ENUMS.fullmatch(name)
     return not (hidden or hasattr(value, "__get__"))
 
 
@@ -213,7 +222,25 @@ def package_name(value: Any) -> str | None:
         return None
     if not isinstance(name, str) or not isinstance(module, str) or not is_of_package(module):
         return None
-    return f"{module}.{getattr(value, '__qualname__', name)}"
+    whole = getattr(value, "__qualname__", name)
+    return f"{module}.{whole}" if _is_found(value, module, whole) else None
+
+
+def _is_found(value: Any, module: str, name: str) -> bool:
+    """Return whether a package has an object by this name, or it is a function without a state.
+
+    What a package makes of a user's function, such as ``np.vectorize(f)``, has its name alone.
+    """
+    if isinstance(value, type) or (isinstance(value, FunctionType) and not value.__closure__):
+        return True
+    homes = (module, "scipy.special") if isinstance(value, np.ufunc) else (module,)
+    for home in homes:
+        there: Any = sys.modules.get(home)
+        for part in name.split("."):
+            there = getattr(there, part, None)
+        if there is value:
+            return True
+    return False
 
 
 @lru_cache(maxsize=1024)
@@ -279,7 +306,7 @@ def chains(code: CodeType) -> tuple[tuple[str, ...], ...]:
     found: list[list[str]] = []
     going = False
     for each in dis.get_instructions(code):
-        if each.opname in BEGINS_CHAIN:
+        if each.opname in BEGINS_CHAIN and each.argval not in code.co_cellvars:
             found.append([str(each.argval)])
         elif going and each.opname in CONTINUES_CHAIN:
             found[-1].append(str(each.argval))
@@ -288,7 +315,7 @@ def chains(code: CodeType) -> tuple[tuple[str, ...], ...]:
             continue
         going = True
     inner = (each for each in code.co_consts if isinstance(each, CodeType))
-    nested = (chain for each in inner for chain in chains(each))
+    nested = (chain for each in inner for chain in chains(each) if chain[0] not in code.co_cellvars)
     return tuple(dict.fromkeys((*map(tuple, found), *nested)))
 
 

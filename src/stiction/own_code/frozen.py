@@ -11,7 +11,7 @@ import builtins
 import sys
 from threading import Lock
 from types import CellType, FunctionType, ModuleType
-from typing import Any
+from typing import Any, cast
 
 from stiction.own_code.dependencies import Dependencies, Own, chains, is_of_package, plain_function
 from stiction.own_code.identity import identity, state_of
@@ -58,13 +58,34 @@ def renew(owner: Own) -> None:
 
 
 def _renew(owner: Own) -> None:
-    found = [each for each in Dependencies(owner) if hasattr(each.value, "py_func")]
-    for each in reversed(found):  # first those that others call
-        state = state_of(each.value.py_func)
-        if _renewed.get(each.value) != state:
-            _renewed[each.value] = state
-            if any(isinstance(token, str) for _, token in state):
-                each.value.recompile()
+    stale = []
+    for each in Dependencies(owner):
+        if hasattr(each.value, "py_func"):
+            state = state_of(each.value.py_func)
+            if _renewed.get(each.value) != state:
+                _renewed[each.value] = state
+                if any(isinstance(token, str) for _, token in state):
+                    stale.append(each.value)
+    _recompile(stale)
+
+
+def _recompile(dispatchers: list[Any]) -> None:
+    """Compile functions anew that may call each other: all are forgotten before the first is.
+
+    What `Dispatcher.recompile` of numba does for one of them.
+    """
+    signatures = [list(each.overloads) for each in dispatchers]
+    for each in dispatchers:
+        each._make_finalizer()()
+        each._reset_overloads()
+        each._cache.flush()
+    for each, its in zip(dispatchers, signatures, strict=True):
+        may_compile, each._can_compile = each._can_compile, True
+        try:
+            for signature in its:
+                each.compile(signature)
+        finally:
+            each._can_compile = may_compile
 
 
 class Copying:
@@ -104,10 +125,15 @@ class Copying:
         copy = FunctionType(plain.__code__, room, plain.__name__, plain.__defaults__, cells or None)
         copy.__kwdefaults__, copy.__qualname__ = plain.__kwdefaults__, plain.__qualname__
         copy.__module__ = self._name
-        made = self._made[id(function)] = copy if function is plain else _compiled(function, copy)
+        made: Any = copy if function is plain else _dispatcher(function, copy)
+        self._made[id(function)] = made
         for name, *rest in chains(plain.__code__):
             if name in plain.__globals__:
                 room[name] = self._variable(plain.__globals__[name], rest)
+        if function is not plain and not function._can_compile:  # for stated types only
+            for each in function.nopython_signatures:
+                made.compile(each)
+            made.disable_compile()
         return made
 
     def _variable(self, value: Any, rest: list[str]) -> Any:
@@ -117,8 +143,24 @@ class Copying:
             if rest and hasattr(value, rest[0]):
                 setattr(copy, rest[0], self._variable(getattr(value, rest[0]), rest[1:]))
             return copy
-        # numba knows plain functions by the object, as those of `register_jitable`
-        return self._function(value) if hasattr(value, "py_func") and _is_user_s(value) else value
+        if not _is_user_s(value):
+            return value
+        if hasattr(value, "py_func"):
+            return self._function(value)
+        return self._plain(value) if isinstance(value, FunctionType) else value
+
+    def _plain(self, function: FunctionType) -> FunctionType:
+        """Return a plain function that numba compiles, or a copy of it with the values of now.
+
+        numba knows it by the object, as `register_jitable` has told it.
+        """
+        if all(not isinstance(token, str) for _, token in state_of(function)):
+            return function
+        from numba.extending import register_jitable
+
+        if id(function) not in self._made:
+            register_jitable(self._function(function))
+        return cast(FunctionType, self._made[id(function)])
 
     def _cell(self, cell: CellType) -> CellType:
         try:
@@ -133,15 +175,8 @@ def _is_user_s(value: Any) -> bool:
     return isinstance(plain, FunctionType) and not is_of_package(plain.__module__)
 
 
-def _compiled(dispatcher: Any, function: FunctionType) -> Any:
-    """Return a function compiled with the options, and for the types, of another one."""
-    copy = type(dispatcher)(
-        function,
-        targetoptions=dispatcher.targetoptions,
-        pipeline_class=dispatcher._compiler.pipeline_class,
+def _dispatcher(of: Any, function: FunctionType) -> Any:
+    """Return a function to be compiled with the options of another one."""
+    return type(of)(
+        function, targetoptions=of.targetoptions, pipeline_class=of._compiler.pipeline_class
     )
-    if not dispatcher._can_compile:  # for stated types only
-        for each in dispatcher.nopython_signatures:
-            copy.compile(each)
-        copy.disable_compile()
-    return copy

@@ -5,6 +5,7 @@ import os
 import re
 import subprocess
 import sys
+from enum import Enum
 from functools import lru_cache, partial, wraps
 from math import exp, log1p
 from pathlib import Path
@@ -13,7 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from numba import njit
+from numba import njit, vectorize
+from numba.extending import register_jitable
 from tests.waiting import PATIENCE
 
 import stiction as st
@@ -31,6 +33,26 @@ HELPERS.loss = 0.01
 @njit
 def loss_at(v):
     return b * log1p(v / 1e-4)
+
+
+@njit("float64(float64)")
+def stated_loss(v):
+    return b * log1p(v / 1e-4)
+
+
+@register_jitable
+def extended_loss(v):
+    return b * log1p(v / 1e-4)
+
+
+@njit
+def loss_in_turn(v, n):
+    return b * log1p(v / 1e-4) if n == 0 else in_turn(v, n - 1)
+
+
+@njit
+def in_turn(v, n):
+    return loss_in_turn(v, n - 1) + 0.0 * b if n > 0 else b * log1p(v / 1e-4)
 
 
 class ByField(NamedTuple):
@@ -62,6 +84,21 @@ class ByFunction(NamedTuple):
 
     def slope(law, v):
         return -b / (1e-4 + v)
+
+
+class BySignature(ByFunction):
+    def coefficient(law, v):
+        return law.mu - stated_loss(v)
+
+
+class ByExtension(ByFunction):
+    def coefficient(law, v):
+        return law.mu - extended_loss(v)
+
+
+class ByRecursion(ByFunction):
+    def coefficient(law, v):
+        return law.mu - loss_in_turn(v, 3)
 
 
 class ByArray(NamedTuple):
@@ -115,7 +152,18 @@ def set_module(monkeypatch, to):
     HELPERS.loss = to
 
 
-@pytest.fixture(params=["variable", "function", "array", "module", "closure"])
+KINDS = {
+    "variable": ByVariable,
+    "function": ByFunction,
+    "signature": BySignature,
+    "extension": ByExtension,
+    "recursion": ByRecursion,
+    "array": ByArray,
+    "module": ByModule,
+}
+
+
+@pytest.fixture(params=[*KINDS, "closure"])
 def law_and_change(request, monkeypatch):
     """A law that reads its parameter b elsewhere, and what changes that."""
     name = request.param
@@ -123,9 +171,8 @@ def law_and_change(request, monkeypatch):
         kind, change = law_of_closure(0.2)
         yield kind(), change
         return
-    kind = {"variable": ByVariable, "function": ByFunction, "array": ByArray, "module": ByModule}
     change = {"array": set_array, "module": set_module}.get(name, set_variable)
-    yield kind[name](), partial(change, monkeypatch)
+    yield KINDS[name](), partial(change, monkeypatch)
     change(monkeypatch, 0.01)
 
 
@@ -367,6 +414,9 @@ class Point(NamedTuple):
         (Point(1.0, iter(())), "value.of, a tuple_iterator"),
         (partial(exp, object()), "value()[0], a object"),
         (np.array([object()]), "value, a numpy.ndarray"),
+        (np.vectorize(lambda x: x), "value, a numpy.vectorize"),
+        (np.frompyfunc(lambda x: x, 1, 1), "value, a numpy.ufunc"),
+        (vectorize(lambda x: b * x), "value, a function of numba.vectorize that reads variables"),
     ],
 )
 def test_the_unknown_is_named(value, name):
@@ -408,3 +458,27 @@ def test_other_values_are_told_apart(first, second):
 def test_differences_are_told_by_name():
     assert differences({"c": "1"}, {"c": "1"}) == ""
     assert differences({"c": "1"}, {}) == "c was 1 and is as in the text"
+
+
+opened = print  # also the names of local variables below
+unread = object()
+
+
+def test_what_a_function_has_itself_is_not_read_outside():
+    def measure(unread):
+        opened = 0.1
+        return sum(each < opened for each in unread), (lambda x: x * opened + len(unread))(1.0)
+
+    assert values_outside(measure).keys() == {"measure"}
+
+
+class Mode(Enum):
+    SLOW = 1
+    FAST = "x"
+
+
+def test_an_enumeration_is_its_members():
+    def measure(run):
+        return Mode.SLOW.value
+
+    assert "Mode.FAST" in dict(state_of(measure))
