@@ -3,12 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Annotated
 
 from stiction.errors import DescriptionError, Fault, ResultError, echo
 from stiction.system.description import Description
-from stiction.system.initial import Initial
-from stiction.text.units import Quantity
-from stiction.text.validation import read_arguments
+from stiction.text.units import Quantity, Read, reader
+from stiction.text.validation import Described, read_arguments
+
+ROUNDED = 1e-12  # of the end of a window, as of the times of samples
+
+
+class Moment(Described):
+    """A time, s; that of a record may be negative, before a trigger."""
+
+    time: Annotated[Read[float], reader("a time", "s", "2 s")]
 
 
 def window_of(description: Description, window: Sequence[Quantity] | None) -> tuple[float, float]:
@@ -43,7 +51,7 @@ def window_between(
     start, end = seconds(begins, "window"), seconds(ends, "window")
     if start >= end:
         raise ResultError(f"window must end after it starts, is {start:g} s to {end:g} s")
-    if start < first or end > last * (1 + 1e-12):
+    if start < first or end > last + ROUNDED * abs(last):
         raise ResultError(
             f"{start:g} s to {end:g} s is not a part of the {whole}, {first:g} s to {last:g} s"
         )
@@ -80,7 +88,7 @@ def seconds(time: Quantity, argument: str) -> float:
         If it has no unit of time.
     """
     try:
-        return read_arguments(Initial, time=time).time
+        return read_arguments(Moment, time=time).time
     except DescriptionError as error:
         faults = [Fault(argument, fault.message) for fault in error.faults]
         raise ResultError(str(DescriptionError(faults))) from None

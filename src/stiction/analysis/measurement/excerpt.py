@@ -12,11 +12,9 @@ from stiction.arrays import Floats
 from stiction.errors import ResultError, Status
 from stiction.formats.table import number_of
 from stiction.result.table import ColumnTable
-from stiction.result.window import window_between, window_of
+from stiction.result.window import ROUNDED, window_between, window_of
 from stiction.text.units import Quantity
 from stiction.trajectory import Trajectory
-
-ROUNDED = 1e-12  # of the end of a window, as of the times of samples
 
 
 def excerpt(run: Trajectory, window: Sequence[Quantity] | None) -> Trajectory:
@@ -95,7 +93,8 @@ def excerpt_of_record(record: Record, window: Sequence[Quantity] | None) -> Reco
 
 def _within(times: Floats, start: float, end: float) -> slice:
     """Return the samples in a window, whose ends may be rounded."""
-    return slice(*np.searchsorted(times, [start * (1 - ROUNDED), end * (1 + ROUNDED)]))
+    ends = start - ROUNDED * abs(start), end + ROUNDED * abs(end)
+    return slice(*np.searchsorted(times, ends))
 
 
 def excerpts(
