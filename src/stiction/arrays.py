@@ -21,6 +21,7 @@ __all__ = [
     "Indices",
     "ShortRepr",
     "compute_once",
+    "data_frame",
     "median",
     "same_fields",
     "same_values",
@@ -144,7 +145,16 @@ def same_fields(one: Any, other: Any) -> bool:
     )
 
 
+def data_frame(data: xr.Dataset) -> pd.DataFrame:
+    """Return a dataset as a data frame of pandas, with its units by name in ``attrs["units"]``."""
+    frame = data.to_dataframe()
+    known = {str(name): its.attrs.get("units") for name, its in data.variables.items()}
+    frame.attrs["units"] = {name: unit for name, unit in known.items() if unit is not None}
+    return frame
+
+
 if TYPE_CHECKING:
+    import pandas as pd
     import xarray as xr
 else:
 

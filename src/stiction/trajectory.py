@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from stiction.arrays import xr
+from stiction.arrays import data_frame, xr
 from stiction.errors import DescriptionError, Faults, ResultError, Status
 from stiction.formats.table import number_of
 from stiction.friction import states
@@ -166,7 +166,7 @@ class Trajectory:
         return as_dataset(stick_table(self.stick_intervals))
 
     def to_dataframe(self) -> pd.DataFrame:
-        """Return the samples as a pandas data frame, indexed by time.
+        """Return the samples as a pandas data frame, indexed by time; units are in its ``attrs``.
 
         Stick intervals have a data frame of their own: ``run.sticks.to_dataframe()``.
 
@@ -177,7 +177,7 @@ class Trajectory:
         >>> len(run.to_dataframe()), len(run.sticks.to_dataframe())
         (21, 9)
         """
-        return self.data.to_dataframe()
+        return data_frame(self.data)
 
     @property
     def slider(self) -> Slider:

@@ -90,7 +90,7 @@ def test_the_registry_is_not_empty():
         (lambda: st.Grid(1, 2, "many"), "Grid.count: must be a whole number, is 'many'"),
         (lambda: st.protocols.reversal_loops(1, 1, loops="2"), r"help\(st.protocols.reversal_l"),
         (lambda: st.check(5), r"path: must be text or a path, is 5; see help\(st.check\)"),
-        (lambda: st.read_record(5), r"path: must be text or a path, is 5; see help"),
+        (lambda: st.read_record(5), r"must be text or a path or a Dataset or a DataFrame, is 5;"),
         (lambda: st.Slider(5), r"Slider: its values have names, 5 has none; write Slider\(mass="),
         (lambda: st.Grid(1, 2, 3, "log", None, 7), "its values have names, 7 has none"),
         (lambda: st.protocols.velocity_steps(b"12", duration=1), "must be a list of at least one"),

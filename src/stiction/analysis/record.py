@@ -16,7 +16,7 @@ from pydantic_core import PydanticCustomError
 from stiction.analysis.drive.measured_drive import EvenDrive, even_drive, uneven_speeds
 from stiction.analysis.signals.digitised import first_of_each
 from stiction.analysis.signals.robust import inner_product, uniform_mean
-from stiction.arrays import Floats, Indices, xr
+from stiction.arrays import Floats, Indices, data_frame, xr
 from stiction.errors import DescriptionError, Fault, echo
 from stiction.formats.channels import CHANNELS as COLUMNS
 from stiction.formats.table import number_of
@@ -575,7 +575,7 @@ class Record(Described):
         >>> float(record.to_dataframe()["force"].max())
         0.002
         """
-        return self.data.to_dataframe()
+        return data_frame(self.data)
 
     def export(self, path: str | Path) -> list[Path]:
         """Write the channels as CSV, Parquet or MATLAB, in SI; return the paths.

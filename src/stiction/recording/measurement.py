@@ -78,20 +78,26 @@ class MeasuredChannel(NamedTuple):
 
 
 def read_measurements(
-    path: Path, given: Mapping[str, Any], sidecar: Path | None, rig_load: float | None = None
+    path: Path,
+    given: Mapping[str, Any],
+    sidecar: Path | None,
+    rig_load: float | None = None,
+    tables: Sequence[FileTable] | None = None,
 ) -> list[Measurement]:
     """Return a measurement for each block of a file, or the one that is asked for.
 
     Parameters
     ----------
     path : Path
-        A file of any known format.
+        A file of any known format, or a name for `tables`.
     given : mapping
         What the user says, by the names of `ReadingOptions` and of the apparatus.
     sidecar : Path or None
         In place of the TOML file beside the file.
     rig_load : float or None
         As of `Request`: for a coefficient of friction whose load nothing else states.
+    tables : sequence of FileTable, optional
+        In place of those of the file.
 
     Raises
     ------
@@ -106,7 +112,8 @@ def read_measurements(
     found: list[Measurement] = []
     # beside the table of samples there may be one without a force, and a short one of results
     faults, without, short, notes = Faults(), Faults(), Faults(), []
-    tables = read_tables(path, layout)
+    if tables is None:
+        tables = read_tables(path, layout)
     most = max(map(len, tables), default=0)
     for table in tables:
         try:

@@ -362,7 +362,7 @@ class Slider(Apparatus):
 
     @cached_property
     def load_cell(self) -> CellAxis:
-        """Axis of the load cell, in x and y: of the spring along x, or that of `cell_angle`."""
+        """The axis of the load cell in x and y, that of the spring along x or of `cell_angle`."""
         x, y = 1.0, 0.0
         if self.cell_angle is not None:
             x, y = unit_vector(self.misalignment + self.cell_angle)

@@ -200,6 +200,15 @@ def test_a_part_of_a_record_is_analysed_with_its_apparatus():
             st.analyse(record, window=window)
 
 
+def test_times_before_a_trigger_are_a_window_too():
+    time = np.linspace(-20.0, 10.0, 3001)
+    record = st.Record(time=time, force=1.0 + time % 2.0)
+    whole = st.analyse(record, window=(time[0], time[-1]))
+    assert len(whole.source) == len(record)
+    part = st.analyse(record, window=("-15 s", "-2 s")).source
+    assert (part.time[0], part.time[-1]) == (time[500], time[1800])
+
+
 def test_a_dataset_is_told_the_ways_to_a_record(run):
     for table in (run.data, run.to_dataframe()):
         told = r"neither a run nor a record.*st\.Record\(time=.*st\.read_record.*window=\(1, 2\)"

@@ -7,7 +7,9 @@ from pathlib import Path
 from typing import Any, Literal, TypedDict, Unpack
 
 from stiction.analysis.record import Record
+from stiction.arrays import xr
 from stiction.errors import DescriptionError, Fault, Faults, Instruction, ResultError
+from stiction.formats.frames import DataFrame, is_frame, tables_of_frame
 from stiction.formats.table import natural_key
 from stiction.recording.measurement import Measurement, read_measurements
 from stiction.recording.part import part_between
@@ -56,9 +58,12 @@ class ReadArguments(TypedDict, total=False):
 
 @suggest(as_argument)
 def read_record(
-    path: str | Path, *, sidecar: str | Path | None = None, **said: Unpack[ReadArguments]
+    path: str | Path | xr.Dataset | DataFrame,
+    *,
+    sidecar: str | Path | None = None,
+    **said: Unpack[ReadArguments],
 ) -> Record:
-    """Read a measured record from a file.
+    """Read a measured record from a file, or from a data frame or a dataset.
 
     CSV and other text, LabVIEW (.lvm), TDMS, MATLAB, HDF5, NetCDF, NumPy and Parquet are recognised
     by their content. What is guessed stands in ``record.origin``: print it. What cannot be guessed
@@ -66,8 +71,10 @@ def read_record(
 
     Parameters
     ----------
-    path : str or Path
-        The file; text may be compressed with gzip.
+    path : str, Path, Dataset or DataFrame
+        The file; text may be compressed with gzip. Or a table of xarray or pandas, whose columns
+        are understood like those of a file: a unit stands in a name, ``"Fx [mN]"``, or in
+        ``attrs["units"]``.
     sidecar : str or Path, optional
         A TOML file with tables [columns], [reading], [record] and [sensors.force], which hold the
         arguments below and sensors; by default ``data.toml`` beside ``data.csv``, if it is there.
@@ -116,12 +123,18 @@ def read_record(
     >>> record = st.read_record("record.csv", stiffness="200 N/m")
     >>> record.force.tolist(), record.sample_rate
     ([0.0015, 0.0025, 0.0005], 2.0)
+
+    A part of a run's data, as a record of the force alone:
+
+    >>> run = st.simulate(st.presets.nakano_popov_2020(), "50 ms", sample_rate="1 kHz")
+    >>> len(st.read_record(run.data.sel(time=slice(0.02, 0.04)), force="spring_x"))
+    21
     """
     return _only_record(path, sidecar, dict(said))
 
 
 def _only_record(
-    path: str | Path,
+    path: str | Path | xr.Dataset | DataFrame,
     sidecar: str | Path | None,
     said: dict[str, Any],
     rig_load: float | None = None,
@@ -130,14 +143,17 @@ def _only_record(
     strokes = _strokes(path, sidecar, said, rig_load)
     if len(strokes) > 1:
         raise ResultError(
-            f"{path}: has {len(strokes)} strokes, which are as many records: say "
+            f"{_title(path)}: has {len(strokes)} strokes, which are as many records: say "
             f"{Suggestion('stroke', 1)} for one of them; {TOGETHER}"
         )
     return strokes[0]
 
 
 def _strokes(
-    path: str | Path, sidecar: str | Path | None, said: dict[str, Any], rig_load: float | None
+    path: str | Path | xr.Dataset | DataFrame,
+    sidecar: str | Path | None,
+    said: dict[str, Any],
+    rig_load: float | None,
 ) -> list[Record]:
     """Return the record of a file that holds one block, or those of its strokes if all are asked.
 
@@ -147,10 +163,10 @@ def _strokes(
     if len(found) > 1:
         listed = "; ".join(_name(each) for each in found[:6]) + ("; ..." if len(found) > 6 else "")
         raise ResultError(
-            f"{path}: holds {len(found)} blocks: {listed}. Say {Suggestion('block', 1)} for one of "
-            "them; st.read_records(path) reads all"
+            f"{_title(path)}: holds {len(found)} blocks: {listed}. Say {Suggestion('block', 1)} "
+            "for one of them; st.read_records(path) reads all"
         )
-    return _records(path, found[0])
+    return _records(_title(path), found[0])
 
 
 @suggest(as_argument_elsewhere)
@@ -312,18 +328,24 @@ def _files_of(folder: Path) -> Sequence[Path]:
     return sorted(some, key=lambda path: natural_key(path.name))
 
 
+def _title(source: str | Path | xr.Dataset | DataFrame) -> str:
+    """Return the name of a file or of a table in memory, for messages."""
+    return type(source).__name__ if is_frame(source) else str(source)
+
+
 def _measurements(
-    path: str | Path,
+    path: str | Path | xr.Dataset | DataFrame,
     sidecar: str | Path | None,
     said: dict[str, Any],
     rig_load: float | None = None,
 ) -> list[Measurement]:
     """Return the measurements of one file; a stored record is one, whose numbers may be changed."""
-    file = Path(path)
+    file, beside = Path(_title(path)), None if sidecar is None else Path(sidecar)
+    if is_frame(path):
+        return read_measurements(file, said, beside, rig_load, tables_of_frame(path))
     names = root_attributes(file) or ()
-    refuse_kinds(path, names, [FIT_KIND])
+    refuse_kinds(file, names, [FIT_KIND])
     if RECORD_KIND not in names:
-        beside = None if sidecar is None else Path(sidecar)
         return read_measurements(file, said, beside, rig_load)
     stored = read_stored(file)
     changed = {name: value for name, value in said.items() if value is not None}

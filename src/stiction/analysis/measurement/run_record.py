@@ -37,7 +37,7 @@ def as_record(source: Trajectory | Record) -> Record:
     is_rig = isinstance(getattr(source, "slider", source), Slider)
     remedy = "st.simulate(...)" if is_rig else "st.Record(time=..., force=...)"
     if type(source).__name__ in TABLES:
-        remedy += ", or write it to a file for st.read_record; a part of a run has window=(1, 2)"
+        remedy += " or st.read_record(...); a part of a run has window=(1, 2)"
     raise ResultError(f"{what} is neither a run nor a record; make one with {remedy}")
 
 
