@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -56,6 +57,8 @@ from stiction.analysis.signals.robust import uniform_mean, without_outliers
 from stiction.analysis.signals.turning_points import turning_points
 from stiction.arrays import Floats, median, xr
 from stiction.drive import ConstantVelocity
+from stiction.drive.program import nominal_velocity
+from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:  # else numba would be loaded for a measured record, too
@@ -461,10 +464,27 @@ def features_of(known: ExactForce) -> Features:
     if not isinstance(drive, ConstantVelocity):
         moves = np.flatnonzero(np.hypot(*drive.rate(time)))
         driven = int(moves[-1]) + 1 if len(moves) else driven
+    largest = float(np.abs(known.force).max(initial=0.0))
+    swing = transverse_swing(known.slider) / largest if largest else 0.0
     return features(
-        time, known.force, known.rate, known.rate, least=known.rtol, driven=driven,
+        time, known.force, known.rate, known.rate, least=max(known.rtol, swing), driven=driven,
         parts=COURSE_PARTS, even=False,
     )  # fmt: skip
+
+
+def transverse_swing(slider: Slider) -> float:
+    """Return the swing, N, of the transverse oscillation on a load cell at an angle of its own.
+
+    Smaller swings are not counted as cycles, however well samples show them. The rate of that
+    oscillation is at most the drive's speed, unless the slip reverses (Nakano & Popov, below
+    Eq. (9)).
+    """
+    if slider.cell_angle is None:
+        return 0.0
+    cell, stiffer = slider.load_cell, slider.stiffer_axis
+    share, k = abs((cell.x, cell.y)[stiffer]), (slider.k_x, slider.k_y)[stiffer]
+    rate = 2.0 * pi * slider.natural_frequencies[1]
+    return 2.0 * share * k * abs(nominal_velocity(slider.motion)) / rate
 
 
 def shapes_of(table: CycleTable) -> SwingShapes:

@@ -68,3 +68,23 @@ def test_turning_points_lie_between_samples():
     np.testing.assert_allclose(when[:count], 0.25 + 0.5 * np.arange(count), atol=0.01)
     np.testing.assert_allclose(np.abs(value[:count]), 1.0, atol=0.02)
     assert list(zigzag(np.array([0.0, 2.0, 1.9, 3.0, 1.0, 2.0]), 0.5)) == [3, 4]
+
+
+@pytest.mark.parametrize(
+    ("phi", "k_y", "V", "cell"),
+    [(4.8, 4e5, 3e-4, 0.0), (4.0, 8e5, 6e-4, 0.0), (9.9, 3e5, 4e-3, 0.0), (2.7, 6e5, 1e-3, -5.0)],
+)
+def test_the_oscillation_that_a_turned_cell_reads_is_no_cycle(phi, k_y, V, cell):
+    """A cell along the drive reads k_y u_y sin(phi), too: 1588 cycles in place of 11."""
+    rig = st.presets.nakano_popov_2020().replace(
+        phi=f"{phi} deg", k_y=k_y, drive=st.ConstantVelocity(V)
+    )
+    duration = 4.0 * rig.loading_time
+    turned, plain = (
+        st.analyse(st.simulate(each, duration))
+        for each in (rig.replace(cell_angle=f"{cell} deg"), rig)
+    )
+    assert turned.regime.kind == plain.regime.kind == "stick-slip"
+    counts = [len(each.cycles["cycle"]) for each in (turned, plain)]
+    assert min(counts) > 2
+    assert abs(counts[0] - counts[1]) <= 1  # the last may be cut
