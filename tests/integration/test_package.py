@@ -269,6 +269,42 @@ def test_a_user_s_law_is_compiled_cached_and_seen_when_edited(tmp_path, code_cac
     assert "COMPLETED" in run_python(code, NUMBA_CACHE_DIR=cache["NUMBA_CACHE_DIR"])
 
 
+WITH_HELPER = """
+from typing import NamedTuple
+from numba import njit
+factor = 1.0
+{helper}
+class Mine(NamedTuple):
+    mu: float
+    def coefficient(law, v):
+        return law.mu * loss(1.0, 3)
+    def slope(law, v):
+        return 0.0
+"""
+STATED = """
+@njit("float64(float64, int64)")
+def loss(x, n):
+    return factor * x
+"""
+IN_TURN = """
+@njit
+def loss(x, n):
+    return factor * x if n == 0 else other(x, n - 1)
+@njit
+def other(x, n):
+    return factor * x if n == 0 else loss(x, n - 1)
+"""
+
+
+@pytest.mark.parametrize("helper", [STATED, IN_TURN])
+def test_a_second_process_runs_a_law_with_any_helper(helper, tmp_path, code_cache):
+    """Stored code of such a law ended the process that loaded it."""
+    (tmp_path / "mylaw.py").write_text(WITH_HELPER.format(helper=helper))
+    cache = {"NUMBA_CACHE_DIR": str(code_cache), "PYTHONPATH": str(tmp_path)}
+    twice = USE + "print(st.simulate(slider, 0.1).stick_intervals[0, 1])\n"
+    assert run_python(twice, **cache) == run_python(twice, **cache)
+
+
 def test_old_names_go_on_working_with_a_warning():
     from stiction import _RENAMED
     from stiction.names import old_names

@@ -18,6 +18,10 @@ from stiction.own_code.identity import identity, state_of
 
 MODULE = "stiction_own_"  # and the identity: by this name numba finds a type in another process
 _copies: dict[Any, type] = {}  # by class and state, and by identity
+_renewed: dict[Any, tuple[Any, ...]] = {}  # by law and compiled function: what it read then
+# modules of copies whose machine code another process cannot link: a helper that is compiled for
+# stated types by itself, or calls itself, is a symbol of its own in it
+unstored: set[str] = set()
 _lock = Lock()
 
 
@@ -40,9 +44,6 @@ def class_to_compile(kind: type) -> type:
                 _copies[name] = Copying(MODULE + name).class_(kind)
             _copies[key] = _copies[name]
         return _copies[key]
-
-
-_renewed: dict[Any, tuple[Any, ...]] = {}  # by law and compiled function: what it read then
 
 
 def renew(owner: Own) -> None:
@@ -99,6 +100,7 @@ class Copying:
         """Begin without copies, for a module of this name."""
         self._name = name
         self._made: dict[int, Any] = {}
+        self._open: set[int] = set()  # whose variables are being copied
 
     def class_(self, kind: type) -> type:
         """Return a copy of a class."""
@@ -118,6 +120,8 @@ class Copying:
     def _function(self, function: Any) -> Any:
         """Return a copy of a function, compiled by numba if it is."""
         if id(function) in self._made:
+            if id(function) in self._open:
+                unstored.add(self._name)
             return self._made[id(function)]
         plain: FunctionType = plain_function(function)
         room = {"__builtins__": builtins, "__name__": self._name}
@@ -127,10 +131,13 @@ class Copying:
         copy.__module__ = self._name
         made: Any = copy if function is plain else _dispatcher(function, copy)
         self._made[id(function)] = made
+        self._open.add(id(function))
         for name, *rest in chains(plain.__code__):
             if name in plain.__globals__:
                 room[name] = self._variable(plain.__globals__[name], rest)
+        self._open.discard(id(function))
         if function is not plain and not function._can_compile:  # for stated types only
+            unstored.add(self._name)
             for each in function.nopython_signatures:
                 made.compile(each)
             made.disable_compile()

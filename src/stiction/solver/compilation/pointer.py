@@ -22,7 +22,7 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from stiction.friction.user.validation import fault
-from stiction.own_code.frozen import MODULE, class_to_compile
+from stiction.own_code.frozen import MODULE, class_to_compile, unstored
 from stiction.own_code.source import text_of
 from stiction.solver.compilation.interrupt import compiling
 from stiction.solver.compilation.jit import INTERPRETED, compiled, compiled_for
@@ -243,6 +243,8 @@ def _classes(kind: Any) -> Iterator[type]:
 
 def _source(kind: type) -> str:
     """Return the origin of a type, after which its code is named."""
+    if kind.__module__ in unstored:
+        raise OSError(f"{kind.__module__} has helpers that another process cannot link")
     if kind.__module__.startswith(MODULE):
         return kind.__module__
     text = None if kind.__module__ == "__main__" else text_of(kind)  # the type of a field
