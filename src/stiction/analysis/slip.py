@@ -13,7 +13,7 @@ from stiction.analysis.creep.first_slip import first_slip_time
 from stiction.arrays import Floats, Indices
 from stiction.errors import Status
 from stiction.result.peak import largest_between
-from stiction.result.table import fastest_slip, largest, unseen_ways
+from stiction.result.table import ROUNDED_WAY, fastest_slip, largest, unseen_ways
 from stiction.simulation import sample_coarsely, step_times
 from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
@@ -24,7 +24,6 @@ OF_A_SLIP = 2  # nor with fewer in each slip
 HUNDREDTHS = 100  # of the first loading
 MOST_STEPS, PER_STEP = 20_000, 16  # of a run solved again, and samples in each: it takes 1 s
 ROUNDS = 4  # of solving it, each with so many samples in an interval that needs them
-ROUNDED = 1e-14  # of the travel of drive or mass: places are known to some roundings
 
 
 class Slip(NamedTuple):
@@ -52,7 +51,7 @@ def _mean_speeds(run: Trajectory, at: Indices) -> Floats:
     """Return the mean speeds (m/s) of the mass from one to the next of some samples, by places."""
     places = [run.samples[name][at] for name in ("X", "Y", "u_x", "u_y")]
     moved = np.hypot(*map(np.diff, places[:2]))
-    moved[moved < ROUNDED * np.abs(places).max()] = 0.0
+    moved[moved < ROUNDED_WAY * np.abs(places).max()] = 0.0
     speeds: Floats = moved / np.diff(run.samples["time"][at])
     return speeds
 

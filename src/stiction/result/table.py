@@ -44,7 +44,6 @@ VARIABLES = {
     ),
     "sticking": ("1", "whether the slip is zero"),
 }
-UNSEEN_PEAK = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
 # of the largest slip speed: samples show a motion whose mean velocities they explain but for less.
 # Half a sine of 6.5 samples has as much; its largest is up to 0.03 below its peak
 UNSEEN_WAY = 0.02

@@ -11,12 +11,11 @@ from stiction.arguments import with_article
 from stiction.arrays import Floats
 from stiction.drive import ConstantVelocity
 from stiction.errors import ResultError
+from stiction.formats.frames import is_frame
 from stiction.system.load_cell import CellAxis, stiffness_of_cell, travel_along_cell
 from stiction.system.slider import Slider
 from stiction.system.tensors import ROUND
 from stiction.trajectory import Trajectory
-
-TABLES = {"Dataset", "DataArray", "DataFrame"}  # of xarray and pandas
 
 
 def as_record(source: Trajectory | Record) -> Record:
@@ -36,7 +35,7 @@ def as_record(source: Trajectory | Record) -> Record:
     what = with_article(type(source).__name__)
     is_rig = isinstance(getattr(source, "slider", source), Slider)
     remedy = "st.simulate(...)" if is_rig else "st.Record(time=..., force=...)"
-    if type(source).__name__ in TABLES:
+    if is_frame(source):
         remedy += " or st.read_record(...); a part of a run has window=(1, 2)"
     raise ResultError(f"{what} is neither a run nor a record; make one with {remedy}")
 

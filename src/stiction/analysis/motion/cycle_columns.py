@@ -14,7 +14,7 @@ from stiction.analysis.record import Record
 from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.turning_points import without_spikes
 from stiction.arrays import Floats, Indices, xr
-from stiction.result.table import UNSEEN_PEAK, mean_speeds
+from stiction.result.table import mean_speeds
 from stiction.text.quantity.wording import in_digits, percent, to_error
 
 # name: (unit, long name), as CF attributes
@@ -38,6 +38,7 @@ COLUMNS = {
     "hesitations": ("1", "number of hesitations, dips too small for a cycle of their own"),
     "hesitation_depth": ("N", "depth of the deepest hesitation"),
 }
+UNSEEN_PEAK = 1.1  # times the largest sample: a larger mean between two is that of an unseen peak
 UNSEEN = 0.25  # of a period without a sample: the cycle is not known
 SOLVER_SPREAD = 1e-5  # of a value: a spread that is less is the solver's, not the motion's
 JUMP = 1.5  # sampling steps: a shorter pause is not a gap

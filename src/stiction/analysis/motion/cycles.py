@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,7 +16,7 @@ from stiction.analysis.motion.changes.quick_falls import EVEN_CHANCE, quick_fall
 from stiction.analysis.motion.changes.ringing import Ringing, beside, ringing_of, without_ringing
 from stiction.analysis.motion.changes.sizes import find_corners
 from stiction.analysis.motion.changes.velocity import made_by_jumps, velocity_jumps
-from stiction.analysis.motion.course import COURSE_PARTS, dies_out
+from stiction.analysis.motion.course import dies_out
 from stiction.analysis.motion.cycle_columns import CycleTable, tabulate
 from stiction.analysis.motion.disturbance import (
     have_period,
@@ -56,9 +55,6 @@ from stiction.analysis.signals.peak_refinement import Vertices
 from stiction.analysis.signals.robust import uniform_mean, without_outliers
 from stiction.analysis.signals.turning_points import turning_points
 from stiction.arrays import Floats, median, xr
-from stiction.drive import ConstantVelocity
-from stiction.drive.program import nominal_velocity
-from stiction.system.slider import Slider
 from stiction.trajectory import Trajectory
 
 if TYPE_CHECKING:  # else numba would be loaded for a measured record, too
@@ -439,6 +435,8 @@ def own_swings(record: Record, wave: Floats | None = None) -> Swings:
 
 def _swings_of_run(record: Record, known: ExactForce) -> Swings:
     """Return the swings of a run's force, by turning points between its samples."""
+    from stiction.analysis.motion.noiseless.features import features_of
+
     found = features_of(known)
     its = corners(found)
     kept = Vertices(found.turn_time[its.kept], found.turn_value[its.kept])
@@ -454,37 +452,6 @@ def _swings_of_run(record: Record, known: ExactForce) -> Swings:
         dying = over or shapes.die_out(until)
     turns = len(found.turn_time)
     return Swings(table, dying, turns, 0.0, 0.0, record.force, over=over, features=found)
-
-
-def features_of(known: ExactForce) -> Features:
-    """Return the features of a run's force."""
-    from stiction.analysis.motion.noiseless.features import features
-
-    time, drive, driven = known.time, known.slider.motion, len(known.time)
-    if not isinstance(drive, ConstantVelocity):
-        moves = np.flatnonzero(np.hypot(*drive.rate(time)))
-        driven = int(moves[-1]) + 1 if len(moves) else driven
-    largest = float(np.abs(known.force).max(initial=0.0))
-    swing = transverse_swing(known.slider) / largest if largest else 0.0
-    return features(
-        time, known.force, known.rate, known.rate, least=max(known.rtol, swing), driven=driven,
-        parts=COURSE_PARTS, even=False,
-    )  # fmt: skip
-
-
-def transverse_swing(slider: Slider) -> float:
-    """Return the swing, N, of the transverse oscillation on a load cell at an angle of its own.
-
-    Smaller swings are not counted as cycles, however well samples show them. The rate of that
-    oscillation is at most the drive's speed, unless the slip reverses (Nakano & Popov, below
-    Eq. (9)).
-    """
-    if slider.cell_angle is None:
-        return 0.0
-    cell, stiffer = slider.load_cell, slider.stiffer_axis
-    share, k = abs((cell.x, cell.y)[stiffer]), (slider.k_x, slider.k_y)[stiffer]
-    rate = 2.0 * pi * slider.natural_frequencies[1]
-    return 2.0 * share * k * abs(nominal_velocity(slider.motion)) / rate
 
 
 def shapes_of(table: CycleTable) -> SwingShapes:

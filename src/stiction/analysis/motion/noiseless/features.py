@@ -6,15 +6,21 @@ record.
 
 from __future__ import annotations
 
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
 
+from stiction.analysis.motion.course import COURSE_PARTS
 from stiction.analysis.motion.noiseless.extremes import vertex
 from stiction.analysis.motion.noiseless.resolution import REVERSAL
 from stiction.analysis.motion.noiseless.zigzag import find_turns
+from stiction.analysis.record import ExactForce
 from stiction.arrays import Floats
+from stiction.drive import ConstantVelocity
+from stiction.drive.program import nominal_velocity
 from stiction.solver.compilation.jit import compiled
+from stiction.system.slider import Slider
 
 
 class Features(NamedTuple):
@@ -94,6 +100,35 @@ def features(
     turns = when[:count].copy(), turn[:count].copy()
     ends = float(force[0]), float(force[-1])
     return Features(peak, mean, span, fastest, means, *turns, height, *ends)
+
+
+def features_of(known: ExactForce) -> Features:
+    """Return the features of a run's force."""
+    time, drive, driven = known.time, known.slider.motion, len(known.time)
+    if not isinstance(drive, ConstantVelocity):
+        moves = np.flatnonzero(np.hypot(*drive.rate(time)))
+        driven = int(moves[-1]) + 1 if len(moves) else driven
+    largest = float(np.abs(known.force).max(initial=0.0))
+    swing = transverse_swing(known.slider) / largest if largest else 0.0
+    return features(
+        time, known.force, known.rate, known.rate, least=max(known.rtol, swing), driven=driven,
+        parts=COURSE_PARTS, even=False,
+    )  # fmt: skip
+
+
+def transverse_swing(slider: Slider) -> float:
+    """Return the swing, N, of the transverse oscillation on a load cell at an angle of its own.
+
+    Smaller swings are not counted as cycles, however well samples show them. The rate of that
+    oscillation is at most the drive's speed, unless the slip reverses (Nakano & Popov, below
+    Eq. (9)).
+    """
+    if slider.cell_angle is None:
+        return 0.0
+    cell, stiffer = slider.load_cell, slider.stiffer_axis
+    share, k = abs((cell.x, cell.y)[stiffer]), (slider.k_x, slider.k_y)[stiffer]
+    rate = 2.0 * pi * slider.natural_frequencies[1]
+    return 2.0 * share * k * abs(nominal_velocity(slider.motion)) / rate
 
 
 @compiled
